@@ -12,7 +12,6 @@ use crate::contact::equilibrium::{
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::objects::SphereUnion;
 
 /// Free objects of a scene, which move under gravity and contact forces until a common equilibrium.
 #[derive(Clone, Debug)]
@@ -117,12 +116,12 @@ impl FreeObjects {
             })
             .collect();
         let bodies = there.iter().map(|free| {
-            FreeObject::new(spheres(plan, free.object), free.mass, free.center_of_mass)
+            FreeObject::new(&plan.models[free.object], free.mass, free.center_of_mass)
         });
         let bodies = bodies.collect::<Result<Vec<_>>>()?;
         let starts: Vec<Pose> = there.iter().map(|free| free.reading.pose).collect();
         let obstacles = self.obstacles.iter().map(|&object| Obstacle {
-            spheres: spheres(plan, object),
+            shape: (&plan.models[object]).into(),
             pose: objects.poses[object],
         });
         let ground = Ground {
@@ -223,11 +222,6 @@ fn at_start(pose: Pose) -> ObjectReading {
         held: PoseControl::AtRest,
         balance: None,
     }
-}
-
-fn spheres(plan: &ScenePlan, object: usize) -> &SphereUnion {
-    let spheres = plan.models[object].spheres();
-    spheres.expect("the plan lets only unions of spheres be beside free ones")
 }
 
 fn reading(balance: Equilibrium, time: f64) -> ObjectReading {

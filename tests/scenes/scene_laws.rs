@@ -501,7 +501,7 @@ fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes_and_on_it()
     let ball = plan.models[1].spheres().unwrap();
     let ball = FreeObject::new(ball, mass, center_of_mass).unwrap();
     let obstacles = [Obstacle {
-        spheres: plan.models[0].spheres().unwrap(),
+        shape: (&plan.models[0]).into(),
         pose: frame.objects[0].pose,
     }];
     let settled = |pushed, obstacles| {

@@ -32,6 +32,7 @@ mod box_tree;
 mod box_tree_build;
 mod bvh;
 mod crossings;
+mod features;
 mod formats;
 mod holes;
 mod measures;
@@ -51,6 +52,7 @@ mod winding;
 
 pub use box_tree::BoxTree;
 pub use bvh::{Bvh, Closest, Hit};
+pub use features::{Edge, Face, MeshFeatures};
 pub use formats::{
     LengthUnit, MeshFormat, obj_group, read_collada, read_gltf, read_obj, read_ply, read_stl,
 };

@@ -7,9 +7,9 @@ use super::mesh_blocks::MeshBlocks;
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
 use crate::mesh::primitives::check_capsule;
-use crate::mesh::{Bvh, Triangle, TriangleMesh, Welded};
+use crate::mesh::{Bvh, MeshFeatures, Triangle, TriangleMesh, Welded};
 use glam::{DMat3, DQuat, DVec3};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Mesh that taxels can touch exactly; each triangle is solid from either side. Clones share their data.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ struct Data {
     bvh: Bvh,
     /// Triangles with their contact data, in blocks.
     blocks: MeshBlocks,
+    /// Parts for contacts of free objects, computed on first use.
+    features: OnceLock<MeshFeatures>,
 }
 
 /// Contact data of one triangle: its face, and the edges and corners that belong to no earlier triangle.
@@ -70,6 +72,7 @@ impl MeshModel {
                 rounding,
                 bvh,
                 blocks,
+                features: OnceLock::new(),
             }),
         }
     }
@@ -123,6 +126,12 @@ impl MeshModel {
     /// Returns the triangles in blocks, for searches with vector instructions.
     pub(crate) fn blocks(&self) -> &MeshBlocks {
         &self.data.blocks
+    }
+
+    /// Returns the corners, edges and faces of the mesh, computed at the first call.
+    pub fn features(&self) -> &MeshFeatures {
+        let data = &self.data;
+        data.features.get_or_init(|| MeshFeatures::new(&data.mesh))
     }
 
     /// Returns the bounding box of the object, metres.

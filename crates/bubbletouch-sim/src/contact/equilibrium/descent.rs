@@ -7,6 +7,7 @@ use super::free_object::Ground;
 use super::loads::{Multipliers, Smoothness};
 use super::model::{Model, Step};
 use super::pair::{Key, Part};
+use super::rigid_shape::RigidShape;
 use super::scene::Scene;
 use super::shear_springs::{self, Spring};
 use super::symmetric::{Symmetric, norm};
@@ -38,6 +39,11 @@ const LAST_BITS: f64 = 64.0;
 /// Maximum number of times that the smoothing of ties is reduced. Each reduction makes the smoothed kinks of the energy steeper by a factor of 5; rounding
 /// hides further reductions.
 const MAX_TIGHTENINGS: usize = 12;
+/// Longest step of meshes that can touch rigid shapes, relative to the smallest body. If larger, a step can pass through a thin wall; if smaller, long ways
+/// need more steps.
+const RIGID_STEP: f64 = 0.02;
+/// Largest penetration of rigid meshes that is searched, in longest steps: a point can move by two steps, by translation and by rotation.
+const DEEP: f64 = 2.5;
 /// Distance below which two positions count as equal, relative to the size and the travel of the object.
 const SAME_PLACE: f64 = 1e-15;
 
@@ -92,8 +98,14 @@ impl<'a, 'b> Descent<'a, 'b> {
         let stroke = if stroke.is_finite() { stroke } else { smallest };
         let weight: f64 = bodies.iter().map(|body| body.weight.length()).sum();
         let size = bodies.iter().map(Body::arm).fold(0.0, f64::max);
+        let is_mesh = |body: &Body| matches!(body.object.shape, RigidShape::Mesh(_));
+        let may_touch = bodies.len() > 1 || !ground.obstacles.is_empty();
+        let farthest = match may_touch && bodies.iter().any(is_mesh) {
+            true => (0.5 * stroke).min(RIGID_STEP * smallest),
+            false => 0.5 * stroke,
+        };
         Self {
-            farthest: 0.5 * stroke,
+            farthest,
             scene: Scene {
                 ground,
                 springs: Spring::all(&bodies, ground),
@@ -106,7 +118,7 @@ impl<'a, 'b> Descent<'a, 'b> {
                     stop_stiffness: (1e3 * stiffness).max(weight / (1e-3 * stroke)),
                 },
             },
-            reach: 0.125 * stroke,
+            reach: 0.25 * farthest,
             n_steps: 0,
             workspace,
         }
@@ -345,7 +357,8 @@ impl<'a, 'b> Descent<'a, 'b> {
         self.n_steps += 1;
         // For a long step not all contacts are gathered: the list would contain most spheres.
         let step = self.reach.min(self.nearby());
-        self.workspace.now.look(&self.scene, step, behind);
+        let deep = DEEP * self.farthest;
+        self.workspace.now.look(&self.scene, [step, deep], behind);
     }
 
     /// Re-evaluates the energy at the current poses. Spheres that are now behind the substrate of a taxel continue to exert no force on this taxel.

@@ -31,12 +31,13 @@ pub(super) struct PairLoad {
 }
 
 impl Energy {
-    /// Evaluates the energy at the present poses of the bodies, and collects all contacts that can occur after a motion of at most `step` metres. `behind`
-    /// lists the spheres that were behind a taxel's substrate at the previous poses.
-    pub fn look(&mut self, scene: &Scene, step: f64, behind: &[(Key, Part)]) {
+    /// Evaluates the energy at the present poses of the bodies, and collects all contacts that can occur after a motion of at most `step` metres. Rigid meshes are
+    /// searched to a penetration of `deep` metres. `behind` lists the spheres that were behind a taxel's substrate at the previous poses.
+    pub fn look(&mut self, scene: &Scene, [step, deep]: [f64; 2], behind: &[(Key, Part)]) {
         let margins = Margins {
             step,
             window: 2.0 * scene.smoothness.smoothing + 4.0 * step,
+            deep,
         };
         self.pairs
             .look(&scene.bodies, scene.ground, margins, behind);

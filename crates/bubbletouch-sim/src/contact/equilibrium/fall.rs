@@ -127,8 +127,8 @@ impl Loose {
             }
         }
         let obstacles = ground.obstacles.iter().map(|obstacle| {
-            let center = obstacle.spheres.bounds().center();
-            let radius = obstacle.spheres.reach_from(center);
+            let center = obstacle.shape.bounds().center();
+            let radius = obstacle.shape.reach_from(center);
             (obstacle.pose.transform_point(center), radius)
         });
         let others = others.iter().map(|other| (other.center, other.arm()));

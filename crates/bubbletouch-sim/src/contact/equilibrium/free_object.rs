@@ -1,10 +1,10 @@
 //! Free objects, and the ground that supports these objects: skins, planes and obstacles.
 
+use super::rigid_shape::RigidShape;
 use crate::contact::friction::TangentialSpring;
 use crate::contact::relaxation_factor;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::objects::{Sphere, SphereUnion};
 use crate::text::in_range::positive;
 use crate::world::Patch;
 use glam::DVec3;
@@ -12,10 +12,10 @@ use glam::DVec3;
 /// Rigid object that moves only under gravity and contact forces.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeObject<'a> {
-    pub(super) spheres: &'a [Sphere],
+    pub(super) shape: RigidShape<'a>,
     pub(super) mass: f64,
     pub(super) center_of_mass: DVec3,
-    /// Distance from the centre of mass to the farthest surface point of a sphere, metres.
+    /// Distance from the centre of mass to the farthest surface point, metres.
     pub(super) radius: f64,
 }
 
@@ -24,7 +24,12 @@ impl<'a> FreeObject<'a> {
     ///
     /// # Errors
     /// If a value is not finite or the mass is not positive.
-    pub fn new(spheres: &'a SphereUnion, mass: f64, center_of_mass: DVec3) -> Result<Self> {
+    pub fn new(
+        shape: impl Into<RigidShape<'a>>,
+        mass: f64,
+        center_of_mass: DVec3,
+    ) -> Result<Self> {
+        let shape = shape.into();
         positive("object mass", mass, "kg")?;
         if !center_of_mass.is_finite() {
             return Err(Error::input(
@@ -34,10 +39,10 @@ impl<'a> FreeObject<'a> {
             ));
         }
         Ok(Self {
-            spheres: spheres.spheres(),
+            shape,
             mass,
             center_of_mass,
-            radius: spheres.reach_from(center_of_mass),
+            radius: shape.reach_from(center_of_mass),
         })
     }
 }
@@ -102,7 +107,7 @@ pub struct HalfSpace {
 #[derive(Clone, Copy, Debug)]
 pub struct Obstacle<'a> {
     /// Shape of the obstacle.
-    pub spheres: &'a SphereUnion,
+    pub shape: RigidShape<'a>,
     /// Pose of the obstacle in the world (`world_from_object`).
     pub pose: Pose,
 }

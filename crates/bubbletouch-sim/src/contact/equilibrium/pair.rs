@@ -1,13 +1,14 @@
-//! Pair of a sphere of a free object and the taxel or rigid contact that it pushes.
+//! Pair of a part of a free object and the taxel or rigid contact that it pushes. A part is a sphere, or a corner, an edge or a face of a mesh.
 //!
-//! A rigid surface is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as the deflection, and the
+//! A rigid surface is treated as a taxel without a spring at the end of its stroke. The penetration of the part is treated as the deflection, and the
 //! contact force as the force at the end of the stroke.
 
+use super::mesh_reach::MeshReach;
 use super::reach::Reach;
 use super::rigid_contact::{Touched, Touching};
 use glam::{DMat3, DVec3};
 
-/// Sphere of a free object: index of the body among the bodies of the solver, and index of the sphere.
+/// Part of a free object: index of the body among the bodies of the solver, and index of the sphere, or number of the part of the mesh.
 pub(super) type Part = (u32, u32);
 
 /// Taxel or rigid counterpart that a sphere pushes.
@@ -38,21 +39,70 @@ pub(super) struct Pair {
 /// Quantities on which the deflection of a pair depends when bodies move.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
+    /// Taxel and sphere.
     Taxel(Reach),
+    /// Taxel and part of a mesh: derivatives of the deflection, and whether the contact is grazing.
+    Mesh(Curvature, bool),
     Rigid(Touching),
     /// The deflection does not depend on free bodies, because objects that are fixed or move along a given path push the taxel.
     Fixed,
 }
 
+/// First and second derivatives of the deflection of a pair.
+///
+/// Let w be the displacement of the body's material point at the pair's arm, relative to the counterpart, and θ the rotation of the body. For θ = 0 the
+/// deflection changes by `gradient·w + ½ w·bending w`. The rotation adds the centripetal term of the arm (`add_turning`), and `θ·turning w` where the
+/// direction of contact turns with the body, as on a face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Curvature {
+    /// Gradient of the deflection, dimensionless.
+    pub gradient: DVec3,
+    /// Second derivative with respect to the displacement, 1/m.
+    pub bending: DMat3,
+    /// Mixed second derivatives with respect to a rotation and the displacement, for the body and for its counterpart, dimensionless.
+    pub turning: [DMat3; 2],
+}
+
+impl Curvature {
+    /// Returns the derivatives for a contact that is a function of one displacement, such as contact with a sphere.
+    pub fn of_point((gradient, bending): (DVec3, DMat3)) -> Self {
+        Self {
+            gradient,
+            bending,
+            turning: [DMat3::ZERO; 2],
+        }
+    }
+
+    /// Returns the derivatives in a rotated frame.
+    pub fn turned(&self, rotation: &DMat3) -> Self {
+        let turned = |matrix: &DMat3| *rotation * *matrix * rotation.transpose();
+        Self {
+            gradient: *rotation * self.gradient,
+            bending: turned(&self.bending),
+            turning: self.turning.each_ref().map(turned),
+        }
+    }
+}
+
 impl Pair {
-    /// Returns the gradient and the second derivative of the deflection with respect to the sphere's motion relative to its counterpart; `None` for fixed
-    /// pairs.
-    pub fn derivatives(&self) -> Option<(DVec3, DMat3)> {
+    pub fn on_mesh(key: Key, slot: u32, found: &MeshReach, center_of_mass: DVec3) -> Self {
+        Self {
+            key,
+            part: (slot, found.part),
+            deflection: found.deflection,
+            kind: Kind::Mesh(found.curvature, found.is_grazing),
+            arm: found.center - center_of_mass,
+        }
+    }
+
+    /// Returns the derivatives of the deflection with respect to the motion of the body relative to its counterpart; `None` for fixed pairs.
+    pub fn derivatives(&self) -> Option<Curvature> {
         match &self.kind {
             Kind::Taxel(reach) => {
                 let found = reach.derivatives();
-                Some((found.gradient, found.curvature))
+                Some(Curvature::of_point((found.gradient, found.curvature)))
             }
+            Kind::Mesh(curvature, _) => Some(*curvature),
             Kind::Rigid(touching) => Some(touching.derivatives()),
             Kind::Fixed => None,
         }
@@ -72,13 +122,14 @@ impl Pair {
     /// Returns the force on the sphere, newtons, that results from a `force` (N) along the taxel's axis. The result is in the patch frame for taxels, in the
     /// world for rigid contacts.
     pub fn push(&self, force: f64) -> DVec3 {
-        let gradient = self.derivatives().map(|(gradient, _)| gradient);
+        let gradient = self.derivatives().map(|found| found.gradient);
         -force * gradient.unwrap_or(DVec3::ZERO)
     }
 
     pub fn is_grazing(&self) -> bool {
         match &self.kind {
             Kind::Taxel(reach) => reach.derivatives().is_grazing,
+            Kind::Mesh(_, is_grazing) => *is_grazing,
             _ => false,
         }
     }

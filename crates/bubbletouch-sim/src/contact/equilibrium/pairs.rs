@@ -6,9 +6,11 @@
 use super::super::taxel_contact::GRAZING;
 use super::body::Body;
 use super::free_object::{Ground, PlacedSkin};
+use super::mesh_reach::MeshOnSkin;
 use super::pair::{Key, Kind, OTHERS, Pair, Part};
 use super::reach::Reach;
 use super::rigid_pairs::gather_rigid;
+use super::rigid_shape::RigidShape;
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
@@ -35,6 +37,8 @@ pub(super) struct Margins {
     /// Largest difference between the largest required deflection of a taxel and the deflections of its other spheres, metres. Spheres with a larger
     /// difference are omitted.
     pub window: f64,
+    /// Largest penetration of rigid meshes that is searched, metres.
+    pub deep: f64,
 }
 
 /// Pairs of spheres and taxels or rigid counterparts at the present poses of all bodies.
@@ -66,7 +70,8 @@ impl Pairs {
             self.gather(bodies, (number as u32, skin), margins, behind);
         }
         self.behind.sort_unstable();
-        gather_rigid(&mut self.all, bodies, ground, 2.0 * margins.step);
+        let range = [2.0 * margins.step, margins.deep];
+        gather_rigid(&mut self.all, bodies, ground, range);
         self.groups.clear();
         let mut first = 0;
         for of_key in self.all.chunk_by(|a, b| a.key == b.key) {
@@ -159,7 +164,28 @@ impl Pairs {
         let rotation = DMat3::from_quat(patch_from_object.rotation);
         let center_of_mass = patch_from_object.transform_point(body.object.center_of_mass);
         let tree = skin.patch.tree();
-        for (sphere, index) in body.object.spheres.iter().zip(0..) {
+        if let RigidShape::Mesh(mesh) = body.object.shape {
+            let on_skin = MeshOnSkin::new(mesh, &patch_from_object);
+            let reach = body.arm() + more;
+            tree.each_near(center_of_mass, reach, |taxel| {
+                let at = taxel.number as usize;
+                let key = Key::Taxel(number, taxel.number);
+                let relaxed = skin.relaxed(at);
+                on_skin.each(taxel, (2.0 * margins.step, margins.window), |found| {
+                    let mut pair = Pair::on_mesh(key, slot, found, center_of_mass);
+                    if found.is_behind || behind.binary_search(&(key, pair.part)).is_ok() {
+                        now_behind.push((key, pair.part));
+                        return;
+                    }
+                    pair.deflection -= relaxed;
+                    if pair.deflection >= deepest[at] - margins.window {
+                        deepest[at] = deepest[at].max(pair.deflection);
+                        pairs.push(pair);
+                    }
+                });
+            });
+        }
+        for (sphere, index) in body.object.shape.spheres().iter().zip(0..) {
             let center = rotation * sphere.center + patch_from_object.translation;
             tree.each_near(center, sphere.radius + more, |taxel| {
                 let found = Reach::new(center, sphere.radius, taxel, 2.0 * margins.step);

@@ -3,12 +3,12 @@
 use super::body::Body;
 use super::energy::PairLoad;
 use super::free_object::PlacedSkin;
-use super::pair::Pair;
+use super::pair::{Kind, Pair};
 use super::rigid_contact::Touched;
 use crate::contact::Wrench;
 use glam::DVec3;
 
-/// Load between one taxel and one sphere of a free object.
+/// Load between one taxel and one part of a free object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaxelLoad {
     /// Index of the skin in the list of skins that support the objects.
@@ -17,7 +17,7 @@ pub struct TaxelLoad {
     pub taxel: usize,
     /// Index of the object in the list passed to the solver.
     pub object: usize,
-    /// Index of the sphere in its object.
+    /// Index of the sphere in its object, or number of the part in its mesh ([`MeshFeatures`](crate::mesh::MeshFeatures)).
     pub sphere: usize,
     /// Force of the sphere on the taxel along the taxel's axis, newtons, above 0.
     pub force: f64,
@@ -30,12 +30,12 @@ pub struct TaxelLoad {
     pub on_object: Wrench,
 }
 
-/// Contact load between one sphere of a free object and a rigid counterpart.
+/// Contact load between one part of a free object and a rigid counterpart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
     /// Index of the object in the list passed to the solver.
     pub object: usize,
-    /// Index of the sphere in its object.
+    /// Index of the sphere in its object, or number of the part in its mesh ([`MeshFeatures`](crate::mesh::MeshFeatures)).
     pub sphere: usize,
     /// Rigid counterpart that the sphere touches.
     pub other: Touched,
@@ -81,6 +81,10 @@ impl Touch {
         let sphere = pair.part.1 as usize;
         let push = pair.push(load.force);
         let out = push.try_normalize().unwrap_or(DVec3::ZERO);
+        let inset = match &pair.kind {
+            Kind::Rigid(touching) => touching.inset,
+            _ => 0.0,
+        };
         Self {
             object: of_body(pair.part.0 as usize),
             sphere,
@@ -88,7 +92,7 @@ impl Touch {
                 Touched::Object(slot, sphere) => Touched::Object(of_body(slot), sphere),
                 rigid => rigid,
             },
-            point: body.center + pair.arm - body.object.spheres[sphere].radius * out,
+            point: body.center + pair.arm - inset * out,
             force: push,
         }
     }

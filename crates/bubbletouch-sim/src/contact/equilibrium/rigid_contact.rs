@@ -1,34 +1,51 @@
-//! Contact of a free object's sphere with a rigid counterpart.
+//! Contact of a free object's part with a rigid counterpart.
 
+use super::pair::Curvature;
 use glam::{DMat3, DVec3};
 
-/// Rigid counterpart that a sphere of a free object touches.
+/// Rigid counterpart that a part of a free object touches: a sphere, or a part of a mesh by its number
+/// ([`MeshFeatures`](crate::mesh::MeshFeatures)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Touched {
     /// Plane, given by its index in the list of planes of the ground.
     Plane(usize),
-    /// Sphere of an obstacle: index of the obstacle, and index of the sphere.
+    /// Part of an obstacle: index of the obstacle, and number of the part.
     Obstacle(usize, usize),
-    /// Sphere of another free object: index of the object, and index of the sphere.
+    /// Part of another free object: index of the object, and number of the part.
     Object(usize, usize),
 }
 
-/// Penetration of a sphere into a rigid counterpart, and the quantities on which the penetration depends; in the world.
+/// Penetration of a part into a rigid counterpart, and the quantities on which the penetration depends; in the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touching {
-    /// Unit normal, pointing from the counterpart to the sphere.
-    pub normal: DVec3,
-    /// Distance between the centres of two spheres, metres; infinite for a plane.
-    pub distance: f64,
-    /// Index of the touched body, and the vector from its centre of mass to the centre of its sphere; `None` if the counterpart is fixed.
+    /// Derivatives of the penetration.
+    pub curvature: Curvature,
+    /// Distance from the end of the pair's arm to the contact point, towards the counterpart, metres.
+    pub inset: f64,
+    /// Index of the touched body, and the arm from its centre of mass; `None` if the counterpart is fixed.
     pub other: Option<(u32, DVec3)>,
 }
 
 impl Touching {
-    /// Returns the first and second (1/m) derivative of the penetration with respect to the motion of the sphere's centre relative to the counterpart.
-    pub fn derivatives(&self) -> (DVec3, DMat3) {
-        let n = self.normal;
+    /// Creates the contact of a sphere of `radius` metres with a sphere or a plane. `normal` points from the counterpart to the sphere, and `distance` is the
+    /// distance of the two centres, metres; infinite for a plane.
+    pub fn of_sphere(
+        radius: f64,
+        normal: DVec3,
+        distance: f64,
+        other: Option<(u32, DVec3)>,
+    ) -> Self {
+        let n = normal;
         let along = DMat3::from_cols(n * n.x, n * n.y, n * n.z);
-        (-n, (DMat3::IDENTITY - along) * (-1.0 / self.distance))
+        let bending = (DMat3::IDENTITY - along) * (-1.0 / distance);
+        Self {
+            curvature: Curvature::of_point((-n, bending)),
+            inset: radius,
+            other,
+        }
+    }
+
+    pub fn derivatives(&self) -> Curvature {
+        self.curvature
     }
 }

@@ -1,23 +1,31 @@
-//! Contacts between spheres of free objects and planes, obstacles, and other free objects.
+//! Contacts between free objects and planes, obstacles, and other free objects.
 
 use super::body::Body;
 use super::free_object::{Ground, HalfSpace};
+use super::mesh_pairs::{Placed, Range, each_below_plane, each_contact};
 use super::pair::{Key, Kind, Pair, Part};
 use super::rigid_contact::{Touched, Touching};
+use super::rigid_shape::RigidShape;
 use crate::geometry::Pose;
 use crate::objects::Sphere;
 use glam::{DMat3, DVec3};
 
-/// Spheres of another body or of an obstacle, which a sphere of the body may touch.
+/// Another body or an obstacle, which a body may touch.
 struct Others<'a> {
-    spheres: &'a [Sphere],
+    shape: RigidShape<'a>,
     pose: Pose,
-    /// Index and centre of mass of the body that owns the spheres; `None` for an obstacle.
+    /// Index and centre of mass of the other body; `None` for an obstacle.
     body: Option<(u32, DVec3)>,
 }
 
-/// Appends the pairs of spheres that penetrate a rigid counterpart or are nearer to it than `may_move` metres; sorted.
-pub(super) fn gather_rigid(pairs: &mut Vec<Pair>, bodies: &[Body], ground: &Ground, may_move: f64) {
+/// Appends the pairs of parts that penetrate a rigid counterpart or are nearer to it than `may_move` metres; sorted. Meshes are searched to a penetration of
+/// `deep` metres.
+pub(super) fn gather_rigid(
+    pairs: &mut Vec<Pair>,
+    bodies: &[Body],
+    ground: &Ground,
+    [may_move, deep]: [f64; 2],
+) {
     let first = pairs.len();
     for (body, slot) in bodies.iter().zip(0..) {
         for (number, plane) in ground.planes.iter().enumerate() {
@@ -25,12 +33,12 @@ pub(super) fn gather_rigid(pairs: &mut Vec<Pair>, bodies: &[Body], ground: &Grou
         }
         for (number, obstacle) in ground.obstacles.iter().enumerate() {
             let others = Others {
-                spheres: obstacle.spheres.spheres(),
+                shape: obstacle.shape,
                 pose: obstacle.pose,
                 body: None,
             };
             let touched = |sphere| Touched::Obstacle(number, sphere);
-            gather_spheres(pairs, (slot, body), &others, touched, may_move);
+            gather_shapes(pairs, (slot, body), &others, touched, [may_move, deep]);
         }
         for (other, number) in bodies.iter().zip(0..).skip(slot as usize + 1) {
             let reach = body.arm() + other.arm() + 2.0 * may_move;
@@ -38,12 +46,13 @@ pub(super) fn gather_rigid(pairs: &mut Vec<Pair>, bodies: &[Body], ground: &Grou
                 continue;
             }
             let others = Others {
-                spheres: other.object.spheres,
+                shape: other.object.shape,
                 pose: other.pose(),
                 body: Some((number, other.center)),
             };
             let touched = |sphere| Touched::Object(number as usize, sphere);
-            gather_spheres(pairs, (slot, body), &others, touched, 2.0 * may_move);
+            let range = [2.0 * may_move, deep];
+            gather_shapes(pairs, (slot, body), &others, touched, range);
         }
     }
     pairs[first..].sort_unstable_by_key(|pair| pair.key);
@@ -59,22 +68,66 @@ fn gather_plane(
     if above(body.center) >= body.arm() + may_move {
         return;
     }
-    for (index, sphere) in placed(body.object.spheres, &body.pose()) {
+    let mut add = |index: u32, radius: f64, deflection: f64, center: DVec3| {
+        let touching = Touching::of_sphere(radius, plane.normal, f64::INFINITY, None);
+        pairs.push(Pair {
+            key: Key::Rigid((slot, index), Touched::Plane(number)),
+            part: (slot, index),
+            deflection,
+            kind: Kind::Rigid(touching),
+            arm: center - body.center,
+        });
+    };
+    if let RigidShape::Mesh(mesh) = body.object.shape {
+        let below = (plane.normal, plane.height);
+        each_below_plane((mesh, &body.pose()), below, may_move, |index, deep, at| {
+            add(index, mesh.rounding(), deep, at);
+        });
+    }
+    for (index, sphere) in placed(body.object.shape.spheres(), &body.pose()) {
         let deflection = sphere.radius - above(sphere.center);
         if deflection > -may_move {
-            pairs.push(Pair {
-                key: Key::Rigid((slot, index), Touched::Plane(number)),
-                part: (slot, index),
-                deflection,
-                kind: Kind::Rigid(Touching {
-                    normal: plane.normal,
-                    distance: f64::INFINITY,
-                    other: None,
-                }),
-                arm: sphere.center - body.center,
-            });
+            add(index, sphere.radius, deflection, sphere.center);
         }
     }
+}
+
+/// Collects the pairs of the parts of a body and of another shape that are less than `gap` metres apart. Meshes are searched to a penetration of `deep` metres.
+fn gather_shapes(
+    pairs: &mut Vec<Pair>,
+    (slot, body): (u32, &Body),
+    others: &Others,
+    touched: impl Fn(usize) -> Touched,
+    [gap, deep]: [f64; 2],
+) {
+    let is_mesh = |shape: RigidShape| matches!(shape, RigidShape::Mesh(_));
+    if !is_mesh(body.object.shape) && !is_mesh(others.shape) {
+        return gather_spheres(pairs, (slot, body), others, touched, gap);
+    }
+    let own = Placed {
+        shape: body.object.shape,
+        pose: body.pose(),
+    };
+    let other = Placed {
+        shape: others.shape,
+        pose: others.pose,
+    };
+    each_contact(&own, &other, Range { gap, deep }, |found| {
+        let part = (slot, found.parts[0]);
+        pairs.push(Pair {
+            key: Key::Rigid(part, touched(found.parts[1] as usize)),
+            part,
+            deflection: found.penetration,
+            kind: Kind::Rigid(Touching {
+                curvature: found.curvature,
+                inset: found.inset,
+                other: others
+                    .body
+                    .map(|(body, middle)| (body, found.point - middle)),
+            }),
+            arm: found.point - body.center,
+        });
+    });
 }
 
 /// Collects the pairs of a body's spheres and other spheres that are less than `gap` metres apart. Spheres are sorted along the line from the body to the
@@ -90,7 +143,7 @@ fn gather_spheres(
         let reach = sphere.radius + body.arm() + gap;
         sphere.center.distance_squared(body.center) <= reach * reach
     };
-    let mut near: Vec<_> = placed(others.spheres, &others.pose)
+    let mut near: Vec<_> = placed(others.shape.spheres(), &others.pose)
         .filter(is_near)
         .collect();
     let middle = near.iter().map(|other| other.1.center).sum::<DVec3>() / near.len() as f64;
@@ -99,7 +152,7 @@ fn gather_spheres(
     };
     let begin = |sphere: &Sphere| sphere.center.dot(way) - sphere.radius;
     near.sort_unstable_by(|a, b| begin(&a.1).total_cmp(&begin(&b.1)));
-    for (index, own) in placed(body.object.spheres, &body.pose()) {
+    for (index, own) in placed(body.object.shape.spheres(), &body.pose()) {
         let end = own.center.dot(way) + own.radius + gap;
         for (number, other) in near.iter().take_while(|other| begin(&other.1) < end) {
             let between = own.center - other.center;
@@ -107,14 +160,13 @@ fn gather_spheres(
             let deflection = own.radius + other.radius - distance;
             if deflection > -gap {
                 let part: Part = (slot, index);
-                let touching = Touching {
-                    // Coincident centres have no normal; any direction is valid.
-                    normal: between.try_normalize().unwrap_or(DVec3::Z),
-                    distance: distance.max(f64::MIN_POSITIVE),
-                    other: others
-                        .body
-                        .map(|(body, middle)| (body, other.center - middle)),
-                };
+                // Coincident centres have no normal; any direction is valid.
+                let normal = between.try_normalize().unwrap_or(DVec3::Z);
+                let distance = distance.max(f64::MIN_POSITIVE);
+                let other = others
+                    .body
+                    .map(|(body, middle)| (body, other.center - middle));
+                let touching = Touching::of_sphere(own.radius, normal, distance, other);
                 pairs.push(Pair {
                     key: Key::Rigid(part, touched(*number as usize)),
                     part,

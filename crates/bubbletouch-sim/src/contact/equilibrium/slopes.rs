@@ -1,9 +1,9 @@
 //! Derivatives of deflections with respect to the motions of bodies.
 
 use super::body::{Body, along, unit_motions};
-use super::pair::Pair;
+use super::pair::{Curvature, Pair};
 use super::symmetric::{Six, Symmetric, dot};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Derivatives of contact deflections with respect to the motions of the bodies. A contact is a pair of sphere and taxel, or a rigid contact.
 #[derive(Clone, Debug, Default)]
@@ -41,8 +41,13 @@ impl Slopes {
         curvature: &mut Symmetric,
         force: f64,
     ) {
-        if let Some((gradient, bending)) = pair.derivatives() {
-            for (body, sign, arm) in pair.ends() {
+        if let Some(Curvature {
+            gradient,
+            bending,
+            turning,
+        }) = pair.derivatives()
+        {
+            for ((body, sign, arm), turning) in pair.ends().zip(turning) {
                 let own = unit_motions(axes, arm, bodies[body].arm());
                 self.all.push((body as u32, along(&own, sign * gradient)));
                 if force <= 0.0 {
@@ -58,8 +63,23 @@ impl Slopes {
                         }
                     }
                 }
-                let turning = force / bodies[body].arm().powi(2);
-                add_turning(curvature, body, turning, axes, [arm, sign * gradient]);
+                let centripetal = force / bodies[body].arm().powi(2);
+                add_turning(curvature, body, centripetal, axes, [arm, sign * gradient]);
+                if turning == DMat3::ZERO {
+                    continue;
+                }
+                for (other, other_sign, arm) in pair.ends() {
+                    let ways = unit_motions(axes, arm, bodies[other].arm());
+                    for (i, axis) in axes.iter().enumerate() {
+                        let along = turning.transpose() * *axis;
+                        let row = 6 * body + 3 + i;
+                        for (j, way) in ways.iter().enumerate() {
+                            let mixed = other_sign * force / bodies[body].arm() * along.dot(*way);
+                            curvature.part_mut(row, 6 * other + j)[0] += mixed;
+                            curvature.part_mut(6 * other + j, row)[0] += mixed;
+                        }
+                    }
+                }
             }
         }
         self.first.push(self.all.len() as u32);

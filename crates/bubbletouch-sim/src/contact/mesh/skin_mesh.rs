@@ -95,6 +95,11 @@ impl<'a> MeshAt<'a> {
         Some(stop.height)
     }
 
+    /// Returns where a taxel's axis enters the mesh, if the taxel's substrate is inside the solid mesh; otherwise `None`.
+    pub fn entered_by(&self, taxel: &PlacedTaxel) -> Option<Stop> {
+        self.entered(&AxisView::new(self, taxel))
+    }
+
     /// Returns the triangle through which a taxel's axis enters the mesh, if the taxel's substrate is inside the solid mesh. In that case the nearest
     /// triangle behind the substrate faces outwards, and the nearest triangle ahead shows its inner side.
     fn entered(&self, view: &AxisView) -> Option<Stop> {

@@ -183,7 +183,7 @@ impl Rest<'_> {
                 };
                 (0..self.ground.planes.len()).for_each(|plane| add(Touched::Plane(plane)));
                 for (number, obstacle) in self.ground.obstacles.iter().enumerate() {
-                    let all = 0..obstacle.spheres.n_spheres();
+                    let all = 0..obstacle.shape.spheres().len();
                     all.for_each(|index| add(Touched::Obstacle(number, index)));
                 }
                 for other in self.there().filter(|other| *other > object) {
@@ -206,7 +206,7 @@ impl Rest<'_> {
             }
             Touched::Obstacle(number, index) => {
                 let obstacle = &self.ground.obstacles[number];
-                let sphere = obstacle.spheres.spheres()[index];
+                let sphere = obstacle.shape.spheres()[index];
                 let center = obstacle.pose.transform_point(sphere.center);
                 Sphere { center, ..sphere }
             }
@@ -327,7 +327,7 @@ impl Rest<'_> {
                 Touched::Plane(plane) => self.ground.planes[plane].normal,
                 Touched::Obstacle(number, index) => {
                     let obstacle = &self.ground.obstacles[number];
-                    let other = obstacle.spheres.spheres()[index].center;
+                    let other = obstacle.shape.spheres()[index].center;
                     (sphere.center - obstacle.pose.transform_point(other)).normalize()
                 }
                 Touched::Object(object, index) => {
@@ -735,7 +735,7 @@ fn a_ball_lies_in_the_valley_of_an_obstacle_beside_a_wall_but_not_on_its_ridge()
             height: -0.02,
         }];
         let obstacles = [Obstacle {
-            spheres,
+            shape: spheres.into(),
             pose: Pose::from_translation(DVec3::new(0.02, 0.0, 0.0)),
         }];
         let ground = Ground {

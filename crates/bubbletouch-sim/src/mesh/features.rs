@@ -1,0 +1,267 @@
+//! Faces, edges and corners of a mesh: on which of them the point nearest to a given point lies.
+//!
+//! The point of a mesh nearest to a point c lies on a face if the foot of c is inside the face. It lies on an edge or at a corner, with d the unit vector
+//! from there to c, if no adjacent part is nearer:
+//!
+//! | part | condition |
+//! |---|---|
+//! | edge | d·s ≤ 0 for the direction s of each adjacent face, perpendicular to the edge |
+//! | corner v | d·(w − v) ≤ 0 for each other end w of an edge at v |
+//!
+//! Exactly one part fulfils its condition where the nearest point changes smoothly, so no part is counted twice.
+
+use super::welded::{Welded, has_equal};
+use super::TriangleMesh;
+use glam::{DMat3, DVec3};
+use std::ops::Range;
+
+/// Largest cosine that counts as zero in the conditions above. If larger, parts that are not nearest are kept; if smaller, rounding can lose the nearest
+/// point on the boundary between two parts.
+const FLAT: f64 = 1e-9;
+
+/// Parts of a mesh that objects can touch; vertices with equal coordinates are one corner.
+///
+/// Numbers of parts: first the corners, then the edges, then the faces.
+#[derive(Clone, Debug)]
+pub struct MeshFeatures {
+    corners: Vec<DVec3>,
+    /// Unit vectors along the edges at each corner, corner by corner.
+    directions: Lists<DVec3>,
+    edges: Vec<Edge>,
+    /// Unit vectors in the adjacent faces of each edge, perpendicular to the edge and into the face.
+    sides: Lists<DVec3>,
+    faces: Vec<Face>,
+}
+
+/// Edge of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge {
+    /// Start of the edge, metres.
+    pub from: DVec3,
+    /// Unit vector along the edge.
+    pub direction: DVec3,
+    /// Length of the edge, metres.
+    pub length: f64,
+    /// Whether the adjacent faces form a ridge, or there is only one. The edge can then touch an edge of another mesh.
+    pub is_ridge: bool,
+    /// Whether the adjacent faces lie in one plane; the edge is then no part of its own.
+    is_flat: bool,
+}
+
+/// Face of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Face {
+    /// Corners of the face, metres, counter-clockwise as seen from outside.
+    pub corners: [DVec3; 3],
+    /// Outward unit normal; `None` if the triangle is too thin.
+    pub normal: Option<DVec3>,
+    /// For each side, from corner k to the next corner: the edge's index.
+    edges: [u32; 3],
+    corner_numbers: [u32; 3],
+    /// For each side, whether the edge belongs to this face and to no earlier one.
+    owns_edge: [bool; 3],
+    owns_corner: [bool; 3],
+    /// For each side, whether the face continues behind the face beyond the side, which rises there.
+    is_valley: [bool; 3],
+}
+
+#[derive(Clone, Debug)]
+struct Lists<T> {
+    first: Vec<u32>,
+    all: Vec<T>,
+}
+
+impl<T> Lists<T> {
+    fn at(&self, index: usize) -> &[T] {
+        &self.all[self.first[index] as usize..self.first[index + 1] as usize]
+    }
+}
+
+/// Builds lists from pairs of list index and entry.
+fn lists<T: Copy>(n: usize, mut pairs: Vec<(u32, T)>) -> Lists<T> {
+    pairs.sort_by_key(|pair| pair.0);
+    let first = (0..=n as u32).map(|index| pairs.partition_point(|pair| pair.0 < index) as u32);
+    Lists {
+        first: first.collect(),
+        all: pairs.into_iter().map(|pair| pair.1).collect(),
+    }
+}
+
+impl MeshFeatures {
+    /// Collects the parts of a mesh.
+    pub fn new(mesh: &TriangleMesh) -> Self {
+        let welded = Welded::new(mesh);
+        let mut number = vec![u32::MAX; mesh.vertices().len()];
+        let mut corners = Vec::new();
+        let mut faces = Vec::with_capacity(welded.corners.len());
+        for (triangle, vertices) in welded.corners.iter().enumerate() {
+            let mut owns_corner = [false; 3];
+            for (vertex, owns) in vertices.iter().zip(&mut owns_corner) {
+                let number = &mut number[*vertex as usize];
+                if *number == u32::MAX {
+                    *number = corners.len() as u32;
+                    corners.push(mesh.vertices()[*vertex as usize]);
+                    *owns = true;
+                }
+            }
+            let triangle = mesh.triangle(triangle);
+            faces.push(Face {
+                corners: triangle.0,
+                normal: triangle.normal(),
+                edges: [u32::MAX; 3],
+                corner_numbers: vertices.map(|vertex| number[vertex as usize]),
+                owns_edge: [false; 3],
+                owns_corner,
+                is_valley: [false; 3],
+            });
+        }
+        let (mut edges, mut sides, mut directions) = (Vec::new(), Vec::new(), Vec::new());
+        for group in welded.edges() {
+            let edge = edges.len() as u32;
+            let [from, to] = group[0].edge.map(|vertex| mesh.vertices()[vertex as usize]);
+            let direction = (to - from).normalize();
+            for (vertex, sign) in group[0].edge.into_iter().zip([1.0, -1.0]) {
+                directions.push((number[vertex as usize], sign * direction));
+            }
+            let mut own: Vec<(DVec3, Option<DVec3>)> = Vec::new();
+            for (place, side) in group.iter().enumerate() {
+                let face = &mut faces[side.triangle as usize];
+                face.edges[usize::from(side.side)] = edge;
+                face.owns_edge[usize::from(side.side)] = place == 0;
+                let opposite = face.corners[usize::from(side.side + 2) % 3];
+                let inward = (opposite - from).reject_from_normalized(direction);
+                if face.normal.is_some() {
+                    own.push((inward.normalize(), face.normal));
+                }
+            }
+            sides.extend(own.iter().map(|(inward, _)| (edge, *inward)));
+            let rise = match own[..] {
+                [(_, Some(normal)), (inward, _)] => normal.dot(inward),
+                _ => -1.0,
+            };
+            for side in group.iter().filter(|_| rise > FLAT) {
+                faces[side.triangle as usize].is_valley[usize::from(side.side)] = true;
+            }
+            edges.push(Edge {
+                from,
+                direction,
+                length: from.distance(to),
+                is_ridge: rise < -FLAT,
+                is_flat: rise.abs() <= FLAT,
+            });
+        }
+        // A triangle with two equal corners is a line.
+        for (face, vertices) in faces.iter_mut().zip(&welded.corners) {
+            if !has_equal(*vertices) {
+                continue;
+            }
+            let [a, b, c] = *vertices;
+            let side = if a == b { 1 } else { 0 };
+            let (from, to) = (face.corners[side], face.corners[(side + 1) % 3]);
+            if (a, b) != (b, c) {
+                face.edges[side] = edges.len() as u32;
+                face.owns_edge[side] = true;
+                let direction = (to - from).normalize();
+                let ends = [face.corner_numbers[side], face.corner_numbers[(side + 1) % 3]];
+                directions.extend([(ends[0], direction), (ends[1], -direction)]);
+                edges.push(Edge {
+                    from,
+                    direction,
+                    length: from.distance(to),
+                    is_ridge: true,
+                    is_flat: false,
+                });
+            }
+        }
+        Self {
+            directions: lists(corners.len(), directions),
+            sides: lists(edges.len(), sides),
+            corners,
+            edges,
+            faces,
+        }
+    }
+
+    /// Returns the corners, metres.
+    pub fn corners(&self) -> &[DVec3] {
+        &self.corners
+    }
+
+    /// Returns the edges.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// Returns a face by the index of its triangle.
+    pub fn face(&self, triangle: usize) -> &Face {
+        &self.faces[triangle]
+    }
+
+    /// Returns the edges of a triangle that belong to no earlier triangle and whose faces do not lie in one plane.
+    pub fn own_edges(&self, triangle: usize) -> impl Iterator<Item = usize> {
+        let face = &self.faces[triangle];
+        let edges = face.edges.iter().zip(face.owns_edge);
+        let own = edges.filter(|(edge, owns)| *owns && !self.edges[**edge as usize].is_flat);
+        own.map(|(edge, _)| *edge as usize)
+    }
+
+    /// Returns the corners of a triangle that belong to no earlier triangle.
+    pub fn own_corners(&self, triangle: usize) -> impl Iterator<Item = usize> {
+        let face = &self.faces[triangle];
+        let corners = face.corner_numbers.iter().zip(face.owns_corner);
+        corners.filter_map(|(corner, owns)| owns.then_some(*corner as usize))
+    }
+
+    /// Returns the number of an edge among all parts.
+    pub fn edge_number(&self, edge: usize) -> u32 {
+        (self.corners.len() + edge) as u32
+    }
+
+    /// Returns the number of a face among all parts.
+    pub fn face_number(&self, triangle: usize) -> u32 {
+        (self.corners.len() + self.edges.len() + triangle) as u32
+    }
+
+    /// Returns whether an edge is nearer than its faces to a point in the direction `d` (unit vector) from the edge.
+    pub fn edge_is_nearest(&self, edge: usize, d: DVec3) -> bool {
+        self.sides.at(edge).iter().all(|side| d.dot(*side) <= FLAT)
+    }
+
+    /// Returns whether a corner is nearer than its edges and faces to a point in the direction `d` (unit vector) from the corner.
+    pub fn corner_is_nearest(&self, corner: usize, d: DVec3) -> bool {
+        let along = self.directions.at(corner);
+        along.iter().all(|along| d.dot(*along) <= FLAT)
+    }
+}
+
+impl Face {
+    /// Returns the distance of a point, metres, beyond the side of the face that it is furthest beyond; negative inside. A point beyond a side where another
+    /// face rises counts only from `valley` metres on.
+    pub fn beyond(&self, point: DVec3, normal: DVec3, valley: f64) -> f64 {
+        let mut furthest = f64::NEG_INFINITY;
+        for k in 0..3 {
+            let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);
+            let outward = (to - from).cross(normal).normalize_or_zero();
+            let allowed = if self.is_valley[k] { valley } else { 0.0 };
+            furthest = furthest.max(outward.dot(point - from) - allowed);
+        }
+        furthest
+    }
+}
+
+impl Edge {
+    /// Returns the edge after a rotation and a translation (metres).
+    pub fn moved(&self, rotation: &DMat3, translation: DVec3) -> Self {
+        Self {
+            from: *rotation * self.from + translation,
+            direction: *rotation * self.direction,
+            ..*self
+        }
+    }
+
+    /// Returns the range of positions along the edge, metres, with an allowance for rounding.
+    pub fn range(&self) -> Range<f64> {
+        let slack = 1e-12 * self.length;
+        -slack..self.length + slack
+    }
+}
