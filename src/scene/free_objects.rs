@@ -115,9 +115,9 @@ impl FreeObjects {
                 tangential_springs: tips,
             })
             .collect();
-        let bodies = there.iter().map(|free| {
-            FreeObject::new(&plan.models[free.object], free.mass, free.center_of_mass)
-        });
+        let bodies = there
+            .iter()
+            .map(|free| FreeObject::new(&plan.models[free.object], free.mass, free.center_of_mass));
         let bodies = bodies.collect::<Result<Vec<_>>>()?;
         let starts: Vec<Pose> = there.iter().map(|free| free.reading.pose).collect();
         let obstacles = self.obstacles.iter().map(|&object| Obstacle {

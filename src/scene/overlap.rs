@@ -4,19 +4,21 @@ use super::plan_object::{Movement, PlannedObject};
 use super::plan_robot::PlannedRobot;
 use super::reader::MM;
 use super::robot_state::RobotState;
+use crate::contact::equilibrium;
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::inputs::check::Check;
-use crate::objects::{Model, Sphere};
+use crate::mesh::Welded;
+use crate::objects::{Model, Sphere, SphereUnion};
 
 /// Maximum accepted overlap of two objects at the start, divided by the radius of the smaller object. With a larger value, deeper overlaps are accepted; with a
 /// smaller value, objects of coarse spheres are rejected.
 const MAX_SHARE: f64 = 0.5;
 
-/// Object at its initial pose in the scene, with its spheres in the object frame.
+/// Object at its initial pose in the scene, with its model in the object frame.
 struct Start<'a> {
     object: &'a PlannedObject,
-    spheres: &'a [Sphere],
+    model: &'a Model,
     pose: Pose,
 }
 
@@ -25,7 +27,8 @@ struct Start<'a> {
 /// The tolerance for the overlap is the sum of the surface errors of both objects.
 ///
 /// # Errors
-/// If a free object overlaps another object by more than the tolerance. The error names both objects and the overlap of their deepest spheres.
+/// If a free object overlaps another object by more than the tolerance. The error names both objects and their overlap. If an object beside a free object is an
+/// open mesh, whose inside is unknown.
 pub(super) fn check_starts(
     check: &Check,
     objects: &[PlannedObject],
@@ -36,11 +39,21 @@ pub(super) fn check_starts(
     if !objects.iter().any(is_free) {
         return Ok(());
     }
+    for (object, model) in objects.iter().zip(models) {
+        if let Model::Mesh(mesh) = model
+            && objects.len() > 1
+            && Welded::new(mesh.mesh()).n_unbalanced() > 0
+        {
+            let given = "an open mesh, beside another object in a scene with a free object";
+            let allowed = "a closed mesh, or model = \"packed\": an open mesh has no inside";
+            return Err(check.error(&format!("objects.{}.mesh", object.name), given, allowed));
+        }
+    }
     let mut states: Vec<RobotState> = robots.iter().map(RobotState::new).collect();
     for (state, robot) in states.iter_mut().zip(robots) {
         state.place(robot, 0.0)?;
     }
-    let starts = objects.iter().zip(models).filter_map(|(object, model)| {
+    let starts = objects.iter().zip(models).map(|(object, model)| {
         let pose = match &object.movement {
             Movement::Imposed(motion) => motion.pose_at(0.0),
             Movement::Carried {
@@ -50,12 +63,11 @@ pub(super) fn check_starts(
             } => states[*robot].world_from_link[*link].compose(&motion.pose_at(0.0)),
             Movement::Free { start, .. } => *start,
         };
-        let spheres = model.spheres()?.spheres();
-        Some(Start {
+        Start {
             object,
-            spheres,
+            model,
             pose,
-        })
+        }
     });
     let starts: Vec<Start> = starts.collect();
     for (number, other) in starts.iter().enumerate() {
@@ -99,7 +111,8 @@ impl Start<'_> {
 
     /// Returns the spheres of the object in the world frame that intersect a ball, sorted by their smallest x coordinate.
     fn spheres_near(&self, ball: &Sphere) -> Vec<Sphere> {
-        let placed = self.spheres.iter().map(|sphere| Sphere {
+        let spheres = self.model.spheres().map_or(&[][..], SphereUnion::spheres);
+        let placed = spheres.iter().map(|sphere| Sphere {
             center: self.pose.transform_point(sphere.center),
             ..*sphere
         });
@@ -110,8 +123,20 @@ impl Start<'_> {
         near
     }
 
-    /// Returns the largest overlap between a sphere of this object and a sphere of the other object, metres; 0 if the objects do not overlap.
+    /// Returns the largest overlap between a sphere of this object and a sphere of the other object, metres; 0 if the objects do not overlap. With a mesh, it is
+    /// the depth of a corner or a sphere behind the surface of the other object.
     fn overlap(&self, other: &Self) -> f64 {
+        let (ball, other_ball) = (self.ball(), other.ball());
+        if overlap(&ball, &other_ball) <= 0.0 {
+            return 0.0;
+        }
+        if [self.model, other.model]
+            .iter()
+            .any(|model| model.spheres().is_none())
+        {
+            let other = (other.model.into(), &other.pose);
+            return equilibrium::overlap((self.model.into(), &self.pose), other);
+        }
         let (own, others) = (
             self.spheres_near(&other.ball()),
             other.spheres_near(&self.ball()),

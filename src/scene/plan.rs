@@ -126,7 +126,7 @@ impl ScenePlan {
             let allowed = "not zero in a scene with a free object";
             return Err(reader.check.error("gravity_m_per_s2", gravity, allowed));
         }
-        check_rigid(&reader.check, &spec, free, &models)?;
+        check_planes(&reader.check, &spec, free.is_some())?;
         check_starts(&reader.check, &objects, &models, &robots)?;
         let planes = spec.planes.iter().map(|plane| reader.plane(plane));
         let planes = planes.collect::<Result<Vec<_>>>()?;
@@ -271,30 +271,16 @@ fn check_names(check: &Check, spec: &SceneSpec) -> Result<()> {
     Ok(())
 }
 
-/// Checks that planes occur only together with free objects, and that all objects consist of spheres if an object is free.
-fn check_rigid(
-    check: &Check,
-    spec: &SceneSpec,
-    free: Option<&PlannedObject>,
-    models: &[Model],
-) -> Result<()> {
-    let Some(free) = free else {
-        let Some(plane) = spec.planes.first() else {
-            return Ok(());
-        };
-        let given = format!("plane `{}` in a scene without free objects", plane.name);
-        let allowed = "planes beside free objects: nothing else rests on them";
-        return Err(check.error("planes", given, allowed));
-    };
-    for (object, model) in spec.objects.iter().zip(models) {
-        if model.spheres().is_none() {
-            let given = format!("triangles beside the free object `{}`", free.name);
-            let allowed =
-                "model = \"packed\" or \"vertex_spheres\": free objects touch spheres only";
-            return Err(check.error(&format!("objects.{}.model", object.name), given, allowed));
+/// Checks that planes occur only together with free objects.
+fn check_planes(check: &Check, spec: &SceneSpec, has_free: bool) -> Result<()> {
+    match spec.planes.first() {
+        Some(plane) if !has_free => {
+            let given = format!("plane `{}` in a scene without free objects", plane.name);
+            let allowed = "planes beside free objects: nothing else rests on them";
+            Err(check.error("planes", given, allowed))
         }
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 /// Checks that each patch has at most one pressed object, and that pressed and free objects do not occur together.

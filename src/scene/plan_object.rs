@@ -282,11 +282,6 @@ impl Reader<'_> {
             let allowed = "free, or press beside a motion";
             return Err(self.check.error(&format!("{key}.press"), given, allowed));
         }
-        if model.spheres().is_none() {
-            let given = "a free object of triangles";
-            let allowed = "model = \"packed\" or \"vertex_spheres\" for a free object";
-            return Err(self.check.error(&format!("{key}.model"), given, allowed));
-        }
         let mass_key = format!("{key}.free.mass_kg");
         let Some(mass) = free.mass_kg else {
             let given = "a free object without mass";

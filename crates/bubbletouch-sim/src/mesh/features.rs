@@ -10,8 +10,8 @@
 //!
 //! Exactly one part fulfils its condition where the nearest point changes smoothly, so no part is counted twice.
 
-use super::welded::{Welded, has_equal};
 use super::TriangleMesh;
+use super::welded::{Welded, has_equal};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
@@ -162,7 +162,10 @@ impl MeshFeatures {
                 face.edges[side] = edges.len() as u32;
                 face.owns_edge[side] = true;
                 let direction = (to - from).normalize();
-                let ends = [face.corner_numbers[side], face.corner_numbers[(side + 1) % 3]];
+                let ends = [
+                    face.corner_numbers[side],
+                    face.corner_numbers[(side + 1) % 3],
+                ];
                 directions.extend([(ends[0], direction), (ends[1], -direction)]);
                 edges.push(Edge {
                     from,
@@ -224,7 +227,12 @@ impl MeshFeatures {
 
     /// Returns whether an edge is nearer than its faces to a point in the direction `d` (unit vector) from the edge.
     pub fn edge_is_nearest(&self, edge: usize, d: DVec3) -> bool {
-        self.sides.at(edge).iter().all(|side| d.dot(*side) <= FLAT)
+        self.edge_points_along(edge, d, FLAT)
+    }
+
+    /// Returns whether the direction `d` (unit vector) is between the normals of the faces at a ridge, or beyond them by at most `slack` radians.
+    pub fn edge_points_along(&self, edge: usize, d: DVec3, slack: f64) -> bool {
+        self.sides.at(edge).iter().all(|side| d.dot(*side) <= slack)
     }
 
     /// Returns whether a corner is nearer than its edges and faces to a point in the direction `d` (unit vector) from the corner.

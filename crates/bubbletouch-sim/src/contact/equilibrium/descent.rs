@@ -56,6 +56,9 @@ pub(super) struct DescentWorkspace {
     next: Energy,
     model: Model,
     pub multipliers: Multipliers,
+    /// Rigid contacts at the current poses and at rejected ones, sorted. Contacts of meshes begin and end where a corner passes the border of a face. The energy
+    /// has a jump there, which a step cannot see unless the contact is held.
+    held: Vec<Key>,
 }
 
 /// State of an energy descent: bodies, step lengths and energies.
@@ -68,6 +71,8 @@ pub(super) struct Descent<'a, 'b> {
     /// Trust-region radius of the next step, metres.
     pub reach: f64,
     pub n_steps: usize,
+    /// Whether a mesh can touch a rigid shape.
+    has_mesh: bool,
 }
 
 /// Result of an energy descent.
@@ -100,11 +105,14 @@ impl<'a, 'b> Descent<'a, 'b> {
         let size = bodies.iter().map(Body::arm).fold(0.0, f64::max);
         let is_mesh = |body: &Body| matches!(body.object.shape, RigidShape::Mesh(_));
         let may_touch = bodies.len() > 1 || !ground.obstacles.is_empty();
-        let farthest = match may_touch && bodies.iter().any(is_mesh) {
+        let has_mesh = may_touch && bodies.iter().any(is_mesh);
+        workspace.held.clear();
+        let farthest = match has_mesh {
             true => (0.5 * stroke).min(RIGID_STEP * smallest),
             false => 0.5 * stroke,
         };
         Self {
+            has_mesh,
             farthest,
             scene: Scene {
                 ground,
@@ -287,12 +295,27 @@ impl<'a, 'b> Descent<'a, 'b> {
             }
             false => gain >= 1e-4 * step.gain,
         };
+        if self.has_mesh {
+            let DescentWorkspace { now, held, .. } = &mut *self.workspace;
+            if is_better {
+                held.clear();
+            }
+            held.extend(now.pairs.rigid());
+            held.sort_unstable();
+            held.dedup();
+        }
         if is_better {
             return Some(if is_noise { 1.0 } else { gain / step.gain });
         }
         std::mem::swap(&mut self.workspace.now, &mut self.workspace.next);
         self.scene.bodies = bodies;
-        None
+        if !self.has_mesh {
+            return None;
+        }
+        // The next step knows the contacts of the rejected one.
+        let n_pairs = self.workspace.now.pairs.all.len();
+        self.look_again();
+        (self.workspace.now.pairs.all.len() > n_pairs).then_some(0.5)
     }
 
     /// Moves the bodies by a motion; returns the work of their weights, joules.
@@ -358,7 +381,8 @@ impl<'a, 'b> Descent<'a, 'b> {
         // For a long step not all contacts are gathered: the list would contain most spheres.
         let step = self.reach.min(self.nearby());
         let deep = DEEP * self.farthest;
-        self.workspace.now.look(&self.scene, [step, deep], behind);
+        let DescentWorkspace { now, held, .. } = &mut *self.workspace;
+        now.look(&self.scene, [step, deep], (behind, held));
     }
 
     /// Re-evaluates the energy at the current poses. Spheres that are now behind the substrate of a taxel continue to exert no force on this taxel.

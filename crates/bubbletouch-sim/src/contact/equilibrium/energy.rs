@@ -32,15 +32,20 @@ pub(super) struct PairLoad {
 
 impl Energy {
     /// Evaluates the energy at the present poses of the bodies, and collects all contacts that can occur after a motion of at most `step` metres. Rigid meshes are
-    /// searched to a penetration of `deep` metres. `behind` lists the spheres that were behind a taxel's substrate at the previous poses.
-    pub fn look(&mut self, scene: &Scene, [step, deep]: [f64; 2], behind: &[(Key, Part)]) {
+    /// searched to a penetration of `deep` metres. `before` lists the spheres that were behind a taxel's substrate at the previous poses, and the rigid contacts that are held.
+    pub fn look(
+        &mut self,
+        scene: &Scene,
+        [step, deep]: [f64; 2],
+        before: (&[(Key, Part)], &[Key]),
+    ) {
         let margins = Margins {
             step,
             window: 2.0 * scene.smoothness.smoothing + 4.0 * step,
             deep,
         };
         self.pairs
-            .look(&scene.bodies, scene.ground, margins, behind);
+            .look(&scene.bodies, scene.ground, margins, before);
         self.loads.weigh(
             (&scene.multipliers, &scene.smoothness),
             &self.pairs,

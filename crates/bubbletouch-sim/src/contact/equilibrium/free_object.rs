@@ -24,11 +24,7 @@ impl<'a> FreeObject<'a> {
     ///
     /// # Errors
     /// If a value is not finite or the mass is not positive.
-    pub fn new(
-        shape: impl Into<RigidShape<'a>>,
-        mass: f64,
-        center_of_mass: DVec3,
-    ) -> Result<Self> {
+    pub fn new(shape: impl Into<RigidShape<'a>>, mass: f64, center_of_mass: DVec3) -> Result<Self> {
         let shape = shape.into();
         positive("object mass", mass, "kg")?;
         if !center_of_mass.is_finite() {

@@ -27,8 +27,16 @@ use glam::{DMat3, DVec3};
 /// Depth, relative to the largest depth that is searched, below which a second face of a penetrated solid is always a contact. If larger, the back of a thin
 /// wall can count; if smaller, corners in a valley can lose one of their two faces during the search.
 const SHALLOW: f64 = 1e-2;
-/// Sine of the angle between two ridges below which they are parallel and their common normal is unknown; corners then touch faces.
-const PARALLEL: f64 = 1e-6;
+/// Distance behind a valley up to which its faces continue, relative to the largest depth that is searched. If smaller, corners that penetrate a valley lose its
+/// faces.
+const VALLEY: f64 = 0.1;
+/// Largest distance by which visited parts may miss their contact, relative to the largest depth that is searched.
+const MISS: f64 = 1e-3;
+/// Sine of the angle between two ridges below which they are parallel and their common normal is uncertain; corners then touch faces.
+const PARALLEL: f64 = 1e-2;
+/// Angle by which the normal of two ridges may be beyond the normals of their faces, radians. A ridge that lies on a face crosses both ridges of the face with the
+/// face's normal; if smaller, rounding decides which of the two crossings counts.
+const BEYOND: f64 = 1e-2;
 
 /// Rigid shape at its pose in the world.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +60,9 @@ pub(super) struct Found {
     /// Numbers of the touching parts of both shapes.
     pub parts: [u32; 2],
     pub penetration: f64,
+    /// Distance by which the parts miss the contact, metres, at most [`MISS`] times the largest depth: the foot is beside the face, or the nearest points are
+    /// beside the ridges. At most 0 for a contact.
+    pub beyond: f64,
     /// Point at which the displacement of both shapes is measured, metres.
     pub point: DVec3,
     /// Derivatives of the penetration with respect to the motion of the first shape relative to the second.
@@ -60,13 +71,18 @@ pub(super) struct Found {
     pub inset: f64,
 }
 
-/// Visits all contacts of two shapes of which at least one is a mesh.
+/// Visits all contacts of two shapes of which at least one is a mesh, and all parts that miss a contact by a small distance (`beyond`).
 pub(super) fn each_contact(
     one: &Placed,
     other: &Placed,
     range: Range,
     mut visit: impl FnMut(Found),
 ) {
+    // Contacts that a multiplier loads stay in the list while the shapes are apart by rounding or by the last step.
+    let range = Range {
+        gap: range.gap.max(SHALLOW * range.deep),
+        ..range
+    };
     let mut points = Points::default();
     if let RigidShape::Mesh(mesh) = other.shape {
         points.each((one, false), (mesh, &other.pose), range, &mut visit);
@@ -82,6 +98,7 @@ pub(super) fn each_contact(
 /// Contact of a point with a mesh, in the frame of the mesh.
 struct OnMesh {
     part: u32,
+    beyond: f64,
     /// Distance of the point from the triangles, metres; negative inside the solid.
     distance: f64,
     normal: DVec3,
@@ -132,6 +149,7 @@ impl Points {
                 visit(Found {
                     parts,
                     penetration: reach - on.distance,
+                    beyond: on.beyond,
                     point: pose.translation + to_world * place,
                     curvature: Curvature {
                         gradient: -normal,
@@ -161,7 +179,9 @@ impl Points {
         let features = mesh.features();
         let within = reach + range.gap.max(range.deep);
         self.found.clear();
-        let nearest = self.look_at_faces(mesh, place, within, range.gap);
+        let valley = VALLEY * range.deep;
+        let miss = MISS * range.deep;
+        let nearest = self.look_at_faces(mesh, place, within, [valley, miss]);
         let (mut outside, mut allowed) = (place, SHALLOW * range.deep);
         let is_inside = nearest.is_some_and(|(_, height)| height < 0.0);
         if let (true, Some((normal, height))) = (is_inside, nearest) {
@@ -176,12 +196,14 @@ impl Points {
             let above = normal.dot(outside - face.corners[0]);
             let is_nearest = nearest.is_some_and(|(_, least)| height == least);
             let foot = outside - above * normal;
-            let is_under = || face.beyond(foot, normal, range.gap) <= 1e-9 * within;
-            if is_nearest && height < reach + range.gap
-                || above > -allowed && height < reach + range.gap && is_under()
-            {
+            if height >= reach + range.gap || !is_nearest && above <= -allowed {
+                continue;
+            }
+            let beyond = face.beyond(foot, normal, valley) - 1e-9 * within;
+            if beyond <= miss {
                 self.found.push(OnMesh {
                     part: features.face_number(triangle),
+                    beyond: if is_nearest { 0.0 } else { beyond },
                     distance: height,
                     normal,
                     bending: DMat3::ZERO,
@@ -193,14 +215,14 @@ impl Points {
         }
     }
 
-    /// Collects the faces whose planes are within a distance of a point and that contain the foot of the point. Returns the normal of the nearest face, and the
-    /// height of the point above this face.
+    /// Collects the faces whose planes are within a distance of a point and that contain the foot of the point, or miss it by at most `miss` metres. Beside a
+    /// valley, faces are longer by `valley` metres. Returns the normal of the nearest face that contains the foot, and the height of the point above this face.
     fn look_at_faces(
         &mut self,
         mesh: &MeshModel,
         place: DVec3,
         within: f64,
-        valley: f64,
+        [valley, miss]: [f64; 2],
     ) -> Option<(DVec3, f64)> {
         self.faces.clear();
         let mut nearest: Option<(DVec3, f64)> = None;
@@ -214,11 +236,15 @@ impl Points {
                 };
                 let height = normal.dot(place - face.corners[0]);
                 let foot = place - height * normal;
-                if height.abs() < within && face.beyond(foot, normal, valley) <= 1e-9 * within {
+                if height.abs() >= within {
+                    return limit;
+                }
+                let beyond = face.beyond(foot, normal, valley) - 1e-9 * within;
+                if beyond <= miss {
                     self.faces.push((triangle, normal, height));
-                    if nearest.is_none_or(|(_, least)| height.abs() < least.abs()) {
-                        nearest = Some((normal, height));
-                    }
+                }
+                if beyond <= 0.0 && nearest.is_none_or(|(_, least)| height.abs() < least.abs()) {
+                    nearest = Some((normal, height));
                 }
                 limit
             },
@@ -247,6 +273,7 @@ impl Points {
                         let flat = along(normal) + along(edge.direction);
                         self.found.push(OnMesh {
                             part: features.edge_number(number),
+                            beyond: 0.0,
                             distance,
                             normal,
                             bending: (DMat3::IDENTITY - flat) * (1.0 / distance),
@@ -263,6 +290,7 @@ impl Points {
                     if features.corner_is_nearest(number, normal) {
                         self.found.push(OnMesh {
                             part: number as u32,
+                            beyond: 0.0,
                             distance,
                             normal,
                             bending: (DMat3::IDENTITY - along(normal)) * (1.0 / distance),
@@ -310,10 +338,12 @@ fn each_crossing(
                     continue;
                 }
                 let is_outward = |normal: DVec3| {
-                    others.edge_is_nearest(other_number, normal)
-                        && features.edge_is_nearest(number, -(turn.transpose() * normal))
+                    let own_normal = -(turn.transpose() * normal);
+                    others.edge_points_along(other_number, normal, BEYOND)
+                        && features.edge_points_along(number, own_normal, BEYOND)
                 };
-                let Some(crossing) = Crossing::new(&placed, other_edge, is_outward) else {
+                let miss = MISS * range.deep;
+                let Some(crossing) = Crossing::new(&placed, other_edge, miss, is_outward) else {
                     continue;
                 };
                 let penetration = reach - crossing.gap;
@@ -323,7 +353,7 @@ fn each_crossing(
                 // Ridges that cross without a rounding touch only if one is inside the other solid.
                 if crossing.gap < 0.0 {
                     let middle = crossing.point - 0.5 * crossing.gap * crossing.normal;
-                    let nearest = scratch.look_at_faces(other, middle, margin, 0.0);
+                    let nearest = scratch.look_at_faces(other, middle, margin, [0.0; 2]);
                     if nearest.is_none_or(|(_, height)| height > 0.0) {
                         continue;
                     }
@@ -334,6 +364,7 @@ fn each_crossing(
                         others.edge_number(other_number),
                     ],
                     penetration,
+                    beyond: crossing.beyond,
                     point: other_pose.translation + to_world * crossing.point,
                     curvature: crossing.curvature().turned(&to_world),
                     inset: one.rounding(),
@@ -355,11 +386,13 @@ struct Crossing {
     along: [DVec3; 2],
     /// Sine of the angle between the ridges.
     sine: f64,
+    /// Distance of the nearest points beyond the ends of the ridges, metres; at most 0 if both are on their ridges.
+    beyond: f64,
 }
 
 impl Crossing {
-    /// Returns the crossing of two ridges; `None` if their nearest points are not inside both, or if no normal satisfies `is_outward`.
-    fn new(a: &Edge, b: &Edge, is_outward: impl Fn(DVec3) -> bool) -> Option<Self> {
+    /// Returns the crossing of two ridges; `None` if their nearest points are more than `miss` metres beside them, or if no normal satisfies `is_outward`.
+    fn new(a: &Edge, b: &Edge, miss: f64, is_outward: impl Fn(DVec3) -> bool) -> Option<Self> {
         let (t, u) = (a.direction, b.direction);
         let cross = t.cross(u);
         let sine = cross.length();
@@ -370,7 +403,9 @@ impl Crossing {
         let between = a.from - b.from;
         let at = -between.dot(u.cross(m)) / sine;
         let other_at = -between.dot(t.cross(m)) / sine;
-        if !a.range().contains(&at) || !b.range().contains(&other_at) {
+        let past = |edge: &Edge, at: f64| (-at).max(at - edge.length) - 1e-12 * edge.length;
+        let beyond = past(a, at).max(past(b, other_at));
+        if beyond > miss {
             return None;
         }
         let gap = m.dot(between);
@@ -382,6 +417,7 @@ impl Crossing {
             normal: sign * m,
             along: [t, sign * u],
             sine,
+            beyond,
         })
     }
 
@@ -396,6 +432,52 @@ impl Crossing {
             turning: [-turn, turn - cross_matrix(m)],
         }
     }
+}
+
+/// Returns the depth, metres, by which two shapes at their poses overlap; 0 if they do not overlap or if both are unions of spheres. The depth is the largest
+/// distance of a corner or sphere of one shape behind the surface of the other.
+pub fn overlap(one: (RigidShape, &Pose), other: (RigidShape, &Pose)) -> f64 {
+    /// Depth up to which ridges and edges are searched, relative to the smaller shape; deeper shapes have corners inside each other.
+    const RIDGES: f64 = 0.05;
+    let size = |shape: &RigidShape| 0.5 * shape.bounds().size().length();
+    let smaller = size(&one.0).min(size(&other.0));
+    let [one, other] = [one, other].map(|(shape, pose)| Placed { shape, pose: *pose });
+    let range = Range {
+        gap: 0.0,
+        deep: RIDGES * smaller,
+    };
+    let mut deepest = 0.0_f64;
+    each_contact(&one, &other, range, |found| {
+        if found.beyond <= 0.0 {
+            deepest = deepest.max(found.penetration);
+        }
+    });
+    let mut points = Points::default();
+    for (of, mesh) in [(&one, &other), (&other, &one)] {
+        let RigidShape::Mesh(model) = mesh.shape else {
+            continue;
+        };
+        let mesh_from_points = of.pose.seen_from(&mesh.pose);
+        let mut look = |point: DVec3, radius: f64| {
+            let place = mesh_from_points.transform_point(point);
+            if model.bvh().bounds().distance_squared(place) > 0.0 {
+                return;
+            }
+            if let Some((_, height)) = points.look_at_faces(model, place, smaller, [0.0; 2])
+                && height < 0.0
+            {
+                deepest = deepest.max(radius - height);
+            }
+        };
+        for sphere in of.shape.spheres() {
+            look(sphere.center, sphere.radius);
+        }
+        if let RigidShape::Mesh(of) = of.shape {
+            let corners = of.features().corners().iter();
+            corners.for_each(|corner| look(*corner, of.rounding()));
+        }
+    }
+    deepest
 }
 
 /// Visits the penetrations of the corners of a mesh into the half-space below a plane with the unit normal `normal` at `height` metres: number of the corner,

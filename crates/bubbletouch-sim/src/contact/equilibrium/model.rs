@@ -309,7 +309,7 @@ mod tests {
             for (body, motion) in moved.bodies.iter_mut().zip(motion.chunks(6)) {
                 fallen += body.weight.dot(body.go(motion));
             }
-            energy.look(&moved, [0.0; 2], &[]);
+            energy.look(&moved, [0.0; 2], (&[], &[]));
             energy.loads.elastic - fallen
         };
         let mut at = |steps: &[(usize, f64)]| {
@@ -326,7 +326,7 @@ mod tests {
                 (along - at(&[(i, h), (j, -h)]) - at(&[(i, -h), (j, h)])) / (4.0 * h * h)
             })
         });
-        energy.look(&scene, [0.0; 2], &[]);
+        energy.look(&scene, [0.0; 2], (&[], &[]));
         let has = |what: fn(&Key) -> bool| {
             let all = energy.loads.carrying(&energy.pairs.groups);
             all.filter(|(group, _)| what(&group.key)).count()

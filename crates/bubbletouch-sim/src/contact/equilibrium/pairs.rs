@@ -56,13 +56,14 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// Collects the pairs at the present poses of the bodies; `behind` lists the pairs whose sphere was behind the substrate of the taxel before.
+    /// Collects the pairs at the present poses of the bodies; `behind` lists the pairs whose sphere was behind the substrate of the taxel before, and `held` the
+    /// contacts of rigid meshes that remain contacts until their parts miss each other clearly.
     pub fn look(
         &mut self,
         bodies: &[Body],
         ground: &Ground,
         margins: Margins,
-        behind: &[(Key, Part)],
+        (behind, held): (&[(Key, Part)], &[Key]),
     ) {
         self.all.clear();
         self.behind.clear();
@@ -71,7 +72,7 @@ impl Pairs {
         }
         self.behind.sort_unstable();
         let range = [2.0 * margins.step, margins.deep];
-        gather_rigid(&mut self.all, bodies, ground, range);
+        gather_rigid(&mut self.all, bodies, ground, range, held);
         self.groups.clear();
         let mut first = 0;
         for of_key in self.all.chunk_by(|a, b| a.key == b.key) {
@@ -79,6 +80,12 @@ impl Pairs {
             first = pairs.end;
             self.groups.push(group(of_key, pairs, bodies, ground));
         }
+    }
+
+    /// Returns the rigid contacts, sorted.
+    pub fn rigid(&self) -> impl Iterator<Item = Key> {
+        let keys = self.groups.iter().map(|group| group.key);
+        keys.filter(|key| matches!(key, Key::Rigid(..)))
     }
 
     /// Returns, for each of `n_bodies` bodies, the number of its island (group of bodies in contact). Bodies that touch one another or push a common taxel

@@ -19,12 +19,13 @@ struct Others<'a> {
 }
 
 /// Appends the pairs of parts that penetrate a rigid counterpart or are nearer to it than `may_move` metres; sorted. Meshes are searched to a penetration of
-/// `deep` metres.
+/// `deep` metres, and their contacts in `held` (sorted) remain contacts until their parts miss each other clearly.
 pub(super) fn gather_rigid(
     pairs: &mut Vec<Pair>,
     bodies: &[Body],
     ground: &Ground,
     [may_move, deep]: [f64; 2],
+    held: &[Key],
 ) {
     let first = pairs.len();
     for (body, slot) in bodies.iter().zip(0..) {
@@ -38,7 +39,13 @@ pub(super) fn gather_rigid(
                 body: None,
             };
             let touched = |sphere| Touched::Obstacle(number, sphere);
-            gather_shapes(pairs, (slot, body), &others, touched, [may_move, deep]);
+            gather_shapes(
+                pairs,
+                (slot, body),
+                &others,
+                touched,
+                ([may_move, deep], held),
+            );
         }
         for (other, number) in bodies.iter().zip(0..).skip(slot as usize + 1) {
             let reach = body.arm() + other.arm() + 2.0 * may_move;
@@ -52,7 +59,7 @@ pub(super) fn gather_rigid(
             };
             let touched = |sphere| Touched::Object(number as usize, sphere);
             let range = [2.0 * may_move, deep];
-            gather_shapes(pairs, (slot, body), &others, touched, range);
+            gather_shapes(pairs, (slot, body), &others, touched, (range, held));
         }
     }
     pairs[first..].sort_unstable_by_key(|pair| pair.key);
@@ -98,7 +105,7 @@ fn gather_shapes(
     (slot, body): (u32, &Body),
     others: &Others,
     touched: impl Fn(usize) -> Touched,
-    [gap, deep]: [f64; 2],
+    ([gap, deep], held): ([f64; 2], &[Key]),
 ) {
     let is_mesh = |shape: RigidShape| matches!(shape, RigidShape::Mesh(_));
     if !is_mesh(body.object.shape) && !is_mesh(others.shape) {
@@ -114,8 +121,12 @@ fn gather_shapes(
     };
     each_contact(&own, &other, Range { gap, deep }, |found| {
         let part = (slot, found.parts[0]);
+        let key = Key::Rigid(part, touched(found.parts[1] as usize));
+        if found.beyond > 0.0 && held.binary_search(&key).is_err() {
+            return;
+        }
         pairs.push(Pair {
-            key: Key::Rigid(part, touched(found.parts[1] as usize)),
+            key,
             part,
             deflection: found.penetration,
             kind: Kind::Rigid(Touching {
