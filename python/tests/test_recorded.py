@@ -1,4 +1,4 @@
-"""Recorded touches: arrays in memory, and files of Zarr, HDF5, Parquet, NumPy and LeRobot, each written by the test."""
+"""Recorded touches: arrays in memory, and files of Zarr, HDF5, Parquet, CSV, NumPy and LeRobot, each written by the test."""
 
 import json
 import sys
@@ -183,6 +183,33 @@ def test_parquet(arrays, tmp_path):
     assert found.frames.shape == (15, 4, 64) and found.labels.tolist() == ["cup"] * 5 + ["ball"] * 5 + ["pen"] * 5
     with pytest.raises(ValueError, match=r"a.parquet, `groups`: 0, 1, 2 in touch cup; one value for all rows of a touch"):
         bt.read_recorded(tmp_path / "a.parquet", touches="labels")
+
+
+def test_csv(arrays, tmp_path):
+    frames, labels, groups = arrays
+    rows = frames.reshape(N, 64).astype(np.float64)
+    file = tmp_path / "a.csv"
+    names = [f"ff_{k}" for k in range(1, 25)] + [f"th_{k}" for k in range(1, 41)]
+    lines = [",".join(["object", "session", *names])]
+    lines += [",".join([label, str(group), *map(repr, row.tolist())]) for label, group, row in zip(labels, groups, rows, strict=True)]
+    file.write_text("\n".join(lines) + "\n")
+    found = bt.read_recorded(file, {"ff": "ff_*", "th": "th_*"}, labels="object", groups="session")
+    assert np.array_equal(np.hstack([found.frames["ff"], found.frames["th"]]), rows)
+    same(bt.Recorded(rows, found.labels, found.groups), (rows, labels, groups))
+    for text, words in {
+        "\n".join(lines)[:-5000]: "a.csv: cannot be read .row [0-9]+ has [0-9]+ of 66 columns",
+        "\n".join(lines).replace("th_1,", "ff_1,", 1): "column `ff_1` twice",
+        "\n".join(lines).replace(repr(float(rows[3, 0])), "broken", 1): "a.csv, column `ff_1`: elements of type <U.*; numbers",
+        "": "a.csv: cannot be read .an empty file",
+    }.items():
+        file.write_text(text)
+        with pytest.raises(ValueError, match=words):
+            bt.read_recorded(file, "ff_*", labels="object")
+    with pytest.raises(ValueError, match="a.csv: cannot be read"):
+        file.write_bytes(b"\xff\xfe,")
+        bt.read_recorded(file)
+    file.write_text("\n".join(lines).replace(repr(float(rows[3, 0])), "", 1))
+    assert np.isnan(bt.read_recorded(file, "ff_*", labels="object").frames[3, 0])
 
 
 def lerobot(folder, arrays, version):

@@ -591,3 +591,56 @@ fn an_audit_is_of_one_sensor() {
     let (expected, _) = case.succeeds(&alone);
     assert_eq!(said, expected.replace("alone", "checked"));
 }
+
+/// Events of two signs at each position, in any order of the axes, are values of one position.
+#[test]
+fn several_values_at_a_position_have_an_image_each() {
+    let case = written();
+    let list: Array2<f64> = read_npy(case.path("list.npy")).unwrap();
+    let n = 32;
+    // The first half of the list has the positive events of 32 positions, the second half the negative ones.
+    let first = Array3::from_shape_fn((N, 2, n), |(touch, sign, place)| {
+        list[[touch, sign * n + place]]
+    });
+    let last = first
+        .view()
+        .permuted_axes([0, 2, 1])
+        .as_standard_layout()
+        .into_owned();
+    write_npy(&case.path("first.npy"), &first).unwrap();
+    write_npy(&case.path("last.npy"), &last).unwrap();
+    let places = || {
+        (0..n as u32).map(|k| {
+            (
+                4.0 * f64::from(k % 8) + f64::from(k / 8),
+                3.8 * f64::from(k / 8),
+            )
+        })
+    };
+    case.file("places.csv", layout(places()));
+    case.file("few.csv", layout(places().take(31)));
+    let keys = |file: &str| {
+        format!(
+            "{LABELS}frames = \"FOLDER/{file}.npy\"\norder = \"n c c\"\nlayout = \"FOLDER/places.csv\"\nfull_scale = 2.0\n"
+        )
+    };
+    let rest = format!("{SKIN}{COUPLED}{IMAGES}");
+    let expected = rows(&case, &keys("first"), &rest);
+    assert_eq!(rows(&case, &keys("last"), &rest), expected);
+    let study = planned(&case, &keys("last"), &rest).unwrap();
+    assert_eq!(study.first().plan.arrays[0].image_shapes().len(), 2);
+    // The values of each sign are like a sensor of their own.
+    write_npy(&case.path("left.npy"), &list.slice(s![.., ..n]).to_owned()).unwrap();
+    write_npy(&case.path("right.npy"), &list.slice(s![.., n..]).to_owned()).unwrap();
+    let own = "layout = \"FOLDER/places.csv\"\nfull_scale = 2.0";
+    let scores_of = |rows: &[(Configuration, TrialScore)]| -> Vec<TrialScore> {
+        rows.iter().map(|(_, score)| score.clone()).collect()
+    };
+    assert_eq!(
+        scores(&case, &sensors(own, own), &rest),
+        scores_of(&expected)
+    );
+    let wrong = keys("last").replace("places.csv", "few.csv");
+    let said = error(&case, &wrong, &rest);
+    assert!(said.contains("few.csv: 31 taxels; 64, as "), "{said}");
+}

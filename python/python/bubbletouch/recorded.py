@@ -1,4 +1,4 @@
-"""Recorded touches in memory, and readers of Zarr, HDF5, Parquet, NumPy archives and LeRobot folders.
+"""Recorded touches in memory, and readers of Zarr, HDF5, Parquet, CSV, NumPy archives and LeRobot folders.
 
 A recording contains frames of touches with labels and groups. `run(study, recorded=...)` runs a study of the recording, and `audit(...)` checks it.
 The packages h5py, zarr and pyarrow are imported only by the readers of their files.
@@ -6,6 +6,7 @@ The packages h5py, zarr and pyarrow are imported only by the readers of their fi
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import io
 import json
@@ -28,8 +29,8 @@ _Array = NDArray[Any]
 _OF_TOUCHES = ("labels", "groups", "labels_test", "groups_test", "lengths", "lengths_test", "depths")
 _FRAMES = ("frames", "frames_test", "shear", "shear_test")
 _ARRAYS = (*_FRAMES, *_OF_TOUCHES, "zero")
-_SUFFIXES = {".npz": "NumPy", ".h5": "HDF5", ".hdf5": "HDF5", ".zarr": "Zarr", ".parquet": "Parquet"}
-_FORMATS = "a .zarr folder, an .h5, .hdf5, .parquet or .npz file, a folder of such files, or a LeRobot folder"
+_SUFFIXES = {".npz": "NumPy", ".h5": "HDF5", ".hdf5": "HDF5", ".zarr": "Zarr", ".parquet": "Parquet", ".csv": "CSV"}
+_FORMATS = "a .zarr folder, an .h5, .hdf5, .parquet, .csv or .npz file, a folder of such files, or a LeRobot folder"
 
 
 class Recorded:
@@ -95,9 +96,10 @@ def read_recorded(
 ) -> Recorded:
     """Reads recorded touches from files.
 
-    path: a Zarr folder, an HDF5, Parquet or NumPy file (.zarr, .h5, .hdf5, .parquet, .npz), or a folder of such files; or a LeRobot folder (v2 or v3).
-    frames: name of the array, column or feature with the readings; a dict of names reads several sensors. A list of columns of a Parquet file, or a
-    pattern such as "taxel_*", reads one taxel per column. None: `frames`; in a LeRobot folder the only feature with `tactile` or `touch` in its name.
+    path: a Zarr folder, an HDF5, Parquet, CSV or NumPy file (.zarr, .h5, .hdf5, .parquet, .csv, .npz), or a folder of such files; or a LeRobot folder
+    (v2 or v3). The first line of a CSV file has the names of its columns.
+    frames: name of the array, column or feature with the readings; a dict of names reads several sensors. A list of columns of a Parquet or CSV file,
+    or a pattern such as "taxel_*", reads one taxel per column. None: `frames`; in a LeRobot folder the only feature with `tactile` or `touch` in its name.
     labels: name of the array or column with the class of each touch. None: `labels` if it exists; in a LeRobot folder, the task.
     groups: name of the array or column with the group of each touch. None: `groups` if it exists; in a folder of files, the name of the file.
     touches: name of the array or column with the number of the touch of each row. The rows of a touch are its frames. None: each row is a touch; in a
@@ -229,7 +231,7 @@ def _files(place: Path) -> list[Path]:
 
 def _open(file: Path) -> _Source:
     kind = "Zarr" if file.is_dir() else _SUFFIXES[file.suffix.lower()]
-    open_of = {"NumPy": _open_npz, "HDF5": _open_hdf5, "Zarr": _open_zarr, "Parquet": _open_parquet}[kind]
+    open_of = {"NumPy": _open_npz, "HDF5": _open_hdf5, "Zarr": _open_zarr, "Parquet": _open_parquet, "CSV": _open_csv}[kind]
     try:
         return open_of(file)
     except (ImportError, FileNotFoundError, PermissionError):
@@ -294,6 +296,32 @@ def _open_parquet(file: Path) -> _Source:
     return _Source(str(file), names, read, close=opened.close)
 
 
+def _open_csv(file: Path) -> _Source:
+    with file.open(encoding="utf-8-sig", newline="") as opened:
+        lines = csv.reader(opened)
+        names = [name.strip() for name in next(lines, [])]
+        rows = [line for line in lines if line]
+    twice = [name for name in names if names.count(name) > 1]
+    if not names or twice:
+        given = f"column `{twice[0]}` twice" if twice else "an empty file"
+        raise ValueError(f"{given}; a first line with the name of each column")
+    for number, row in enumerate(rows, start=2):
+        if len(row) != len(names):
+            raise ValueError(f"row {number} has {len(row)} of {len(names)} columns")
+
+    def read(name: str) -> _Array:
+        texts = [row[names.index(name)].strip() for row in rows]
+        for kind in (np.int64, np.float64):
+            try:
+                # An empty cell is a missing reading.
+                return np.array([text or "nan" for text in texts]).astype(kind)
+            except ValueError:
+                continue
+        return np.array(texts)
+
+    return _Source(str(file), names, read)
+
+
 def _of_column(column: Any) -> _Array:
     """Returns a Parquet column as an array; nested lists of equal length become axes."""
     compute, types = import_module("pyarrow.compute"), import_module("pyarrow.types")
@@ -352,7 +380,7 @@ def _part(
     source: _Source, wanted: Mapping[str, str | Sequence[str]], names: tuple[str | None, str | None, str | None], is_one_of_several: bool
 ) -> _Part:
     labels, groups, touches = names
-    is_each = any("*" in pattern for pattern in wanted.values() if isinstance(pattern, str)) and not source.place.endswith(".parquet")
+    is_each = any("*" in pattern for pattern in wanted.values() if isinstance(pattern, str)) and not source.place.lower().endswith((".parquet", ".csv"))
     if is_each:
         return _of_matches(source, wanted, (labels, groups))
     sensors: dict[str, list[_Array] | _Array] = {name: _readings(source, columns) for name, columns in wanted.items()}

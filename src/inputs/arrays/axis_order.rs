@@ -42,6 +42,8 @@ pub struct FrameShape {
     pub has_grid: bool,
     /// Number of recorded values per taxel.
     n_values: usize,
+    /// Number of positions on the skin. Several values may be recorded at each position, such as events of two signs; they count as taxels.
+    pub n_places: usize,
     /// Indices of the file's axes in the order touch, frame, taxel, y, x.
     axes: Vec<usize>,
     /// Letters of the axes in their order in the file.
@@ -52,6 +54,28 @@ impl FrameShape {
     /// Returns the number of values in each frame: number of taxels times number of values per taxel.
     pub fn n_frame_values(&self) -> usize {
         self.n_values * self.rows * self.columns
+    }
+
+    /// Returns whether several axes `c` count the taxels of a skin without rows and columns.
+    pub fn has_several_taxel_axes(&self) -> bool {
+        !self.has_grid && self.n_values == 1 && self.order.matches('c').count() > 1
+    }
+
+    /// Returns the shape in which one of several axes `c`, of length `n_places`, counts the positions on the skin. This axis becomes the last one, so values of
+    /// one kind are together. The shape of the file is `shape`. Without such an axis, the result is unchanged.
+    pub fn with_places(mut self, shape: &[usize], n_places: usize) -> Self {
+        if !self.has_several_taxel_axes() || self.columns == n_places {
+            return self;
+        }
+        let is_of_places =
+            |axis: &usize| self.order.as_bytes()[*axis] == b'c' && shape[*axis] == n_places;
+        if let Some(found) = self.axes.iter().position(is_of_places) {
+            // The axes c are the last ones of a skin without rows and columns.
+            let axis = self.axes.remove(found);
+            self.axes.push(axis);
+            self.n_places = n_places;
+        }
+        self
     }
 
     /// Returns the axis order and the axis lengths that an additional array with `n_values` values per taxel must have. The shape of the frames is `shape`; the
@@ -221,6 +245,7 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
         columns,
         has_grid: has_rows || axes.grid.is_some(),
         n_values: axes.n_values,
+        n_places: rows * columns,
         axes: "ntcyx".chars().flat_map(axes_of).collect(),
         order: order.clone(),
     };

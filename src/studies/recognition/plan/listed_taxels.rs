@@ -49,6 +49,14 @@ impl PlacedSensor {
         })
     }
 
+    /// Returns the sensor with another name.
+    pub fn renamed(&self, name: String) -> Self {
+        Self {
+            name,
+            ..self.clone()
+        }
+    }
+
     /// Creates a sensor from a layout and its pitch, metres. The numbers of rows and columns are given if the frames have rows and columns. Text `place` names
     /// the layout file in errors.
     ///

@@ -171,7 +171,8 @@ impl Check<'_> {
         let taxel = skin.taxel(pitch_mm);
         taxel.check()?;
         // If the positions of some taxels are unknown, all taxels form one list.
-        let placed: Option<Vec<PlacedSensor>> = placed.into_iter().collect();
+        let placed: Option<Vec<Vec<PlacedSensor>>> = placed.into_iter().collect();
+        let placed = placed.map(|sensors| sensors.concat());
         let grid = match placed.as_deref() {
             Some([one]) => one.layout.as_grid().copied(),
             Some(_) => None,
@@ -229,23 +230,28 @@ impl Check<'_> {
 }
 
 impl RecordedSpec {
-    /// Returns the sensor with the positions of its taxels: those of the layout file, or a grid. Returns `None` if the positions are unknown. `pitch` is the side
-    /// of the square area per taxel, metres.
-    fn placed(&self, name: &str, pitch: f64) -> Result<Option<PlacedSensor>> {
+    /// Returns the sensor with the positions of its taxels: those of the layout file, or a grid. If several values are recorded at each position, the values of
+    /// each kind form a sensor. Returns `None` if the positions are unknown. `pitch` is the side of the square area per taxel, metres.
+    fn placed(&self, name: &str, pitch: f64) -> Result<Option<Vec<PlacedSensor>>> {
         let shape = self.shape_of("frames")?;
         let sides = shape.has_grid.then_some([shape.rows, shape.columns]);
         let Some(path) = &self.layout else {
             let sensor = |[ny, nx]: [usize; 2]| PlacedSensor::grid(name, &Grid { nx, ny, pitch });
-            return sides.map(sensor).transpose();
+            return Ok(sides.map(sensor).transpose()?.map(|sensor| vec![sensor]));
         };
         let layout = LayoutFile::read(path, LayoutOptions::default())?.layout;
         let place = path.display().to_string();
-        let n_taxels = shape.rows * shape.columns;
-        if layout.n_taxels() != n_taxels {
+        if layout.n_taxels() != shape.n_places {
             let given = format!("{} taxels", layout.n_taxels());
-            let allowed = format!("{n_taxels}, as {} has", self.frames.display());
+            let allowed = format!("{}, as {} has", shape.n_places, self.frames.display());
             return Err(Error::input(place, given, allowed));
         }
-        PlacedSensor::new(name, (&place, layout), pitch, sides).map(Some)
+        let sensor = PlacedSensor::new(name, (&place, layout), pitch, sides)?;
+        let n_values = shape.rows * shape.columns / shape.n_places;
+        let of_value = |value: usize| match n_values {
+            1 => sensor.clone(),
+            _ => sensor.renamed(format!("{name}, value {}", value + 1)),
+        };
+        Ok(Some((0..n_values).map(of_value).collect()))
     }
 }

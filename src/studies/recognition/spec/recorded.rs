@@ -5,6 +5,7 @@ use crate::files::{file_path, optional_file_path};
 use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::is_member;
+use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::studies::recognition::spec::recorded_sensor::{RecordedSensorSpec, SensorPlace};
 use crate::studies::recognition::spec::zero::ZeroSpec;
 use schemars::JsonSchema;
@@ -50,7 +51,8 @@ pub struct RecordedSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<[usize; 2]>,
     /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames: `.csv`, `.npz`, `.txt` or `.ini` (iCub), `.json`
-    /// (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid.
+    /// (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid. If one of several axes `c` counts the positions, the other axes count values
+    /// at each position, such as events of two signs.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
@@ -287,7 +289,14 @@ impl RecordedSpec {
         };
         let key = self.place.key("order");
         let axes = self.axes(self.order.as_deref(), n_values, &key);
-        frame_shape(&path.display().to_string(), &shape, axes)
+        let found = frame_shape(&path.display().to_string(), &shape, axes)?;
+        match &self.layout {
+            Some(layout) if found.has_several_taxel_axes() => {
+                let layout = LayoutFile::read(layout, LayoutOptions::default())?.layout;
+                Ok(found.with_places(&shape, layout.n_taxels()))
+            }
+            _ => Ok(found),
+        }
     }
 
     /// Returns the readings of untouched taxels, shape (rows · columns,), in row-major order.

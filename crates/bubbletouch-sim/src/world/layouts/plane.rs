@@ -111,6 +111,8 @@ pub fn nearest_distances(places: &[DVec2]) -> Vec<f64> {
             .enumerate()
             .filter(|(other, _)| *other != taxel);
         let squares = others.map(|(_, place)| place.distance_squared(places[taxel]));
+        // Taxels at one position have no distance.
+        let squares = squares.filter(|square| *square > 0.0);
         squares.min_by(f64::total_cmp).map(f64::sqrt)
     };
     let taxels = (0..places.len()).step_by(step);
