@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Times readings of skin from Python as a simulation loop makes them, beside MuJoCo's own sensors; all in one process, in turn, one thread.
 
-Three parts: 16 x 16 taxels at one pose and in batches, on meshes of 12 to 101,250 triangles; 64 x 64 taxels on meshes of a folder, exact and
-packed; and a hand of 20 patches under five bodies, beside a step of the engine. Times are medians over rounds of the means of repeated calls.
+Four parts: 16 x 16 taxels at one pose and in batches, on meshes of 12 to 101,250 triangles; the same number of taxels on a curved layout, with
+contacts and with shear; 64 x 64 taxels on meshes of a folder, exact and packed; and a hand of 20 patches under five bodies, beside a step of the
+engine. Times are medians over rounds of the means of repeated calls.
 Needs mujoco, trimesh, numpy and bubbletouch (pip install ./python).
 """
 
@@ -96,15 +97,55 @@ class Table:
             writer.writerows(self.rows)
 
 
-def small_patch(table, options):
-    """16 x 16 taxels: one pose a call, and 1,024 poses a call."""
-    contact.SIDE = SIDE
+def small_shapes():
+    """Vertices, triangles and the limit of a read, microseconds, of three shapes."""
     box, ball = trimesh.creation.box([0.04, 0.03, 0.02]), trimesh.creation.icosphere(3, 0.03)
-    shapes = {
+    return {
         "box": (np.asarray(box.vertices), np.asarray(box.faces), 6.0),
         "icosphere": (np.asarray(ball.vertices), np.asarray(ball.faces), 12.0),
         "torus": (*torus(), 100.0),
     }
+
+
+def curved_patch():
+    """256 listed taxels on a bump, whose axes vary smoothly by up to 23 degrees."""
+    half = 0.5 * (SIDE - 1) * PITCH
+    x, y = (grid.ravel() for grid in np.meshgrid(*2 * [np.linspace(-half, half, SIDE)]))
+    axes = np.stack([0.3 * x / half, 0.3 * y / half, np.ones_like(x)], axis=1)
+    centers = np.stack([x, y, -0.15 * (x**2 + y**2) / half], axis=1)
+    return bt.Patch.from_arrays(centers, axes / np.linalg.norm(axes, axis=1, keepdims=True), stroke=STROKE, taxel_radius=RADIUS)
+
+
+def reads(patch, mesh, poses):
+    """Calls that read a patch at all poses: plain, with contacts, by a skin, and by a skin with shear."""
+    skin, here = bt.Skin([patch], [mesh]), np.array([[0.0, 0, 0, 1, 0, 0, 0]])
+    out, shear = np.zeros(patch.shape), skin.shear_state(stiffness=400.0, friction=0.5)
+    return {
+        "one pose": lambda: [patch.press(mesh, pose, out=out) for pose in poses],
+        "contacts": lambda: [patch.press(mesh, pose, contacts=True) for pose in poses],
+        "Skin.read": lambda: [skin.read(here, pose[None]) for pose in poses],
+        "Skin.read, shear": lambda: [skin.read(here, pose[None], shear=shear) for pose in poses],
+    }
+
+
+def any_layout(table, options):
+    """256 taxels on a flat grid and on a curved layout, at one pose a call; ratios are relative to the read without contacts or shear."""
+    contact.SIDE = SIDE
+    patches = {"grid": bt.Patch.grid(SIDE, SIDE, PITCH, STROKE, taxel_radius=RADIUS), "curved": curved_patch()}
+    for name, (vertices, triangles, _) in small_shapes().items():
+        mesh = bt.Mesh(vertices, triangles)
+        for kind, patch in patches.items():
+            poses = contact_poses(patch, mesh, 16, DEPTH, seed=len(triangles))
+            times = alternate(reads(patch, mesh, poses), options.rounds, 4)
+            for method, us in times.items():
+                plain = times["Skin.read" if method.startswith("Skin") else "one pose"]
+                table.add("layouts", name, len(triangles), patch.n_taxels, "bubbletouch", f"{kind}: {method}", us / 16, us / plain)
+
+
+def small_patch(table, options):
+    """16 x 16 taxels: one pose a call, and 1,024 poses a call."""
+    contact.SIDE = SIDE
+    shapes = small_shapes()
     patch = bt.Patch.grid(SIDE, SIDE, PITCH, STROKE, taxel_radius=RADIUS)
     out, many = np.zeros((SIDE, SIDE)), np.zeros((1024, SIDE, SIDE))
     for name, (vertices, triangles, limit) in shapes.items():
@@ -200,6 +241,7 @@ def main():
     warnings.simplefilter("ignore", UserWarning)
     table = Table()
     small_patch(table, options)
+    any_layout(table, options)
     hand(table, options)
     if options.objects:
         large_patch(table, options)

@@ -231,7 +231,7 @@ impl Batch<'_> {
             if !wanted.contacts && changes.is_none() {
                 return Ok(());
             }
-            let met = press.meet(workspace);
+            let met = press.meet(pressed, workspace);
             let met = met.map_err(|error| named(number, error))?;
             if let (Some(changes), Some(pressed), Some(_)) = (changes, pressed, met) {
                 let origin = |pose: &Pose| pose.translation - pressed.travel * DVec3::Z;

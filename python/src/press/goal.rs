@@ -163,14 +163,26 @@ impl Press<'_> {
         press(patch, models, poses, self.goal, row, workspace)
     }
 
-    /// Computes the press again (deflections are equal up to rounding) and stores its contacts in the workspace. If nothing is touched, returns `None`; the
-    /// content of the workspace is then undefined.
+    /// Computes the press again (deflections are equal up to rounding) and stores its contacts in the workspace. `pressed` is the result of the press. If
+    /// nothing is touched, returns `None`; the content of the workspace is then undefined.
     ///
     /// # Errors
     /// If a force cannot be reached.
-    pub fn meet(&self, workspace: &mut Workspace) -> Result<Option<Contact>> {
+    pub fn meet(
+        &self,
+        pressed: Option<Contact>,
+        workspace: &mut Workspace,
+    ) -> Result<Option<Contact>> {
         let (patch, models, poses) = (self.patch, self.models, self.poses);
         let approach = Approach::new(patch, DVec3::Z)?;
+        if let (Some(pressed), false) = (pressed, self.goal == contact::Goal::Pose) {
+            // The contacts of a flat patch depend on its travel only.
+            let travel = pressed.travel;
+            let met = approach.contacts_at_travel(models, poses, travel, workspace);
+            if let Some(met) = met {
+                return Ok(Some(met).filter(|met| met.n_touched > 0));
+            }
+        }
         let to_depth = |depth, workspace: &mut Workspace| {
             approach.press_to_depth(models, poses, depth, workspace)
         };

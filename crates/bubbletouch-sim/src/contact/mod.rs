@@ -23,7 +23,7 @@
 //! relaxes, `k δ + c δ̇ = 0`. Without a damper both agree exactly, so a scene without dampers needs no loop.
 //!
 //! On a flat grid with equal radii and substrate heights, the kernel works along rows, and rasterises the triangles of meshes. On any other layout, a search
-//! tree finds the taxels near each sphere. [`press_with_contacts`] also records which part of which object determines each deflection ([`TaxelContact`]).
+//! tree finds the taxels near each sphere, and eight neighbouring taxels together search the triangles of a mesh. [`press_with_contacts`] also records which part of which object determines each deflection ([`TaxelContact`]).
 //! [`spring_load`] sums the forces of the springs.
 //!
 //! A free object rests where its weight and the forces of the taxels balance: [`equilibrium`].

@@ -32,6 +32,8 @@ pub(crate) struct MeshBlocks {
     pub blocks: Vec<Block>,
     /// Triangles with their contact data, in the order of the blocks.
     pub triangles: Vec<ContactTriangle>,
+    /// Indices of these triangles in the mesh.
+    pub numbers: Vec<u32>,
     /// Centre of the mesh, to which all positions in nodes and blocks are relative, metres.
     pub center: DVec3,
     /// Radius of a ball around the centre that contains the mesh, metres.
@@ -92,12 +94,16 @@ impl MeshBlocks {
                 nodes: Vec::new(),
                 blocks: Vec::with_capacity(triangles.len().div_ceil(LANES)),
                 triangles: Vec::with_capacity(triangles.len()),
+                numbers: Vec::new(),
                 center: bounds.center(),
                 radius: 0.5 * bounds.size().length(),
             },
         };
         builder.node(0..triangles.len());
-        builder.built
+        MeshBlocks {
+            numbers: builder.order,
+            ..builder.built
+        }
     }
 }
 

@@ -144,6 +144,18 @@ impl TaxelTree {
         );
     }
 
+    /// Returns a leaf with a taxel near the line through `point` along `direction` (unit vector); `None` if there are no taxels. Only the first taxel of each
+    /// leaf is compared.
+    pub(crate) fn leaf_beside(&self, point: DVec3, direction: DVec3) -> Option<&Leaf> {
+        let beside = |leaf: &Leaf| {
+            let away = leaf.vector(&leaf.centers, 0) - point;
+            away.cross(direction).length_squared()
+        };
+        let nearest = self.leaves.iter().map(|leaf| (beside(leaf), leaf));
+        let nearest = nearest.reduce(|a, b| if b.0 < a.0 { b } else { a });
+        nearest.map(|(_, leaf)| leaf)
+    }
+
     /// Calls `visit` with each leaf if `may_count` returns true for all nodes on the path to the leaf.
     #[inline(always)]
     pub(crate) fn each_leaf(
@@ -229,18 +241,28 @@ impl Leaf {
         DVec3::new(of[0][k], of[1][k], of[2][k])
     }
 
-    /// Returns an iterator over the taxels of the leaf, without unused entries.
-    fn taxels(&self) -> impl Iterator<Item = PlacedTaxel> {
-        let numbers = self.numbers.iter().enumerate();
-        let numbers = numbers.take_while(|(_, number)| **number != NONE);
-        numbers.map(move |(k, &number)| PlacedTaxel {
-            number,
+    /// Returns whether the entry `k` contains a taxel.
+    #[inline(always)]
+    pub fn is_used(&self, k: usize) -> bool {
+        self.numbers[k] != NONE
+    }
+
+    /// Returns the taxel of the used entry `k`.
+    pub fn taxel(&self, k: usize) -> PlacedTaxel {
+        PlacedTaxel {
+            number: self.numbers[k],
             center: self.vector(&self.centers, k),
             across: [0, 1].map(|side| self.vector(&self.across[side], k)),
             axis: self.vector(&self.axes, k),
             radius: self.radii[k],
             behind: self.behind[k],
-        })
+        }
+    }
+
+    /// Returns an iterator over the taxels of the leaf, without unused entries.
+    fn taxels(&self) -> impl Iterator<Item = PlacedTaxel> {
+        let used = (0..LEAF).take_while(|k| self.is_used(*k));
+        used.map(|k| self.taxel(k))
     }
 }
 
@@ -250,6 +272,12 @@ impl Node {
     pub fn front(&self, direction: DVec3) -> f64 {
         let (least, largest) = (self.bounds.min * direction, self.bounds.max * direction);
         least.max(largest).element_sum()
+    }
+
+    /// Returns the largest radius of the node's taxels, enlarged by more than rounding errors, metres.
+    #[inline(always)]
+    pub fn reach(&self) -> f64 {
+        self.radius * ROUNDING
     }
 
     /// Node with arbitrary contents, which are replaced later.

@@ -12,7 +12,7 @@ use super::lines::GridLines;
 use super::placed_objects::{PlacedObjects, TravelGoal};
 use crate::contact::instructions::{Instructions, for_instructions};
 use crate::contact::mesh::skin_mesh::{MeshAt, stop_in_front};
-use crate::contact::mesh::swept_triangle::{SweptEdge, SweptFace, corner_height};
+use crate::contact::mesh::swept_triangle::{FACE_SLACK, SweptEdge, SweptFace, corner_height};
 use crate::mesh::Triangle;
 use crate::objects::mesh_blocks::{ContactTriangle, LANES, MAX_DEPTH, MeshBlocks};
 use crate::objects::{ContactFace, Model};
@@ -134,10 +134,6 @@ fn cover(range: &mut Range<usize>, part: Range<usize>) {
 /// Maximum number of candidate taxels of a node or triangle for which the search tests whether all are already stopped below it. If larger, tests are wasted on
 /// large triangles; if smaller, small triangles are evaluated needlessly.
 const FEW: usize = 4;
-
-/// Distance by which a face extends beyond its sides, relative to the radius of a taxel. Sides between triangles in one plane are not evaluated. The extension
-/// closes the gaps at these sides, which are due to the tolerance [`FLAT`](crate::objects::FLAT), in radii, and to rounding.
-const FACE_SLACK: f64 = 1.5 * crate::objects::FLAT;
 
 /// State of the search over one mesh.
 struct Sweep<'a> {

@@ -2,17 +2,21 @@
 
 use super::swept_triangle::stopping_height;
 use crate::contact::law;
-use crate::geometry::{Aabb, Pose};
+use crate::geometry::Pose;
 use crate::mesh::Triangle;
 use crate::objects::MeshModel;
-use crate::world::PlacedTaxel;
-use glam::{DMat3, DVec2, DVec3};
+use crate::objects::mesh_blocks::{LANES, Lane};
+use crate::world::{Node, PlacedTaxel};
+use glam::{DMat3, DVec2, DVec3, Vec3};
 
 /// Mesh at a pose, in the patch frame.
 pub(crate) struct MeshAt<'a> {
     mesh: &'a MeshModel,
     pose: &'a Pose,
     rotation: DMat3,
+    /// Centre of the mesh's bounding box in the patch frame, and half of its sizes in its own frame, metres.
+    center: DVec3,
+    half: DVec3,
 }
 
 /// Height at which a mesh stops a taxel, and the triangle that stops the taxel.
@@ -31,45 +35,79 @@ const BESIDE: DVec2 = DVec2::new(0.011, 0.007);
 impl<'a> MeshAt<'a> {
     pub fn new(mesh: &'a MeshModel, pose: &'a Pose) -> Self {
         let rotation = DMat3::from_quat(pose.rotation);
+        let bounds = mesh.bounds();
         Self {
             mesh,
             pose,
             rotation,
+            center: pose.transform_point(bounds.center()),
+            half: 0.5 * bounds.size(),
         }
     }
 
-    /// Returns a bounding ball of the mesh in the patch frame: centre and radius, metres.
-    pub fn ball(&self) -> (DVec3, f64) {
-        let bounds = self.mesh.bounds();
-        let radius = 0.5 * bounds.size().length();
-        (self.pose.transform_point(bounds.center()), radius)
-    }
-
-    /// Returns the height and the triangle at which the mesh stops a taxel; `None` if the mesh does not push the taxel.
-    ///
-    /// If several triangles stop the taxel at equal heights, the choice among them is arbitrary but reproducible.
-    pub fn stop(&self, taxel: &PlacedTaxel) -> Option<Stop> {
-        let view = AxisView::new(self, taxel);
-        let mut found = None;
-        self.mesh.bvh().search(
-            0.0,
-            |bounds| view.lowest(bounds),
-            |number, triangle, limit| match view.stop(triangle) {
-                Some(height) if height < limit => {
-                    found = Some(Stop {
-                        height,
-                        triangle: number,
-                    });
-                    height
-                }
-                _ => limit,
-            },
+    /// Returns whether the mesh may push one of the taxels of a node: the bounding box of the mesh and the box around the taxels overlap, seen along the axes
+    /// of both boxes.
+    #[inline]
+    pub fn is_near(&self, node: &Node) -> bool {
+        let (away, reach) = (self.center - node.bounds.center(), node.reach());
+        let half = 0.5 * node.bounds.size();
+        let absolute = DMat3::from_cols(
+            self.rotation.x_axis.abs(),
+            self.rotation.y_axis.abs(),
+            self.rotation.z_axis.abs(),
         );
-        // A taxel at its stroke stays there, even if the mesh reaches further.
-        match found {
-            Some(stop) if stop.height < taxel.behind + taxel.radius => found,
-            _ => self.entered(&view).or(found),
+        let along_patch = half + absolute * self.half + reach;
+        let along_mesh = self.half + absolute.transpose() * half + reach;
+        let in_mesh = self.rotation.transpose() * away;
+        away.abs().cmple(along_patch).all() && in_mesh.abs().cmple(along_mesh).all()
+    }
+
+    /// Returns the mesh.
+    #[inline(always)]
+    pub fn model(&self) -> &'a MeshModel {
+        self.mesh
+    }
+
+    /// Returns the rotation of the pose.
+    #[inline(always)]
+    pub fn rotation(&self) -> &DMat3 {
+        &self.rotation
+    }
+
+    /// Returns the translation of the pose, metres.
+    #[inline(always)]
+    pub fn translation(&self) -> DVec3 {
+        self.pose.translation
+    }
+
+    /// Returns a corner of the mesh that is among the lowest along a direction (unit vector), in the patch frame, metres. The corner is not always the lowest: the
+    /// search follows the lowest bounding box of each level.
+    pub fn low_corner(&self, direction: DVec3) -> DVec3 {
+        let blocks = self.mesh.blocks();
+        let along = (self.rotation.transpose() * direction).as_vec3();
+        let lane = |of: &[Lane; 3], k: usize| Vec3::new(of[0][k], of[1][k], of[2][k]);
+        let used = |used: u32| (0..LANES).filter(move |k| used >> k & 1 == 1);
+        let lowest = |a: (f32, u32), b: (f32, u32)| if b.0 < a.0 { b } else { a };
+        let mut child = 0;
+        while child % 2 == 0 {
+            let node = &blocks.nodes[(child / 2) as usize];
+            let bottoms = used(node.used).map(|k| {
+                let half = lane(&node.half, k).dot(along.abs());
+                (lane(&node.center, k).dot(along) - half, node.children[k])
+            });
+            (_, child) = bottoms.fold((f32::INFINITY, 1), lowest);
         }
+        let block = &blocks.blocks[(child / 2) as usize];
+        let corners = used(block.used).flat_map(|k| block.corners.map(|corner| lane(&corner, k)));
+        let low = |a: Vec3, b: Vec3| if b.dot(along) < a.dot(along) { b } else { a };
+        let corner = corners.reduce(low).unwrap_or(Vec3::ZERO);
+        self.pose.transform_point(corner.as_dvec3() + blocks.center)
+    }
+
+    /// Returns the height at which one triangle stops a taxel, metres. Returns `None` if the triangle misses the taxel, or if a taxel on its far side would be
+    /// behind the taxel's substrate.
+    pub fn stop_in_front(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<f64> {
+        AxisView::new(self, taxel).stop(&self.mesh.mesh().triangle(triangle))
     }
 
     /// Returns the height at which one triangle stops a taxel, even if the triangle is behind the taxel's substrate; `None` if the triangle misses the taxel.
@@ -91,7 +129,7 @@ impl<'a> MeshAt<'a> {
             radius,
             behind,
         };
-        let stop = self.entered(&AxisView::new(self, &taxel))?;
+        let stop = self.entered(&taxel)?;
         Some(stop.height)
     }
 
@@ -102,7 +140,8 @@ impl<'a> MeshAt<'a> {
 
     /// Returns the triangle through which a taxel's axis enters the mesh, if the taxel's substrate is inside the solid mesh. In that case the nearest
     /// triangle behind the substrate faces outwards, and the nearest triangle ahead shows its inner side.
-    fn entered(&self, view: &AxisView) -> Option<Stop> {
+    pub fn entered(&self, taxel: &PlacedTaxel) -> Option<Stop> {
+        let view = AxisView::new(self, taxel);
         let beside = view.taxel.radius * BESIDE;
         let place = view.to_mesh(beside.extend(view.taxel.behind));
         let bounds = self.mesh.bvh().bounds();
@@ -139,8 +178,6 @@ struct AxisView<'a> {
     reach: f64,
     rotation: DMat3,
     translation: DVec3,
-    /// Absolute values of the rotation matrix, which give the half-size of a rotated bounding box.
-    absolute: DMat3,
 }
 
 impl<'a> AxisView<'a> {
@@ -153,11 +190,6 @@ impl<'a> AxisView<'a> {
             reach: taxel.radius + mesh.mesh.rounding(),
             rotation,
             translation: taxel_from_patch * (mesh.pose.translation - taxel.center),
-            absolute: DMat3::from_cols(
-                rotation.x_axis.abs(),
-                rotation.y_axis.abs(),
-                rotation.z_axis.abs(),
-            ),
         }
     }
 
@@ -173,18 +205,6 @@ impl<'a> AxisView<'a> {
     /// Returns the direction of the taxel's axis in the mesh's frame.
     fn up_in_mesh(&self) -> DVec3 {
         self.rotation.transpose() * DVec3::Z
-    }
-
-    /// Returns a lower bound of the heights at which a triangle in a bounding box stops the taxel. The bound is infinite if no triangle can stop it, or only
-    /// triangles behind the substrate.
-    fn lowest(&self, bounds: &Aabb) -> f64 {
-        let center = self.rotation * bounds.center() + self.translation;
-        let half = self.absolute * (0.5 * bounds.size()) + self.reach;
-        let is_beside = center.x.abs() > half.x || center.y.abs() > half.y;
-        if is_beside || center.z + half.z < self.taxel.behind {
-            return f64::INFINITY;
-        }
-        center.z - half.z
     }
 
     /// Returns the height at which a triangle stops the taxel; `None` if the triangle misses the taxel or touches it only behind the substrate.

@@ -15,7 +15,13 @@ use glam::{DVec2, DVec3, Vec3Swizzles};
 
 /// Cosine to the vertical below which a steep face is replaced by its edges, and a steep edge by its corners. The projection of such a face or edge of 0.1 m
 /// is less than a nanometre, and its heights would be dominated by rounding.
-const STEEP: f64 = 1e-8;
+pub(crate) const STEEP: f64 = 1e-8;
+/// Distance by which a face extends beyond its sides, relative to the radius of a taxel. Sides between triangles in one plane are not evaluated. The extension
+/// closes the gaps at these sides, which are due to the tolerance [`FLAT`](crate::objects::FLAT), in radii, and to rounding.
+pub(crate) const FACE_SLACK: f64 = 1.5 * crate::objects::FLAT;
+/// Distance by which an edge extends into the region that its faces hide, relative to the radius of a taxel. Far above rounding, so that no gap can open between
+/// an edge and its faces; if larger, edges are evaluated needlessly.
+pub(crate) const HIDDEN_SLACK: f64 = 1e-6;
 
 /// Returns the height of the centre of a ball that rises along z at the position `at` (x, y) until a triangle stops it. Returns `None` if the ball misses the
 /// triangle.
@@ -157,8 +163,7 @@ impl SweptEdge {
             return None;
         }
         let aside = edge.xy().perp();
-        // The hidden range is slightly reduced, so that rounding cannot open a gap between an edge and its faces.
-        let slack = 1e-6 * radius * (aside.x.abs() + aside.y.abs());
+        let slack = HIDDEN_SLACK * radius * (aside.x.abs() + aside.y.abs());
         let mut beside = [f64::NEG_INFINITY, f64::INFINITY];
         for normal in faces {
             let shift = radius * normal.xy().dot(aside);

@@ -4,11 +4,12 @@ use super::near_spheres::{PlacedUnion, needed_of_leaf};
 use super::path::{ApproachPath, ContactRequest, meeting};
 use crate::contact::instructions::{Instructions, for_instructions};
 use crate::contact::mesh::skin_mesh::MeshAt;
+use crate::contact::mesh::{LeafStops, SearchStack, stop_leaf};
 use crate::contact::{Contact, FrictionState, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere, SphereUnion};
-use crate::world::{Node, Patch, Travelling};
+use crate::world::{Leaf, Node, Patch, Travelling};
 use glam::DVec3;
 use std::cell::Cell;
 use std::sync::OnceLock;
@@ -85,18 +86,28 @@ impl<'a> Approach<'a> {
 
     /// Returns the larger of `others` and the largest deflection that an object requires of a taxel whose axis is the direction of travel, metres.
     fn farthest(&self, object: &Model, pose: &Pose, others: f64) -> f64 {
-        let mut farthest = others;
         match object {
-            Model::Spheres(union) => farthest = self.farthest_sphere(union, pose, others),
-            Model::Mesh(mesh) => {
-                let mesh = MeshAt::new(mesh, pose);
-                let (center, radius) = mesh.ball();
-                self.travelling().taxels.each_near(center, radius, |taxel| {
-                    let stop = mesh.stop(taxel);
-                    farthest = stop.map_or(farthest, |stop| farthest.max(-stop.height));
-                });
-            }
+            Model::Spheres(union) => self.farthest_sphere(union, pose, others),
+            Model::Mesh(mesh) => self.farthest_of_mesh(&MeshAt::new(mesh, pose), others),
         }
+    }
+
+    /// Returns the larger of `others` and the largest deflection that a mesh requires of a taxel, metres. The taxels nearest to a low corner of the mesh are
+    /// evaluated first, so that most triangles are excluded for the others.
+    fn farthest_of_mesh(&self, mesh: &MeshAt, others: f64) -> f64 {
+        let (taxels, direction) = (&self.travelling().taxels, self.direction);
+        let mut farthest = others;
+        let mut stack = SearchStack::new();
+        let mut visit = |leaf: &Leaf| {
+            let mut stops = LeafStops::lowest_below(-farthest);
+            stop_leaf(Instructions::Best, mesh, leaf, &mut stops, &mut stack);
+            let heights = stops.heights.iter();
+            farthest = heights.fold(farthest, |farthest, height| farthest.max(-height));
+        };
+        if let Some(leaf) = taxels.leaf_beside(mesh.low_corner(direction), direction) {
+            visit(leaf);
+        }
+        taxels.each_leaf(|node| mesh.is_near(node), visit);
         farthest
     }
 
@@ -198,6 +209,24 @@ impl<'a> Approach<'a> {
             }
             _ => path.press_and_slide(travels, DVec3::ZERO, None),
         }
+    }
+
+    /// Records the contacts after the patch, whose taxels are all parallel to the direction, has travelled a distance, metres. Unlike
+    /// [`press_to_depth`](Self::press_to_depth), the function needs no first contact and no steps. Returns `None` if the patch is curved.
+    ///
+    /// # Panics
+    /// If the number of poses differs from the number of objects.
+    pub fn contacts_at_travel(
+        &self,
+        objects: &[Model],
+        patch_from_objects: &[Pose],
+        travel: f64,
+        workspace: &mut Workspace,
+    ) -> Option<Contact> {
+        let travelling = self.travelling();
+        let mut path = self.path(objects, patch_from_objects, workspace);
+        let is_flat = travelling.is_flat;
+        is_flat.then(|| path.press_through_with_contacts(&travelling.taxels, travel))
     }
 
     pub(crate) fn path<'w>(

@@ -5,7 +5,7 @@ use crate::contact::{Contact, FrictionState, NormalForce, Workspace};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::{Patch, Taxel, TaxelTree};
+use crate::world::{EvenGrid, Patch, Taxel, TaxelTree};
 use glam::DVec3;
 
 /// Length of a step along the path, relative to the shortest stroke of a taxel. If larger, a short peak of the force may be missed, and small spheres may
@@ -95,6 +95,24 @@ impl ApproachPath<'_> {
                 press::stop(patch, workspace)
             },
         );
+        Contact { travel, ..contact }
+    }
+
+    /// Presses a flat patch along its axis from the front as [`press_through`](Self::press_through) does, and records the contacts.
+    pub fn press_through_with_contacts(&mut self, taxels: &TaxelTree, travel: f64) -> Contact {
+        let is_along_z = self.direction == DVec3::Z;
+        let press =
+            |patch: &Patch, objects: &[Model], poses: &[Pose], workspace: &mut Workspace| {
+                let along_axis = patch.even_grid().filter(|_| is_along_z);
+                let endless = along_axis.map(|grid| EvenGrid {
+                    behind: f64::NEG_INFINITY,
+                    ..*grid
+                });
+                let (n_taxels, placed) = (patch.n_taxels(), (objects, poses));
+                press::push_tree((taxels, endless.as_ref()), n_taxels, placed, workspace);
+                press::meet(patch, objects, poses, workspace)
+            };
+        let contact = self.at(travel * self.direction, press);
         Contact { travel, ..contact }
     }
 

@@ -5,6 +5,7 @@ use crate::contact::grid::View;
 use crate::contact::instructions::for_instructions;
 use crate::contact::law::saturation_limit;
 use crate::contact::mesh::skin_mesh::MeshAt;
+use crate::contact::mesh::{LeafStops, SearchStack, stop_leaf};
 use crate::contact::taxel_contact::TaxelContact;
 use crate::contact::workspace::HeldTaxel;
 use crate::contact::{Contact, Workspace};
@@ -174,13 +175,21 @@ fn push_by_mesh(
     workspace: &mut Workspace,
 ) {
     let mesh = MeshAt::new(mesh, pose);
-    let (center, radius) = mesh.ball();
-    taxels.each_near(center, radius, |taxel| {
-        if let Some(stop) = mesh.stop(taxel) {
-            let deciding = [object as u32, stop.triangle as u32];
-            workspace.push(taxel.number, -stop.height, deciding);
-        }
-    });
+    let mut stack = SearchStack::new();
+    let instructions = workspace.instructions();
+    taxels.each_leaf(
+        |node| mesh.is_near(node),
+        |leaf| {
+            let mut stops = LeafStops::below_rest();
+            stop_leaf(instructions, &mesh, leaf, &mut stops, &mut stack);
+            for k in 0..LEAF {
+                if let Some(triangle) = stops.triangles[k] {
+                    let deciding = [object as u32, triangle];
+                    workspace.push(leaf.numbers[k], -stops.heights[k], deciding);
+                }
+            }
+        },
+    );
 }
 
 /// Computes the deflections of the taxels and records the object part that determines each deflection.
@@ -254,7 +263,7 @@ pub fn press_with_contacts(
 }
 
 /// Limits the deflections of the touched taxels to their strokes, and records the contacts of these taxels.
-fn meet(
+pub(crate) fn meet(
     patch: &Patch,
     objects: &[Model],
     patch_from_objects: &[Pose],

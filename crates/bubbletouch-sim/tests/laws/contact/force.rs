@@ -354,7 +354,17 @@ fn a_skin_moved_to_a_force_carries_it_and_first_there() {
         );
         let press = press.unwrap().unwrap();
         let carried = spring_load(&skin, workspace.contacts()).spring_force;
-        assert!((carried - force).abs() <= 1e-12 * force, "case {case}");
+        // The last bit of a position in the scene, which is about 0.1 m large, changes the force by the stiffness of the touched taxels.
+        let contacts = workspace.contacts().iter();
+        let stiffness: f64 = contacts
+            .map(|one| skin.taxels().at(one.taxel).stiffness)
+            .sum();
+        let tolerance = f64::max(1e-12 * force, stiffness * 0.1 * f64::EPSILON);
+        assert!(
+            (carried - force).abs() <= tolerance,
+            "case {case}: {carried} N for {force} N at {} m",
+            press.travel
+        );
         let deflections = workspace.deflections().to_vec();
         let mut force_at = |travel: f64| {
             let moved = Pose::from_translation(-travel * way).compose(&pose);
@@ -365,7 +375,7 @@ fn a_skin_moved_to_a_force_carries_it_and_first_there() {
             let before = press.travel * f64::from(k) / 100.0;
             assert!(force_at(before) < force, "case {case}: not before");
         }
-        assert!((force_at(press.travel) - force).abs() <= 1e-12 * force);
+        assert!((force_at(press.travel) - force).abs() <= tolerance);
         for (a, b) in deflections.iter().zip(slow.deflections()) {
             assert!((a - b).abs() < 1e-12, "case {case}: {a} {b}");
         }
