@@ -30,7 +30,8 @@ from bubbletouch._core import (
     write_frame,
 )
 from bubbletouch.data_audit import Audit, Finding, audit
-from bubbletouch.recorded import Recorded, read_recorded
+from bubbletouch.recorded import Recorded
+from bubbletouch.recorded_files import read_recorded
 from bubbletouch.study import Study, Table, advise, run, simulate
 
 __all__ = [
