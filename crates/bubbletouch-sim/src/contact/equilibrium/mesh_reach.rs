@@ -125,7 +125,7 @@ impl<'a> MeshOnSkin<'a> {
         let substrate = placed.center + taxel.behind * placed.axis;
         let may_be_inside = self.model.bounds().distance_squared(substrate) == 0.0;
         let entered = match may_be_inside {
-            true => MeshAt::new(self.model, self.pose).entered_by(taxel),
+            true => MeshAt::new(self.model, self.pose).entered(taxel),
             false => None,
         };
         let reach = taxel.radius + self.model.rounding();

@@ -133,11 +133,6 @@ impl<'a> MeshAt<'a> {
         Some(stop.height)
     }
 
-    /// Returns where a taxel's axis enters the mesh, if the taxel's substrate is inside the solid mesh; otherwise `None`.
-    pub fn entered_by(&self, taxel: &PlacedTaxel) -> Option<Stop> {
-        self.entered(&AxisView::new(self, taxel))
-    }
-
     /// Returns the triangle through which a taxel's axis enters the mesh, if the taxel's substrate is inside the solid mesh. In that case the nearest
     /// triangle behind the substrate faces outwards, and the nearest triangle ahead shows its inner side.
     pub fn entered(&self, taxel: &PlacedTaxel) -> Option<Stop> {
