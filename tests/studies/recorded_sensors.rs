@@ -415,6 +415,16 @@ fn recordings_that_contradict_themselves_are_refused() {
         "truncated.npy",
         &std::fs::read(case.path("left.npy")).unwrap()[..200],
     );
+    case.file("texts.csv", "a\n".repeat(N));
+    let mut one_nan: Array2<f64> = read_npy(case.path("left.npy")).unwrap();
+    one_nan[[7, 3]] = f64::NAN;
+    write_npy(&case.path("one_nan.npy"), &one_nan).unwrap();
+    write("nan_length.npy", vec![f64::NAN; N]);
+    let header = "x_mm,y_mm,z_mm,nx,ny,nz\n1,2,3,0,0,1\n";
+    case.file("nan.csv", format!("{header}nan,2,3,0,0,1\n"));
+    case.file("no_normal.csv", format!("{header}1,2,3,0,0,0\n"));
+    case.file("no_column.csv", "x_mm,y_mm,z_mm,nx,ny\n");
+    case.file("broken.npz", "PK no archive");
     let one = |more: &str| format!("{LABELS}frames = \"FOLDER/list.npy\"\n{more}\n");
     let time = |more: &str| {
         let keys = "order = \"n t c\"\nresampled_frames = 4";
@@ -525,6 +535,42 @@ fn recordings_that_contradict_themselves_are_refused() {
             "truncated.npy",
         ),
         (two("", "").replace("left.npy", "none.npy"), "none.npy"),
+        (
+            two("", "").replace("left.npy", "texts.csv"),
+            "texts.csv: texts; numbers",
+        ),
+        (
+            two("", "").replace("left.npy", "one_nan.npy"),
+            "one_nan.npy, frame 7, taxel 3: NaN; a finite number",
+        ),
+        (
+            two("", "zero = \"FOLDER/long.npy\""),
+            "long.npy: an array of shape [60]; shape [24], one number for each taxel",
+        ),
+        (
+            time("lengths = \"FOLDER/texts.csv\""),
+            "texts.csv: texts; numbers",
+        ),
+        (
+            time("lengths = \"FOLDER/nan_length.npy\""),
+            "nan_length.npy, position 0: NaN; an integer from 1 to 7",
+        ),
+        (
+            one("layout = \"FOLDER/nan.csv\""),
+            "nan.csv, line 3, column x_mm",
+        ),
+        (
+            one("layout = \"FOLDER/no_normal.csv\""),
+            "no_normal.csv, row 2: normal [0, 0, 0]",
+        ),
+        (
+            one("layout = \"FOLDER/no_column.csv\""),
+            "no_column.csv: no column nz",
+        ),
+        (
+            one("layout = \"FOLDER/broken.npz\""),
+            "broken.npz: no archive; a .npz file",
+        ),
     ] {
         let said = error(&case, &recorded, &rest);
         assert!(said.contains(words), "{said}\ndoes not say {words}");
@@ -643,4 +689,87 @@ fn several_values_at_a_position_have_an_image_each() {
     let wrong = keys("last").replace("places.csv", "few.csv");
     let said = error(&case, &wrong, &rest);
     assert!(said.contains("few.csv: 31 taxels; 64, as "), "{said}");
+}
+
+/// Law: the taxels of a simulated recording, divided into two sensors and joined again, give the rows of the whole recording.
+#[test]
+fn a_simulated_recording_that_is_divided_and_joined_gives_its_rows() {
+    let case = written();
+    let pressed = "question = \"?\"\ntrials = 2\n[objects]\nsets = [\"balls\"]\nnames = [\"golf\", \"tennis\", \"baseball\"]\n[touches]\nper_object = 12\nframes = 3\noffset_x_mm = { uniform = [-6.0, 6.0] }\noffset_y_mm = { uniform = [-6.0, 6.0] }\ndepth_mm = { uniform = [1.0, 7.0] }\n";
+    let rest = "[signal]\nsteps = [\"hysteresis\", \"gain\", \"noise\", \"quantisation\"]\nhysteresis_full_scale = 0.2\ngain_std = 0.1\nnoise_std_full_scale = 0.02\nadc_bits = 8\n[sensing]\nmeasurements = 12\nensemble = [\"gaussian\", \"selected\"]\n[recognition]\nclassifier = \"linear_svm\"\ntemporal_features = \"summarised\"\n";
+    case.file("study.toml", format!("{pressed}{SKIN}taxels = 8\n{rest}"));
+    case.succeeds(&["touches", "study.toml", "--out", "touches"]);
+    let frames: ndarray::Array4<f32> = read_npy(case.path("touches/frames.npy")).unwrap();
+    let list = frames.into_shape_with_order((36, 3, 64)).unwrap();
+    write_npy(&case.path("whole.npy"), &list).unwrap();
+    write_npy(
+        &case.path("left.npy"),
+        &list.slice(s![.., .., ..17]).to_owned(),
+    )
+    .unwrap();
+    write_npy(
+        &case.path("right.npy"),
+        &list.slice(s![.., .., 17..]).to_owned(),
+    )
+    .unwrap();
+    let labels =
+        "labels = \"FOLDER/touches/labels.npy\"\nnames = [\"golf\", \"tennis\", \"baseball\"]\n";
+    let own = "order = \"n t c\"\nfull_scale = 5e-3";
+    let whole = format!("{labels}frames = \"FOLDER/whole.npy\"\n{own}\n");
+    let rest = format!("{SKIN}{rest}");
+    let expected = rows(&case, &whole, &rest);
+    assert!(
+        expected
+            .iter()
+            .any(|(_, score)| score.n_correct < score.n_test)
+    );
+    let divided = sensors(own, own).replace(LABELS, labels);
+    assert_eq!(rows(&case, &divided, &rest), expected);
+}
+
+/// A given test set of several sensors, in files of its own and in one archive.
+#[test]
+fn sensors_may_have_a_given_test_set() {
+    let case = written();
+    let list: Array2<f64> = read_npy(case.path("list.npy")).unwrap();
+    let side =
+        |is_test: bool| -> Vec<usize> { (0..N).filter(|k| (k % 4 == 0) == is_test).collect() };
+    let file = std::fs::File::create(case.path("all.npz")).unwrap();
+    let mut archive = ndarray_npy::NpzWriter::new(file);
+    for (end, is_test) in [("", false), ("_test", true)] {
+        let touches = side(is_test);
+        let own = list.select(Axis(0), &touches);
+        write_npy(&case.path(&format!("whole{end}.npy")), &own).unwrap();
+        write_integers(
+            &case.path(&format!("labels{end}.npy")),
+            touches.iter().map(|k| k / 20),
+        )
+        .unwrap();
+        for (name, columns) in [("left", s![.., ..24]), ("right", s![.., 24..])] {
+            let part = own.slice(columns).to_owned();
+            write_npy(&case.path(&format!("{name}{end}.npy")), &part).unwrap();
+            archive.add_array(format!("{name}{end}"), &part).unwrap();
+        }
+    }
+    archive.finish().unwrap();
+    let test = "labels_test = \"FOLDER/labels_test.npy\"\n";
+    let whole = format!(
+        "{LABELS}{test}frames = \"FOLDER/whole.npy\"\nframes_test = \"FOLDER/whole_test.npy\"\nfull_scale = 2.0\n"
+    );
+    let rest = format!("{SKIN}{NOISE}{RAW}");
+    let expected = rows(&case, &whole, &rest);
+    let own = |name: &str| format!("frames_test = \"FOLDER/{name}_test.npy\"\nfull_scale = 2.0");
+    let recorded = format!("{test}{}", sensors(&own("left"), &own("right")));
+    assert_eq!(rows(&case, &recorded, &rest), expected);
+    let scale = "full_scale = 2.0";
+    let archived = sensors(scale, scale)
+        .replace("left.npy", "all.npz")
+        .replace("right.npy", "all.npz");
+    assert_eq!(rows(&case, &format!("{test}{archived}"), &rest), expected);
+    let one = format!("{test}{}", sensors(&own("left"), scale));
+    let said = error(&case, &one, &rest);
+    assert!(
+        said.contains("key recorded.sensors[2].frames_test: no such key; frames of the test set"),
+        "{said}"
+    );
 }

@@ -10,7 +10,7 @@ import numpy as np
 
 from bubbletouch._array_files import natural, of_column, optional_package
 from bubbletouch._arrays import Array, as_keys, as_numbers
-from bubbletouch._touch_sets import Part, by_touch, joined
+from bubbletouch._touch_sets import by_touch, joined
 from bubbletouch.recorded import Recorded
 
 

@@ -14,6 +14,7 @@ pub mod samples;
 pub(crate) mod sensor_frames;
 pub(crate) mod shear_ripple;
 pub mod simulation;
+pub(crate) mod touch_lengths;
 pub mod touch_set;
 
 pub use crate::studies::recognition::frames::frame_store::Frames;

@@ -19,8 +19,9 @@ use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
 use crate::studies::recognition::frames::samples::spread_samples;
 use crate::studies::recognition::frames::sensor_frames::{
-    SensorFrames, SensorScale, check_alike, joined_readings, one_each,
+    SensorFrames, SensorScale, check_alike, joined_readings,
 };
+use crate::studies::recognition::frames::touch_lengths::one_each;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;

@@ -1,0 +1,113 @@
+//! Recorded touches of unequal length: their numbers of frames, and resampling to the number of frames of the study.
+
+use crate::error::{Error, Result};
+use crate::inputs::arrays::axis_order::FrameShape;
+use crate::inputs::arrays::file_array::FileArray;
+use crate::signal::{resample, resampled_instant};
+use crate::studies::recognition::spec::recorded::RecordedSpec;
+use ndarray::{Array2, s};
+use std::path::Path;
+
+impl RecordedSpec {
+    /// Returns the number of frames of each touch: the numbers of the file, or the frames up to the last one with a reading.
+    ///
+    /// # Errors
+    /// If the file cannot be read or has an invalid number, or a touch has no reading.
+    pub(super) fn touch_lengths(
+        &self,
+        name: &str,
+        shape: &FrameShape,
+        readings: &Array2<f64>,
+    ) -> Result<Vec<usize>> {
+        let key = match name {
+            "frames" => "lengths",
+            _ => "lengths_test",
+        };
+        if let Some(path) = self.file_of(key) {
+            let array = FileArray::read(path, key)?;
+            let place = array.place.clone();
+            let lengths = array.into_numbers()?;
+            let frames = self.file_of(name).unwrap_or(&self.frames);
+            one_each(path, (lengths.len(), shape.n_touches), frames)?;
+            let whole = |(touch, &length): (usize, &f64)| {
+                let is_length = length.fract() == 0.0;
+                let is_length = is_length && (1.0..=shape.n_frames as f64).contains(&length);
+                let refuse = || {
+                    let allowed = format!("an integer from 1 to {}", shape.n_frames);
+                    Error::input(format!("{place}, position {touch}"), length, allowed)
+                };
+                is_length.then_some(length as usize).ok_or_else(refuse)
+            };
+            return lengths.iter().enumerate().map(whole).collect();
+        }
+        if shape.n_frames == 1 {
+            return Ok(vec![1; shape.n_touches]);
+        }
+        let length = |touch: usize| {
+            let is_there = |frame: &usize| {
+                let row = readings.row(touch * shape.n_frames + frame);
+                !row.iter().all(|reading| reading.is_nan())
+            };
+            let last = (0..shape.n_frames).rev().find(is_there);
+            last.map(|last| last + 1).ok_or_else(|| {
+                let path = self.file_of(name).unwrap_or(&self.frames);
+                let place = format!("{}, touch {touch}", path.display());
+                Error::input(
+                    place,
+                    "no reading (NaN in all frames)",
+                    "at least one frame",
+                )
+            })
+        };
+        (0..shape.n_touches).map(length).collect()
+    }
+
+    /// Resamples each touch to the number of frames of the study, by linear interpolation. Returns the readings, and the time between the frames of each touch
+    /// relative to the time between recorded frames.
+    ///
+    /// # Errors
+    /// If the touches have unequal lengths and the study does not resample them.
+    pub(super) fn resampled(
+        &self,
+        readings: Array2<f64>,
+        (place, shape): (&str, &FrameShape),
+        lengths: &[usize],
+    ) -> Result<(Array2<f64>, Vec<f64>)> {
+        let Some(n_frames) = self.resampled_frames else {
+            let shortest = lengths.iter().copied().min().unwrap_or(0);
+            if shortest < shape.n_frames {
+                let longest = lengths.iter().copied().max().unwrap_or(0);
+                let given = format!(
+                    "touches of {shortest} to {longest} of {} frames",
+                    shape.n_frames
+                );
+                let allowed = "touches with all frames, or recorded.resampled_frames, the number of frames to which each touch is resampled";
+                return Err(Error::input(place, given, allowed));
+            }
+            return Ok((readings, vec![1.0; lengths.len()]));
+        };
+        let mut resampled = Array2::zeros((lengths.len() * n_frames, readings.ncols()));
+        for (touch, &length) in lengths.iter().enumerate() {
+            let first = touch * shape.n_frames;
+            let recorded = readings.slice(s![first..first + length, ..]);
+            let own = touch * n_frames..(touch + 1) * n_frames;
+            resample(recorded, resampled.slice_mut(s![own, ..]));
+        }
+        // The time from the first to the second frame; a single frame has no step.
+        let step = |&length: &usize| match n_frames {
+            1 => 1.0,
+            _ => resampled_instant(1, n_frames, length),
+        };
+        Ok((resampled, lengths.iter().map(step).collect()))
+    }
+}
+
+/// Returns an error if a file does not contain exactly one value per touch.
+pub(super) fn one_each(path: &Path, (n_given, n): (usize, usize), frames: &Path) -> Result<()> {
+    let given = format!("{n_given} numbers");
+    let allowed = format!("{n}, one a touch of {}", frames.display());
+    match n_given == n {
+        true => Ok(()),
+        false => Err(Error::input(path.display(), given, allowed)),
+    }
+}
