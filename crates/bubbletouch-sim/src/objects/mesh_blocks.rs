@@ -1,4 +1,4 @@
-//! Triangles of a mesh in blocks of eight, with a tree of nodes with eight children. The tree is searched for the triangles that taxels of a grid touch.
+//! Triangles of a mesh in blocks of sixteen, with a tree of nodes with sixteen children. The tree is searched for the triangles that taxels of a grid touch.
 //!
 //! A ball of radius ρ that touches the mesh at a point p has its centre at p + ρ d, where the unit vector d is a *direction of contact*. On a face, d is the
 //! normal n of the face. On an edge, d is a vector between the normals of the two faces. On a corner, d is a vector among the normals of the faces around the
@@ -16,12 +16,12 @@ use crate::mesh::Triangle;
 use glam::DVec3;
 use std::ops::Range;
 
-/// Number of triangles in a block and of children of a node: eight f32 values in a vector of 256 bits.
-pub(crate) const LANES: usize = 8;
-/// Maximum depth of the tree: nodes are divided at medians, and eight triangles are in a block.
-pub(crate) const MAX_DEPTH: usize = 12;
+/// Number of triangles in a block and of children of a node: sixteen f32 values in a vector of 512 bits.
+pub(crate) const LANES: usize = 16;
+/// Maximum depth of the tree: nodes are divided at medians, and sixteen triangles are in a block.
+pub(crate) const MAX_DEPTH: usize = 8;
 
-/// One number for each lane.
+/// One number for each lane. Structs of lanes are aligned to 64 bytes, so that no lane lies in two lines of the cache.
 pub(crate) type Lane = [f32; LANES];
 
 /// Triangles of a mesh in blocks, and the tree of the blocks.
@@ -40,8 +40,9 @@ pub(crate) struct MeshBlocks {
     pub radius: f64,
 }
 
-/// Node with up to eight children.
+/// Node with up to sixteen children.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub(crate) struct BlockNode {
     /// Centres and half sizes of the bounding boxes of the children's triangles, metres.
     pub center: [Lane; 3],
@@ -55,8 +56,9 @@ pub(crate) struct BlockNode {
     pub used: u32,
 }
 
-/// Up to eight triangles.
+/// Up to sixteen triangles.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub(crate) struct Block {
     /// Corners of the triangles, metres.
     pub corners: [[Lane; 3]; 3],
@@ -70,8 +72,10 @@ pub(crate) struct Block {
     pub used: u32,
 }
 
-/// Triangle in double precision with its contact data, stored together because they are read together.
+/// Triangle in double precision with its contact data, stored together because they are read together. All numbers but the normals across the sides lie in two
+/// lines of 64 bytes of the cache.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 pub(crate) struct ContactTriangle {
     /// Corners of the triangle, metres.
     pub corners: [DVec3; 3],
@@ -141,17 +145,22 @@ impl Builder<'_> {
         number as u32
     }
 
-    /// Divides a range into up to eight parts, the largest part first, by medians along the longest side.
+    /// Divides a range into up to sixteen parts, the largest part first, by medians along the longest side.
     fn parts(&mut self, range: Range<usize>) -> Vec<Range<usize>> {
+        // Triangles of a child whose nodes and blocks are all full.
+        let mut full = LANES;
+        while full * LANES < range.len() {
+            full *= LANES;
+        }
         let mut parts = vec![range];
         while parts.len() < LANES {
             let largest = (0..parts.len()).max_by_key(|&part| (parts[part].len(), part));
             let largest = largest.expect("there is a part");
             let part = parts[largest].clone();
-            if part.len() <= LANES {
+            if part.len() <= full {
                 break;
             }
-            let cut = part.start + part.len().div_ceil(2).next_multiple_of(LANES);
+            let cut = part.start + part.len().div_ceil(2).next_multiple_of(full);
             let middles = self.order[part.clone()]
                 .iter()
                 .map(|&place| self.middles[place as usize]);

@@ -31,22 +31,25 @@ struct Data {
 
 /// Contact data of one triangle: its face, and the edges and corners that belong to no earlier triangle.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct ContactFace {
     /// Unit normal of the triangle; zero if the triangle is too thin.
     pub normal: DVec3,
+    /// Largest distance of a direction of contact from the normal, for the face, its own edges and its own corners; 2 if the directions are unknown.
+    pub spread: f64,
+    /// For each side, the largest distance beyond the side of a ball's centre in contact with the triangle, as a multiple of the ball's radius, relative to the
+    /// side moved by the radius along the normal; 2 if the directions are unknown.
+    pub side_spread: [f32; 3],
+    /// Bits for the edges and corners with which contact is evaluated for this triangle: bit k for the side from corner k to the next corner, bit 3 + k for
+    /// corner k, and bit 6 + k if corner k belongs to this triangle (and not to another triangle with the same corner).
+    ///
+    /// A side is evaluated if it belongs to this triangle (not to the neighbouring triangle), and the two triangles do not lie in one plane. A corner is evaluated
+    /// if it belongs to this triangle, and the triangles around the corner do not lie in one plane.
+    pub parts: u32,
     /// Unit normal of the neighbouring triangle across each side. The neighbour's corners are ordered as if it passed the side in the direction of this
     /// triangle. On a smooth surface this normal is therefore approximately minus the normal of this triangle. The normal is zero if there is not exactly one
     /// neighbour, or if the neighbour is too thin.
     pub across: [DVec3; 3],
-    /// For each side, from corner i to the next corner, whether contact with the side is evaluated for this triangle. The side must belong to this triangle
-    /// (not to the neighbouring triangle), and the two triangles must not lie in one plane.
-    pub has_edge: [bool; 3],
-    /// For each corner, whether the corner belongs to this triangle (and not to another triangle with the same corner).
-    pub has_corner: [bool; 3],
-    /// For each corner, whether the triangles around the corner do not lie in one plane.
-    pub is_sharp: [bool; 3],
-    /// Largest distance of a direction of contact from the normal, for the face, its own edges and its own corners; 2 if the directions are unknown.
-    pub spread: f64,
 }
 
 /// Distance between the unit normals of two triangles up to which the triangles lie in one plane. If larger, a gap opens between faces whose common edge is
@@ -162,7 +165,7 @@ impl MeshModel {
     /// Returns each vertex that belongs to a triangle, once.
     pub fn corners(&self) -> impl Iterator<Item = DVec3> {
         let triangles = self.data.blocks.triangles.iter();
-        let corners = triangles.flat_map(|t| t.corners.into_iter().zip(t.face.has_corner));
+        let corners = triangles.flat_map(|t| (0..3).map(|k| (t.corners[k], t.face.owns(k))));
         corners.filter_map(|(corner, is_own)| is_own.then_some(corner))
     }
 }
@@ -172,26 +175,28 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
     let mut faces: Vec<ContactFace> = (0..mesh.n_triangles())
         .map(|number| {
             let normal = mesh.triangle(number).normal().unwrap_or(DVec3::ZERO);
-            let mut own = |corner: u32| corners[corner as usize].add(normal);
+            // Initially all sides are listed; shared sides are removed below. A triangle with a repeated corner has one side, which is not shared.
+            let mut parts = match welded.corners[number] {
+                [a, b, c] if a == b => u32::from(b != c) << 1,
+                [a, b, c] if b == c || c == a => 1,
+                _ => 0b111,
+            };
+            for (k, &corner) in welded.corners[number].iter().enumerate() {
+                parts |= u32::from(corners[corner as usize].add(normal)) << (6 + k);
+            }
             ContactFace {
                 normal,
-                across: [DVec3::ZERO; 3],
-                // Initially all sides are listed; shared sides are removed below. A triangle with a repeated corner has one side, which is not shared.
-                has_edge: match welded.corners[number] {
-                    [a, b, c] if a == b => [false, b != c, false],
-                    [a, b, c] if b == c || c == a => [true, false, false],
-                    _ => [true; 3],
-                },
-                has_corner: welded.corners[number].map(&mut own),
-                is_sharp: [true; 3],
                 spread: 0.0,
+                side_spread: [0.0; 3],
+                parts,
+                across: [DVec3::ZERO; 3],
             }
         })
         .collect();
     for sides in welded.edges() {
         let (first, others) = sides.split_first().expect("an edge has a side");
         for side in others {
-            faces[side.triangle as usize].has_edge[usize::from(side.side)] = false;
+            faces[side.triangle as usize].parts &= !(1 << side.side);
         }
         if let [neighbour] = others {
             let normal = faces[neighbour.triangle as usize].normal;
@@ -200,7 +205,7 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
             let face = &mut faces[first.triangle as usize];
             face.across[usize::from(first.side)] = across;
             if normal != DVec3::ZERO && (face.normal + across).length() < FLAT {
-                face.has_edge[usize::from(first.side)] = false;
+                face.parts &= !(1 << first.side);
             }
         } else {
             for corner in first.edge {
@@ -208,34 +213,71 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
             }
         }
     }
-    for (face, numbers) in faces.iter_mut().zip(&welded.corners) {
+    for (number, (face, numbers)) in faces.iter_mut().zip(&welded.corners).enumerate() {
         let around = numbers.map(|corner| corners[corner as usize].spread);
-        face.is_sharp = around.map(|spread| spread > FLAT);
-        face.spread = face.own_spread(around);
+        for (k, spread) in around.into_iter().enumerate() {
+            face.parts |= u32::from(face.owns(k) && spread > FLAT) << (3 + k);
+        }
+        face.measure_spread(&mesh.triangle(number), around);
     }
     faces
 }
 
 impl ContactFace {
-    /// Returns the spread of the triangle. `around` contains, for each corner, the largest distance of a normal around the corner from the normal of the
-    /// triangle that owns the corner.
-    fn own_spread(&self, around: [f64; 3]) -> f64 {
-        if self.normal == DVec3::ZERO {
-            return UNKNOWN;
+    /// Returns whether contact with a side, 0 to 2, is evaluated for this triangle.
+    #[inline(always)]
+    pub fn has_edge(&self, side: usize) -> bool {
+        self.parts >> side & 1 == 1
+    }
+
+    /// Returns whether contact with a corner, 0 to 2, is evaluated for this triangle.
+    #[inline(always)]
+    pub fn has_corner(&self, corner: usize) -> bool {
+        self.parts >> (3 + corner) & 1 == 1
+    }
+
+    /// Returns whether a corner, 0 to 2, belongs to this triangle.
+    fn owns(&self, corner: usize) -> bool {
+        self.parts >> (6 + corner) & 1 == 1
+    }
+
+    /// Sets the spreads of the triangle and of its sides. `around` contains, for each corner, the largest distance of a normal around the corner from the normal of
+    /// the triangle that owns the corner.
+    ///
+    /// A direction of contact with side k is n cos φ + o sin φ with the outward direction o of the side in the plane of the triangle. With s = |d − n|, the
+    /// centre of the ball is therefore at most ρ (s o·o' + s²/2) beyond a side with the outward direction o'.
+    fn measure_spread(&mut self, triangle: &Triangle, around: [f64; 3]) {
+        let corners = triangle.0;
+        let outward = [0, 1, 2].map(|side| {
+            let along = corners[(side + 1) % 3] - corners[side];
+            along.cross(self.normal).normalize_or_zero()
+        });
+        let of_edges =
+            [0, 1, 2].map(
+                |side| match (self.has_edge(side), self.across[side] == DVec3::ZERO) {
+                    (false, _) => 0.0,
+                    (true, true) => UNKNOWN,
+                    (true, false) => (self.normal + self.across[side]).length(),
+                },
+            );
+        let edges = of_edges.into_iter().fold(0.0, f64::max);
+        let own_corners = (0..3).filter(|&corner| self.owns(corner));
+        let corners = own_corners.fold(0.0, |spread, corner| around[corner].max(spread));
+        let spread = match self.normal == DVec3::ZERO {
+            true => UNKNOWN,
+            false => edges.max(corners),
+        };
+        let is_known = spread <= MAX_SPREAD;
+        self.spread = if is_known { spread } else { UNKNOWN };
+        self.side_spread = outward.map(|beyond| {
+            let shares = [0, 1, 2].map(|side| of_edges[side] * outward[side].dot(beyond));
+            let edges = shares.into_iter().fold(0.0, f64::max) + 0.5 * edges * edges;
+            // Rounded up, because the spread is a bound.
+            (self.spread.min(edges.max(corners)) as f32).next_up()
+        });
+        if !is_known {
+            self.side_spread = [UNKNOWN as f32; 3];
         }
-        let mut spread = 0.0_f64;
-        for (k, around) in around.into_iter().enumerate() {
-            if self.has_edge[k] {
-                spread = spread.max(match self.across[k] == DVec3::ZERO {
-                    true => UNKNOWN,
-                    false => (self.normal + self.across[k]).length(),
-                });
-            }
-            if self.has_corner[k] {
-                spread = spread.max(around);
-            }
-        }
-        if spread > MAX_SPREAD { UNKNOWN } else { spread }
     }
 }
 

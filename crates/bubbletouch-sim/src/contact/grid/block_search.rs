@@ -4,14 +4,13 @@
 //! ([`mesh_blocks`](crate::objects::mesh_blocks)). The taxel comes from below, so d points down. Normals that certainly point down, or up, determine the side
 //! of the surface. If the side is not certain, d is any unit vector.
 //!
-//! The loops over lanes are short and without branches, and use `max` and `min` instead of comparisons. The compiler converts such loops to vector
-//! instructions.
+//! Each function has one loop over the lanes without branches, whose long body is not unrolled. The compiler converts such loops to vector instructions.
 //!
 //! All bounds are enlarged by `slack`, far more than the rounding of single precision, so they never exclude a contact.
 
 #![expect(
     clippy::needless_range_loop,
-    reason = "a loop over the lanes of several arrays is clearer with an index"
+    reason = "a loop over the axes of several vectors is clearer with an index"
 )]
 
 use super::lines::{GridLines, Lines};
@@ -63,38 +62,51 @@ impl LaneLines {
     /// Returns the first line at or above `low` and the line after the last line at or below `high`. The results are whole numbers, rounded outwards up to the
     /// slack of the bounds.
     #[inline(always)]
-    fn between(&self, low: &Lane, high: &Lane) -> [Lane; 2] {
-        let mut ranges = [[0.0; LANES]; 2];
-        for k in 0..LANES {
-            let first = (low[k] - self.first) * self.density + 0.5;
-            let last = (high[k] - self.first) * self.density + 0.5;
-            ranges[0][k] = nearest_whole(first.max(0.0).min(self.n));
-            ranges[1][k] = nearest_whole(last.max(0.0).min(self.n));
-        }
-        ranges
+    fn between(&self, low: f32, high: f32) -> [f32; 2] {
+        let line = |place: f32| {
+            let line = (place - self.first) * self.density + 0.5;
+            nearest_whole(least(most(line, 0.0), self.n))
+        };
+        [line(low), line(high)]
+    }
+
+    /// Returns the place of a line, metres.
+    #[inline(always)]
+    fn at(&self, line: f32) -> f32 {
+        self.first + line * self.pitch
     }
 }
+
+/// Number 2²³, from which numbers in single precision have no fractions.
+const WHOLE: f32 = 8_388_608.0;
 
 /// Rounds a number from 0 to 2²² to the nearest whole number. Unlike `f32::round`, the function takes two vector instructions on any processor.
 #[inline(always)]
 fn nearest_whole(number: f32) -> f32 {
-    /// Number 2²³, from which numbers in single precision have no fractions.
-    const WHOLE: f32 = 8_388_608.0;
     (number + WHOLE) - WHOLE
 }
 
-/// Returns one bit for each lane whose value is negative.
+/// Converts a whole number from 0 to 2²² to an integer.
 #[inline(always)]
-fn negative(values: &Lane) -> u32 {
-    let mut bits = 0;
-    for (lane, &value) in values.iter().enumerate() {
-        bits |= u32::from(value < 0.0) << lane;
-    }
-    bits
+fn integer(number: f32) -> u32 {
+    (number + WHOLE).to_bits() & 0x7f_ffff
+}
+
+/// Returns the smaller number; a single instruction, unlike `f32::min`.
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// Returns the larger number; a single instruction, unlike `f32::max`.
+#[inline(always)]
+fn most(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// Taxels that the triangles of each lane may stop, and a lower bound of their heights.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub(super) struct Candidates {
     /// First column, and the column after the last; whole numbers.
     columns: [Lane; 2],
@@ -108,36 +120,99 @@ pub(super) struct Candidates {
 }
 
 impl Candidates {
-    /// Removes lanes with one candidate and a positive value.
-    #[inline(always)]
-    fn remove_if_positive(&mut self, values: &Lane) {
-        let mut kept = [0.0; LANES];
-        for lane in 0..LANES {
-            let n_columns = self.columns[1][lane] - self.columns[0][lane];
-            let n_rows = self.rows[1][lane] - self.rows[0][lane];
-            let is_one = (1.5 - n_columns).min(1.5 - n_rows);
-            // Positive if the lane has one candidate and is to be removed.
-            kept[lane] = -is_one.min(values[lane]);
-        }
-        self.lanes &= !negative(&kept);
-    }
+    const NONE: Self = Self {
+        columns: [[0.0; LANES]; 2],
+        rows: [[0.0; LANES]; 2],
+        low: [0.0; LANES],
+        lanes: 0,
+        behind: 0,
+    };
 
     /// Returns the columns and the rows of the candidates in a lane.
     #[inline(always)]
     pub fn rectangle(&self, lane: usize) -> [Range<usize>; 2] {
-        [&self.columns, &self.rows]
-            .map(|[first, last]| first[lane] as u32 as usize..last[lane] as u32 as usize)
+        let range =
+            |[first, last]: &[Lane; 2]| first[lane] as u32 as usize..last[lane] as u32 as usize;
+        [range(&self.columns), range(&self.rows)]
     }
 }
 
-/// Bounds of the centres of stopped taxels.
+/// Triangles of a block in the frame of the grid.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct PlacedBlock {
+    /// Candidates of the triangles. Lanes with few candidates are omitted from `lanes`.
+    pub candidates: Candidates,
+    /// Largest number of candidates among the triangles with few candidates.
+    pub n_few: u32,
+    /// Numbers of columns and rows of the candidates of triangles with few candidates; no rows for other triangles.
+    n_columns: Lane,
+    n_rows: Lane,
+    /// Corners (x, y), moved by the radius along the directions of contact, metres.
+    corners: [[Lane; 2]; 3],
+    /// −1 if the triangle is clockwise seen from above, otherwise 1.
+    sign: Lane,
+    /// Distance beside the triangle, metres, from which taxels are not stopped.
+    wide: Lane,
+    /// Height at which the plane of the face stops a taxel at the first corner, metres, and its slope along x and y.
+    height: Lane,
+    slope: [Lane; 2],
+    /// Distances of the lower and the upper bound of a taxel's height from this height, metres; infinite if the triangle is steep, or if the directions of contact
+    /// are not certain. The upper bound is valid for taxels under the face.
+    below: Lane,
+    above: Lane,
+}
+
+impl PlacedBlock {
+    pub const EMPTY: Self = Self {
+        candidates: Candidates::NONE,
+        n_few: 0,
+        n_columns: [0.0; LANES],
+        n_rows: [0.0; LANES],
+        corners: [[[0.0; LANES]; 2]; 3],
+        sign: [0.0; LANES],
+        wide: [0.0; LANES],
+        height: [0.0; LANES],
+        slope: [[0.0; LANES]; 2],
+        below: [0.0; LANES],
+        above: [0.0; LANES],
+    };
+}
+
+/// One candidate of each triangle of a block.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Tested {
+    pub columns: [u32; LANES],
+    pub rows: [u32; LANES],
+    /// Lower bounds of the heights at which the triangles stop the taxels, metres.
+    pub low: Lane,
+    /// Upper bounds of these heights, metres; infinite if a triangle may not stop the taxel.
+    pub high: Lane,
+    /// One bit for each triangle that may stop the taxel.
+    pub lanes: u32,
+}
+
+/// Bounds of the centres of taxels that the triangles of one lane stop.
 struct Bounds {
-    low: [Lane; 3],
-    high: [Lane; 3],
-    /// Highest points of the triangles, metres.
-    top: Lane,
-    /// Heights below which triangles count as behind the substrate, metres.
-    back: Lane,
+    low: [f32; 3],
+    high: [f32; 2],
+    /// Highest point of the triangles, metres.
+    top: f32,
+    /// Height below which triangles count as behind the substrate, metres.
+    back: f32,
+}
+
+/// Candidates of one lane.
+struct Found {
+    columns: [f32; 2],
+    rows: [f32; 2],
+    /// Whether there are candidates that the triangles of the lane may stop below the limit.
+    is_wanted: bool,
+    /// Whether triangles may lie behind the substrates of the candidates.
+    is_behind: bool,
+    /// Whether there is only one candidate.
+    is_one: bool,
 }
 
 impl BlockSearch {
@@ -166,240 +241,249 @@ impl BlockSearch {
     /// Returns the candidates of the children of a node below a limit, metres.
     #[inline(always)]
     pub fn node(&self, node: &BlockNode, limit: f32) -> Candidates {
-        let axis = self.turned(&node.axis);
-        let mut center = self.turned(&node.center);
-        let mut half = [[0.0; LANES]; 3];
-        for (k, half) in half.iter_mut().enumerate() {
-            let [a, b, c] = self.rows[k].map(f32::abs);
-            for lane in 0..LANES {
-                center[k][lane] += self.center[k];
-                half[lane] =
-                    a * node.half[0][lane] + b * node.half[1][lane] + c * node.half[2][lane];
-            }
-        }
-        let mut bottom = [0.0; LANES];
+        let [to_x, to_y, up] = self.rows;
+        let mut candidates = Candidates::NONE;
+        let (mut lanes, mut behind) = (0, 0);
         for lane in 0..LANES {
-            bottom[lane] = center[2][lane] - half[2][lane];
-        }
-        let (shift, spread) = self.directions(&axis[2], &node.spread, &bottom);
-        let mut middle = center;
-        let mut bounds = Bounds {
-            low: center,
-            high: center,
-            top: center[2],
-            back: center[2],
-        };
-        for k in 0..3 {
-            for lane in 0..LANES {
-                middle[k][lane] += shift[lane] * axis[k][lane];
-                let wide = half[k][lane] + spread[lane] + self.slack;
-                bounds.low[k][lane] = middle[k][lane] - wide;
-                bounds.high[k][lane] = middle[k][lane] + wide;
+            let axis = self.turned(get(&node.axis, lane));
+            let center = self.placed(get(&node.center, lane));
+            let own = get(&node.half, lane);
+            let mut half = [0.0; 3];
+            for k in 0..3 {
+                let [a, b, c] = self.rows[k];
+                half[k] = a.abs() * own[0] + b.abs() * own[1] + c.abs() * own[2];
             }
+            let (shift, spread) = self.directions(axis[2], node.spread[lane], center[2] - half[2]);
+            let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+            let mut middle = [0.0; 3];
+            for k in 0..3 {
+                middle[k] = center[k] + shift * axis[k];
+                let wide = half[k] + spread + self.slack;
+                (low[k], high[k]) = (middle[k] - wide, middle[k] + wide);
+            }
+            let top = center[2] + half[2];
+            let bounds = Bounds {
+                low,
+                high: [high[0], high[1]],
+                top,
+                // Triangles that reach in front of the substrate are examined one by one.
+                back: top + self.reach,
+            };
+            let found = self.find(&bounds, limit);
+            // A single candidate may be beside the shadow of the bounding box, enlarged by `spread`. Let a line have the direction u and contain the point o,
+            // and let a box around the origin have the half sizes h. The line misses the box if |o × u| exceeds `h_j |u_k| + h_k |u_j|` in a component i. In
+            // the frame of the mesh, u is the third row of the rotation matrix.
+            let x = self.columns.at(found.columns[0]) - middle[0];
+            let y = self.rows_of_taxels.at(found.rows[0]) - middle[1];
+            let mut gap = f32::NEG_INFINITY;
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let along_x = to_x[j] * up[k] - to_x[k] * up[j];
+                let along_y = to_y[j] * up[k] - to_y[k] * up[j];
+                let reach = own[j] * up[k].abs() + own[k] * up[j].abs();
+                gap = most(gap, (along_x * x + along_y * y).abs() - reach);
+            }
+            let is_missed = found.is_one & (gap > spread + 2.0 * self.slack);
+            for k in 0..2 {
+                candidates.columns[k][lane] = found.columns[k];
+                candidates.rows[k][lane] = found.rows[k];
+            }
+            candidates.low[lane] = low[2];
+            lanes |= u32::from(found.is_wanted & !is_missed) << lane;
+            behind |= u32::from(found.is_behind) << lane;
         }
-        for lane in 0..LANES {
-            bounds.top[lane] += half[2][lane];
-            // Triangles that reach in front of the substrate are examined one by one.
-            bounds.back[lane] = bounds.top[lane] + self.reach;
-        }
-        let mut candidates = self.candidates(&bounds, limit, node.used);
-        let [x, y, _] = middle;
-        self.rule_out_boxes(&mut candidates, (&[x, y], &node.half), &spread);
+        candidates.lanes = lanes & node.used;
+        candidates.behind = behind & node.used;
         candidates
     }
 
-    /// Removes lanes with one candidate taxel that is beside the shadow of the bounding box, with the centre `middle` and enlarged by `spread`.
-    ///
-    /// Let a line have the direction u and contain the point o, and let a box around the origin have the half sizes h. The line misses the box if |o × u|
-    /// exceeds `h_j |u_k| + h_k |u_j|` in a component i. In the frame of the mesh, u is the third row of the rotation matrix.
+    /// Places the triangles of a block, and finds their candidates below a limit, metres. Triangles with at most `few` candidates have few candidates.
     #[inline(always)]
-    fn rule_out_boxes(
-        &self,
-        candidates: &mut Candidates,
-        (middle, half): (&[Lane; 2], &[Lane; 3]),
-        spread: &Lane,
-    ) {
-        let [to_x, to_y, up] = self.rows;
-        let [mut x, mut y] = self.first_candidates(candidates);
+    pub fn block(&self, block: &Block, (limit, few): (f32, u32), placed: &mut PlacedBlock) {
+        let (mut lanes, mut behind, mut n_few) = (0, 0, 0);
+        let [a, b, c] = &block.corners;
         for lane in 0..LANES {
-            x[lane] -= middle[0][lane];
-            y[lane] -= middle[1][lane];
-        }
-        let mut gap = [f32::NEG_INFINITY; LANES];
-        for (j, k) in [(1, 2), (2, 0), (0, 1)] {
-            let (along_x, along_y) = (
-                to_x[j] * up[k] - to_x[k] * up[j],
-                to_y[j] * up[k] - to_y[k] * up[j],
-            );
-            let (up_j, up_k) = (up[j].abs(), up[k].abs());
-            for lane in 0..LANES {
-                let cross = (along_x * x[lane] + along_y * y[lane]).abs();
-                let reach = half[j][lane] * up_k + half[k][lane] * up_j;
-                gap[lane] = gap[lane].max(cross - reach);
-            }
-        }
-        for lane in 0..LANES {
-            gap[lane] -= spread[lane] + 2.0 * self.slack;
-        }
-        candidates.remove_if_positive(&gap);
-    }
-
-    /// Returns the positions of the first candidate of each lane, metres.
-    #[inline(always)]
-    fn first_candidates(&self, candidates: &Candidates) -> [Lane; 2] {
-        let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
-        for lane in 0..LANES {
-            x[lane] = self.columns.first + candidates.columns[0][lane] * self.columns.pitch;
-        }
-        for lane in 0..LANES {
-            y[lane] =
-                self.rows_of_taxels.first + candidates.rows[0][lane] * self.rows_of_taxels.pitch;
-        }
-        [x, y]
-    }
-
-    /// Returns the candidates of the triangles of a block below a limit, metres.
-    #[inline(always)]
-    pub fn block(&self, block: &Block, limit: f32) -> Candidates {
-        let normal = self.turned(&block.normal);
-        let mut corners = [[[0.0; LANES]; 3]; 3];
-        for (turned, corner) in corners.iter_mut().zip(&block.corners) {
-            *turned = self.turned(corner);
+            let normal = self.turned(get(&block.normal, lane));
+            let a = self.placed(get(a, lane));
+            let b = self.placed(get(b, lane));
+            let c = self.placed(get(c, lane));
+            let bottom = least(least(a[2], b[2]), c[2]);
+            let (shift, spread) = self.directions(normal[2], block.spread[lane], bottom);
+            let wide = spread + self.slack;
+            // No direction is longer than one.
+            let far = self.reach + self.slack;
+            let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
             for k in 0..3 {
-                for lane in 0..LANES {
-                    turned[k][lane] += self.center[k];
+                let lowest = least(least(a[k], b[k]), c[k]);
+                let highest = most(most(a[k], b[k]), c[k]);
+                let moved = shift * normal[k];
+                low[k] = most(lowest + moved - wide, lowest - far);
+                high[k] = least(highest + moved + wide, highest + far);
+            }
+            let bounds = Bounds {
+                low,
+                high: [high[0], high[1]],
+                top: most(most(a[2], b[2]), c[2]),
+                back: bottom,
+            };
+            let found = self.find(&bounds, limit);
+            let corners = [a, b, c];
+            for k in 0..2 {
+                let moved = shift * normal[k];
+                for corner in 0..3 {
+                    placed.corners[corner][k][lane] = corners[corner][k] + moved;
                 }
             }
+            let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+            placed.sign[lane] = if area > 0.0 { 1.0 } else { -1.0 };
+            let is_certain = shift != 0.0;
+            placed.wide[lane] = spread + 2.0 * self.slack;
+            // A ball that touches the triangle at a point is at most as far from the plane of the triangle as from the point. Its centre is therefore not below
+            // the plane moved down by the radius.
+            let steepness = 1.0 / normal[2];
+            let is_flat = normal[2].abs() > 1e-3;
+            let down = if is_certain {
+                normal[2].abs()
+            } else {
+                steepness.abs()
+            };
+            placed.height[lane] = a[2] - self.reach * down;
+            for k in 0..2 {
+                let slope = -normal[k] * steepness;
+                placed.slope[k][lane] = if is_flat { slope } else { 0.0 };
+            }
+            // The plane is evaluated at most this far from the first corner. The rounding of the normal tilts the plane by up to 1e-6 |1/n_z|.
+            let far = (high[0] - low[0]) + (high[1] - low[1]) + 2.0 * self.reach;
+            let error = (4.0 * self.slack + 1e-6 * far * steepness.abs()) * steepness.abs();
+            placed.below[lane] = if is_flat { error } else { f32::INFINITY };
+            placed.above[lane] = if is_flat & is_certain {
+                error
+            } else {
+                f32::INFINITY
+            };
+            let n_columns = found.columns[1] - found.columns[0];
+            let n_rows = found.rows[1] - found.rows[0];
+            let n = integer(n_columns * n_rows);
+            let has_few = found.is_wanted & (n <= few);
+            placed.n_columns[lane] = n_columns;
+            placed.n_rows[lane] = if has_few { n_rows } else { 0.0 };
+            n_few = n_few.max(if has_few { n } else { 0 });
+            for k in 0..2 {
+                placed.candidates.columns[k][lane] = found.columns[k];
+                placed.candidates.rows[k][lane] = found.rows[k];
+            }
+            placed.candidates.low[lane] = low[2];
+            lanes |= u32::from(found.is_wanted & !has_few) << lane;
+            behind |= u32::from(found.is_behind) << lane;
         }
-        let [a, b, c] = &corners;
-        let mut bottom = [0.0; LANES];
-        for lane in 0..LANES {
-            bottom[lane] = a[2][lane].min(b[2][lane]).min(c[2][lane]);
-        }
-        let (shift, spread) = self.directions(&normal[2], &block.spread, &bottom);
-        let mut bounds = Bounds {
-            low: *a,
-            high: *a,
-            top: [0.0; LANES],
-            back: bottom,
+        placed.n_few = n_few;
+        placed.candidates.lanes = lanes & block.used;
+        placed.candidates.behind = behind & block.used;
+    }
+
+    /// Tests candidate `number` of each triangle with few candidates. The taxel may be beside the triangle, moved by `shift` along its normal and widened by
+    /// `spread`.
+    #[inline(always)]
+    pub fn test(&self, block: &Block, placed: &PlacedBlock, number: u32) -> Tested {
+        let mut tested = Tested {
+            columns: [0; LANES],
+            rows: [0; LANES],
+            low: [0.0; LANES],
+            high: [0.0; LANES],
+            lanes: 0,
         };
+        let mut lanes = 0;
+        let number = number as f32;
         for lane in 0..LANES {
-            bounds.top[lane] = a[2][lane].max(b[2][lane]).max(c[2][lane]);
-        }
-        for k in 0..3 {
-            for lane in 0..LANES {
-                let (a, b, c) = (a[k][lane], b[k][lane], c[k][lane]);
-                let low = a.min(b).min(c);
-                let high = a.max(b).max(c);
-                let (shift, wide) = (shift[lane] * normal[k][lane], spread[lane] + self.slack);
-                // No direction is longer than one.
-                let far = self.reach + self.slack;
-                bounds.low[k][lane] = (low + shift - wide).max(low - far);
-                bounds.high[k][lane] = (high + shift + wide).min(high + far);
-            }
-        }
-        let mut candidates = self.candidates(&bounds, limit, block.used);
-        self.rule_out(&mut candidates, &corners, &normal, (&shift, &spread));
-        candidates
-    }
-
-    /// Removes lanes with one candidate taxel that is beside the triangle, moved by `shift` along its normal and widened by `spread`.
-    #[inline(always)]
-    fn rule_out(
-        &self,
-        candidates: &mut Candidates,
-        [a, b, c]: &[[Lane; 3]; 3],
-        normal: &[Lane; 3],
-        (shift, spread): (&Lane, &Lane),
-    ) {
-        let [mut x, mut y] = self.first_candidates(candidates);
-        let mut sign = [0.0; LANES];
-        let mut gap = [f32::NEG_INFINITY; LANES];
-        for lane in 0..LANES {
-            x[lane] -= shift[lane] * normal[0][lane];
-            y[lane] -= shift[lane] * normal[1][lane];
-        }
-        for lane in 0..LANES {
-            // Positive if the triangle is counter-clockwise seen from above.
-            let (ux, uy) = (b[0][lane] - a[0][lane], b[1][lane] - a[1][lane]);
-            let (vx, vy) = (c[0][lane] - a[0][lane], c[1][lane] - a[1][lane]);
-            sign[lane] = if ux * vy - uy * vx > 0.0 { 1.0 } else { -1.0 };
-        }
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            for lane in 0..LANES {
-                let (ex, ey) = (to[0][lane] - from[0][lane], to[1][lane] - from[1][lane]);
-                let side = ey * (x[lane] - from[0][lane]) - ex * (y[lane] - from[1][lane]);
+            let n_columns = placed.n_columns[lane];
+            // Rounded down; numbers below zero are not rounded to whole numbers.
+            let row = nearest_whole((number + 0.5) / n_columns + 0.5) - 1.0;
+            let is_candidate = row < placed.n_rows[lane];
+            let column = placed.candidates.columns[0][lane] + (number - row * n_columns);
+            let row = placed.candidates.rows[0][lane] + row;
+            let (x, y) = (self.columns.at(column), self.rows_of_taxels.at(row));
+            let (mut gap, mut outside) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
+            for k in 0..3 {
+                let ([x0, y0], [x1, y1]) = (&placed.corners[k], &placed.corners[(k + 1) % 3]);
+                let (from_x, from_y) = (x0[lane], y0[lane]);
+                let (ex, ey) = (x1[lane] - from_x, y1[lane] - from_y);
+                let side = ey * (x - from_x) - ex * (y - from_y);
                 // The length of the side is at most |ex| + |ey|.
-                let wide = (spread[lane] + 2.0 * self.slack) * (ex.abs() + ey.abs());
-                gap[lane] = gap[lane].max(sign[lane] * side - wide);
+                let length = ex.abs() + ey.abs();
+                let beyond = placed.sign[lane] * side;
+                gap = most(gap, beyond - placed.wide[lane] * length);
+                outside = most(outside, beyond + 2.0 * self.slack * length);
             }
+            let [first, _, _] = &placed.corners;
+            let height = placed.height[lane]
+                + placed.slope[0][lane] * (x - first[0][lane])
+                + placed.slope[1][lane] * (y - first[1][lane]);
+            let above = if outside < 0.0 {
+                placed.above[lane]
+            } else {
+                f32::INFINITY
+            };
+            tested.low[lane] = most(placed.candidates.low[lane], height - placed.below[lane]);
+            tested.high[lane] = height + above;
+            tested.columns[lane] = integer(column);
+            tested.rows[lane] = integer(row);
+            lanes |= u32::from(is_candidate & (gap <= 0.0)) << lane;
         }
-        candidates.remove_if_positive(&gap);
+        tested.lanes = lanes & block.used;
+        tested
     }
 
+    /// Turns a vector from the frame of the mesh to the frame of the grid.
     #[inline(always)]
-    fn turned(&self, vectors: &[Lane; 3]) -> [Lane; 3] {
-        let mut turned = [[0.0; LANES]; 3];
-        for (turned, [a, b, c]) in turned.iter_mut().zip(self.rows) {
-            for lane in 0..LANES {
-                turned[lane] = a * vectors[0][lane] + b * vectors[1][lane] + c * vectors[2][lane];
-            }
-        }
-        turned
+    fn turned(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        let [[a, b, c], [d, e, f], [g, h, i]] = self.rows;
+        [
+            a * x + b * y + c * z,
+            d * x + e * y + f * z,
+            g * x + h * y + i * z,
+        ]
     }
 
-    /// Returns the length by which triangles are moved along their axes, and by which they are then enlarged, metres. `up` contains the vertical components
-    /// of the axes, `bottom` the lowest points of the triangles. Triangles that may be behind the substrate are enlarged by the whole radius, because the
+    /// Moves a point from the frame of the mesh to the frame of the grid.
+    #[inline(always)]
+    fn placed(&self, point: [f32; 3]) -> [f32; 3] {
+        let [x, y, z] = self.turned(point);
+        let [a, b, c] = self.center;
+        [x + a, y + b, z + c]
+    }
+
+    /// Returns the length by which the triangles of a lane are moved along their axis, and by which they are then enlarged, metres. `up` is the vertical
+    /// component of the axis, `bottom` the lowest point of the triangles. Triangles that may be behind the substrate are enlarged by the whole radius, because the
     /// search then evaluates all their parts.
     #[inline(always)]
-    fn directions(&self, up: &Lane, spread: &Lane, bottom: &Lane) -> (Lane, Lane) {
-        let (mut shift, mut wide) = ([0.0; LANES], [0.0; LANES]);
-        for lane in 0..LANES {
-            let is_low = bottom[lane] - self.reach - self.slack < self.behind;
-            let is_certain = (up[lane].abs() > spread[lane] + 1e-5) & !is_low;
-            let side = if up[lane] < 0.0 {
-                self.reach
-            } else {
-                -self.reach
-            };
-            shift[lane] = if is_certain { side } else { 0.0 };
-            wide[lane] = if is_certain {
-                self.reach * spread[lane]
-            } else {
-                self.reach
-            };
-        }
-        (shift, wide)
+    fn directions(&self, up: f32, spread: f32, bottom: f32) -> (f32, f32) {
+        let is_low = bottom - self.reach - self.slack < self.behind;
+        let is_certain = (up.abs() > spread + 1e-5) & !is_low;
+        let side = if up < 0.0 { self.reach } else { -self.reach };
+        (
+            if is_certain { side } else { 0.0 },
+            self.reach * (if is_certain { spread } else { 1.0 }),
+        )
     }
 
     #[inline(always)]
-    fn candidates(&self, bounds: &Bounds, limit: f32, used: u32) -> Candidates {
-        let columns = self.columns.between(&bounds.low[0], &bounds.high[0]);
-        let rows = self.rows_of_taxels.between(&bounds.low[1], &bounds.high[1]);
-        let [first_column, end_column] = &columns;
-        let [first_row, end_row] = &rows;
-        // Negative if there are candidates.
-        let mut beside = [0.0; LANES];
-        for lane in 0..LANES {
-            let no_column = first_column[lane] - end_column[lane] + 0.5;
-            let no_row = first_row[lane] - end_row[lane] + 0.5;
-            beside[lane] = no_column.max(no_row);
-        }
-        let mut near = [0.0; LANES];
-        for lane in 0..LANES {
-            let hidden = self.behind - self.reach - self.slack - bounds.top[lane];
-            near[lane] = beside[lane].max(hidden).max(bounds.low[2][lane] - limit);
-        }
-        let mut behind = [0.0; LANES];
-        for lane in 0..LANES {
-            behind[lane] = beside[lane].max(bounds.back[lane] - self.slack - self.behind);
-        }
-        Candidates {
+    fn find(&self, bounds: &Bounds, limit: f32) -> Found {
+        let columns = self.columns.between(bounds.low[0], bounds.high[0]);
+        let rows = self.rows_of_taxels.between(bounds.low[1], bounds.high[1]);
+        let (n_columns, n_rows) = (columns[1] - columns[0], rows[1] - rows[0]);
+        let is_under = (n_columns > 0.5) & (n_rows > 0.5);
+        let is_in_front = self.behind - self.reach - self.slack < bounds.top;
+        Found {
             columns,
             rows,
-            low: bounds.low[2],
-            lanes: negative(&near) & used,
-            behind: negative(&behind) & used,
+            is_wanted: is_under & is_in_front & (bounds.low[2] < limit),
+            is_behind: is_under & (bounds.back - self.slack < self.behind),
+            is_one: (n_columns < 1.5) & (n_rows < 1.5),
         }
     }
+}
+
+#[inline(always)]
+fn get([x, y, z]: &[Lane; 3], lane: usize) -> [f32; 3] {
+    [x[lane], y[lane], z[lane]]
 }

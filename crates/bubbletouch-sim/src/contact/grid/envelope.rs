@@ -1,28 +1,33 @@
 //! Heights at which meshes stop the taxels of a flat grid, computed only for triangles that taxels may touch.
 //!
-//! The search descends the tree of each mesh ([`block_search`](super::block_search)) and evaluates the remaining triangles for their candidate taxels.
-//! Faces are evaluated row by row, edges and corners taxel by taxel. Nodes and triangles with few candidates are skipped if these taxels are already stopped
-//! below.
+//! The search descends the tree of each mesh ([`block_search`](super::block_search)). Nodes with few candidates are skipped if these taxels are already stopped
+//! below. The remaining triangles are evaluated in one of two ways:
+//!
+//! - A triangle with many candidates is evaluated at once: its face row by row, its edges and corners taxel by taxel.
+//! - A triangle with few candidates gives pairs of a taxel and the triangle. The search bounds the height of each pair from below, and from above if the taxel is
+//!   certainly under the face. At the end of the search, the pairs that no other pair excludes are evaluated many at once ([`pair_batch`](super::pair_batch)).
 //!
 //! In a press from the front, each triangle counts. At a pose, a triangle counts for a taxel unless its far side is behind the taxel's substrate. Triangles
 //! whose near side is in front of the substrate count for each taxel; the rule is evaluated only for other triangles ([`stop_in_front`]).
 
-use super::block_search::{BlockSearch, Candidates};
+use super::block_search::{BlockSearch, Candidates, PlacedBlock, Tested};
 use super::lines::GridLines;
+use super::pair_batch::{Column, EdgePairs, FacePairs, MAY_BE_BEHIND, PAIRS, Pair, Placement};
 use super::placed_objects::{PlacedObjects, TravelGoal};
 use crate::contact::instructions::{Instructions, for_instructions};
 use crate::contact::mesh::skin_mesh::{MeshAt, stop_in_front};
 use crate::contact::mesh::swept_triangle::{FACE_SLACK, SweptEdge, SweptFace, corner_height};
 use crate::mesh::Triangle;
+use crate::objects::Model;
 use crate::objects::mesh_blocks::{ContactTriangle, LANES, MAX_DEPTH, MeshBlocks};
-use crate::objects::{ContactFace, Model};
 use glam::{DMat3, DVec2, DVec3};
 use std::ops::Range;
 
 /// Travel of the patch at which a triangle first stops each taxel, given as the least height in the patch frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Envelope {
-    /// Heights at which triangles stop the taxels, metres, shape (n_taxels,); infinite if no triangle evaluated so far stops the taxel.
+    /// Heights at which triangles stop the taxels, metres, shape (n_taxels,); infinite if no triangle evaluated so far stops the taxel. During a search, some
+    /// heights are upper bounds.
     heights: Vec<f64>,
     n_columns: usize,
     /// Rectangle of taxels that contains all finite heights.
@@ -30,6 +35,8 @@ pub(crate) struct Envelope {
     columns: Range<usize>,
     /// Smallest of the heights, metres; infinite if the goal of the press does not depend on it.
     pub first: f64,
+    /// Scratch memory of the search.
+    pairs: Option<Box<(Vec<Pair>, FacePairs, EdgePairs)>>,
 }
 
 impl Envelope {
@@ -71,6 +78,8 @@ impl Envelope {
             placed.lines.y.positions.len(),
         );
         let mut has_meshes = false;
+        let mut pairs = self.pairs.take().unwrap_or_default();
+        let (waiting, faces, edges) = &mut *pairs;
         for (object, pose) in placed.objects.iter().zip(placed.patch_from_objects) {
             let Model::Mesh(mesh) = object else {
                 continue;
@@ -79,13 +88,20 @@ impl Envelope {
             let reach = placed.radius + mesh.rounding();
             let rotation = DMat3::from_quat(pose.rotation);
             let mut sweep = Sweep {
-                rotation,
-                translation: pose.translation,
-                reach,
+                triangles: &mesh.blocks().triangles,
+                placement: Placement {
+                    rotation,
+                    translation: pose.translation,
+                    reach,
+                },
                 behind: placed.behind,
                 lines: placed.lines,
                 goal,
                 others: first,
+                bound: f64::INFINITY,
+                waiting: &mut *waiting,
+                faces: &mut *faces,
+                edges: &mut *edges,
                 envelope: self,
                 behind_substrate: [0..0, 0..0],
             };
@@ -95,7 +111,32 @@ impl Envelope {
             let may_enter = sweep.behind_substrate;
             self.enter(&MeshAt::new(mesh, pose), placed, may_enter);
         }
+        self.pairs = Some(pairs);
         has_meshes
+    }
+
+    /// Lowers the heights of the taxels of `n` pairs. The loop has no branches, because the processor cannot predict them.
+    #[inline(always)]
+    fn lower_pairs(&mut self, pairs: &[Pair; PAIRS], heights: &Column, n: usize) {
+        let (mut first, mut last) = ([u32::MAX; 2], [0; 2]);
+        for (pair, &height) in pairs.iter().zip(heights).take(n) {
+            let lowest = &mut self.heights[pair.taxel as usize];
+            let is_lower = height < *lowest;
+            *lowest = if is_lower { height } else { *lowest };
+            for (k, line) in [pair.row, pair.column].into_iter().enumerate() {
+                first[k] = first[k].min(if is_lower { line } else { u32::MAX });
+                last[k] = last[k].max(if is_lower { line + 1 } else { 0 });
+            }
+            self.first = if height < self.first {
+                height
+            } else {
+                self.first
+            };
+        }
+        if last[0] > 0 {
+            cover(&mut self.rows, first[0] as usize..last[0] as usize);
+            cover(&mut self.columns, first[1] as usize..last[1] as usize);
+        }
     }
 
     /// Stops the taxels of a rectangle whose substrates are inside the solid mesh.
@@ -135,12 +176,23 @@ fn cover(range: &mut Range<usize>, part: Range<usize>) {
 /// large triangles; if smaller, small triangles are evaluated needlessly.
 const FEW: usize = 4;
 
+/// Maximum number of candidate taxels of a triangle whose pairs are evaluated in batches. If larger, more candidates are tested one after the other; if smaller,
+/// more triangles are evaluated row by row, each with its own branches.
+const MAX_PAIRS: u32 = 8;
+
 /// State of the search over one mesh.
 struct Sweep<'a> {
-    rotation: DMat3,
-    translation: DVec3,
-    /// Sum of a taxel's radius and the rounding of the mesh, metres.
-    reach: f64,
+    /// Triangles in the order of the blocks.
+    triangles: &'a [ContactTriangle],
+    placement: Placement,
+    /// Upper bound of the least height, metres.
+    bound: f64,
+    /// Pairs of taxels and triangles that are not yet evaluated.
+    waiting: &'a mut Vec<Pair>,
+    /// Pairs of taxels and triangles that are evaluated next.
+    faces: &'a mut FacePairs,
+    /// Pairs of taxels and edges that are not yet evaluated.
+    edges: &'a mut EdgePairs,
     /// Height of the substrate, metres; −∞ if the press comes from the front.
     behind: f64,
     lines: &'a GridLines,
@@ -166,6 +218,7 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
     const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
     let mut stack = [(f32::NEG_INFINITY, 0_u32); STACK];
     let mut n_waiting = 1;
+    let mut placed = PlacedBlock::EMPTY;
     while n_waiting > 0 {
         n_waiting -= 1;
         let (low, child) = stack[n_waiting];
@@ -177,14 +230,28 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
         let number = (child / 2) as usize;
         if child % 2 == 1 {
             let block = &blocks.blocks[number];
-            let candidates = bounds.block(block, limit);
-            sweep.note_behind(&candidates);
-            for lane in lanes(candidates.lanes) {
-                let rectangle = candidates.rectangle(lane);
-                if !sweep.is_hidden(&rectangle, candidates.low[lane]) {
-                    let triangle = &blocks.triangles[block.first as usize + lane];
-                    sweep.lower(triangle, rectangle);
+            bounds.block(block, (limit, MAX_PAIRS), &mut placed);
+            sweep.note_behind(&placed.candidates);
+            // The lowest triangle is evaluated first, because it can lower the limit.
+            let (mut large, low) = (placed.candidates.lanes, &placed.candidates.low);
+            while large != 0 {
+                let mut lowest = large.trailing_zeros() as usize;
+                for lane in lanes(large) {
+                    lowest = if low[lane] < low[lowest] {
+                        lane
+                    } else {
+                        lowest
+                    };
                 }
+                large &= !(1 << lowest);
+                if f64::from(low[lowest]) < sweep.limit() {
+                    let rectangle = placed.candidates.rectangle(lowest);
+                    sweep.lower(block.first as usize + lowest, rectangle);
+                }
+            }
+            for number in 0..placed.n_few {
+                let tested = bounds.test(block, &placed, number);
+                sweep.pair(block.first, &tested);
             }
             continue;
         }
@@ -207,6 +274,7 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
             n_waiting += 1;
         }
     }
+    sweep.evaluate_waiting();
 }
 
 /// Returns the indices of the set bits, ascending.
@@ -226,7 +294,9 @@ impl Sweep<'_> {
         match self.goal {
             TravelGoal::Travel(travel) => travel,
             TravelGoal::Pose => 0.0,
-            TravelGoal::Depth(depth) => self.envelope.first.min(self.others) + depth,
+            TravelGoal::Depth(depth) => {
+                self.envelope.first.min(self.bound).min(self.others) + depth
+            }
         }
     }
 
@@ -255,84 +325,145 @@ impl Sweep<'_> {
         }
     }
 
+    /// Adds the pairs of the triangles of a block, the first of which has the index `first`, and the tested taxels that are not stopped below. The heights of the
+    /// taxels are lowered to the upper bounds of their exact heights.
+    #[inline(always)]
+    fn pair(&mut self, first: u32, tested: &Tested) {
+        for lane in lanes(tested.lanes) {
+            let (row, column) = (tested.rows[lane], tested.columns[lane]);
+            let taxel = row as usize * self.envelope.n_columns + column as usize;
+            let (low, high) = (f64::from(tested.low[lane]), f64::from(tested.high[lane]));
+            let height = &mut self.envelope.heights[taxel];
+            if *height <= low {
+                continue;
+            }
+            *height = if high < *height { high } else { *height };
+            self.bound = if high < self.bound { high } else { self.bound };
+            self.waiting.push(Pair {
+                triangle: first + lane as u32,
+                taxel: taxel as u32,
+                row,
+                column,
+                low: tested.low[lane],
+            });
+        }
+    }
+
+    /// Evaluates the waiting pairs whose taxels are not certainly stopped by other triangles.
+    #[inline(always)]
+    fn evaluate_waiting(&mut self) {
+        for number in 0..self.waiting.len() {
+            let pair = self.waiting[number];
+            let is_open = self.envelope.heights[pair.taxel as usize] > f64::from(pair.low);
+            self.faces.add(pair, is_open);
+            if self.faces.n == PAIRS {
+                self.evaluate_faces();
+            }
+        }
+        self.waiting.clear();
+        self.evaluate_faces();
+        self.evaluate_edges();
+    }
+
+    /// Evaluates the waiting pairs of taxels and triangles.
+    #[inline(always)]
+    fn evaluate_faces(&mut self) {
+        let slack = FACE_SLACK * self.placement.reach;
+        self.faces.evaluate(
+            (self.triangles, self.placement),
+            (self.lines, &self.envelope.heights),
+            (slack, self.behind),
+        );
+        let n = self.faces.n;
+        self.envelope
+            .lower_pairs(&self.faces.pairs, &self.faces.heights, n);
+        // The pairs with edges or corners to evaluate are listed without branches, because the processor cannot predict them.
+        let (mut lanes_with_parts, mut n_lanes) = ([0_u8; PAIRS], 0);
+        for lane in 0..n.min(PAIRS) {
+            lanes_with_parts[n_lanes % PAIRS] = lane as u8;
+            n_lanes += usize::from(self.faces.parts[lane] != 0);
+        }
+        for &lane in &lanes_with_parts[..n_lanes.min(PAIRS)] {
+            let lane = usize::from(lane) % PAIRS;
+            let (pair, parts) = (self.faces.pairs[lane], self.faces.parts[lane]);
+            self.lower_beside(pair, parts);
+        }
+        self.faces.n = 0;
+    }
+
+    /// Lowers the height of a taxel to the heights at which the given edges and corners of a triangle stop it.
+    #[inline(always)]
+    fn lower_beside(&mut self, pair: Pair, parts: u64) {
+        let (row, column) = (pair.row as usize, pair.column as usize);
+        let triangle = &self.triangles[pair.triangle as usize];
+        if parts == MAY_BE_BEHIND {
+            let [a, b, c] = triangle.corners;
+            let place = |corner| self.placement.place(corner);
+            let triangle = Triangle([place(a), place(b), place(c)]);
+            return self.lower_by_rule(&triangle, [column..column + 1, row..row + 1]);
+        }
+        let at = DVec2::new(self.lines.x.positions[column], self.lines.y.positions[row]);
+        for part in lanes(parts as u32) {
+            if part < 3 {
+                self.edges.add(pair, at, (triangle, part));
+                continue;
+            }
+            let corner = self.placement.place(triangle.corners[part - 3]);
+            let reach = self.placement.reach;
+            if corner.z - reach < self.envelope.heights[pair.taxel as usize]
+                && let Some(height) = corner_height(corner, reach, at)
+            {
+                self.lower_to(row, column, height);
+            }
+        }
+        if self.edges.n > PAIRS - 3 {
+            self.evaluate_edges();
+        }
+    }
+
+    /// Evaluates the waiting pairs of taxels and edges.
+    #[inline(always)]
+    fn evaluate_edges(&mut self) {
+        self.edges.evaluate(self.placement);
+        let n = self.edges.n;
+        self.envelope
+            .lower_pairs(&self.edges.pairs, &self.edges.heights, n);
+        self.edges.n = 0;
+    }
+
     /// Lowers the heights of a rectangle of taxels to the heights at which a triangle stops them.
     #[inline(always)]
-    fn lower(&mut self, triangle: &ContactTriangle, [columns, rows]: [Range<usize>; 2]) {
-        let place = |corner: DVec3| self.rotation * corner + self.translation;
+    fn lower(&mut self, triangle: usize, [columns, rows]: [Range<usize>; 2]) {
+        let triangle = &self.triangles[triangle];
+        let place = |corner: DVec3| self.placement.place(corner);
         let [a, b, c] = triangle.corners;
         let corners = [place(a), place(b), place(c)];
+        let reach = self.placement.reach;
         let lowest = corners[0].z.min(corners[1].z).min(corners[2].z);
-        if lowest - self.reach < self.behind {
+        if lowest - reach < self.behind {
             return self.lower_by_rule(&Triangle(corners), [columns, rows]);
         }
         let face = &triangle.face;
-        let normal = self.rotation * face.normal;
-        let swept = SweptFace::new(&corners, normal, self.reach);
-        if columns.len() * rows.len() == 1 {
-            let place = (rows.start, columns.start);
-            return self.lower_one(face, (&corners, normal, swept), place);
-        }
-        if let Some(swept) = swept {
+        let normal = self.placement.rotation * face.normal;
+        if let Some(swept) = SweptFace::new(&corners, normal, reach) {
             self.lower_to_face(&swept, [columns.clone(), rows.clone()]);
             cover(&mut self.envelope.rows, rows.clone());
             cover(&mut self.envelope.columns, columns.clone());
         }
         for k in 0..3 {
-            if face.has_edge[k] {
+            if face.has_edge(k) {
                 let (from, to) = (corners[k], corners[(k + 1) % 3]);
-                let across = self.rotation * face.across[k];
-                if let Some(swept) = SweptEdge::new(from, to, self.reach, [normal, across]) {
+                let across = self.placement.rotation * face.across[k];
+                if let Some(swept) = SweptEdge::new(from, to, reach, [normal, across]) {
                     self.lower_under(swept.ground(), [&columns, &rows], |at| swept.height(at));
                 }
             }
-            if face.has_corner[k] && face.is_sharp[k] {
+            if face.has_corner(k) {
                 let corner = corners[k];
-                let ground = (
-                    corner.truncate() - self.reach,
-                    corner.truncate() + self.reach,
-                );
-                let reach = self.reach;
+                let ground = (corner.truncate() - reach, corner.truncate() + reach);
                 self.lower_under(ground, [&columns, &rows], |at| {
                     corner_height(corner, reach, at)
                 });
-            }
-        }
-    }
-
-    /// Lowers the height of one taxel to the height at which a triangle stops it. If the taxel is under the face, no edge or corner is lower.
-    /// Otherwise the function evaluates the sides that have the taxel on their outer side, and the corners of these sides.
-    #[inline(always)]
-    fn lower_one(
-        &mut self,
-        face: &ContactFace,
-        (corners, normal, swept): (&[DVec3; 3], DVec3, Option<SweptFace>),
-        (row, column): (usize, usize),
-    ) {
-        let at = DVec2::new(self.lines.x.positions[column], self.lines.y.positions[row]);
-        let mut is_outside = [true; 3];
-        if let Some(swept) = swept {
-            is_outside = swept.is_outside(at, FACE_SLACK * self.reach);
-            if is_outside == [false; 3] {
-                return self.lower_to(row, column, swept.height_at(at));
-            }
-        }
-        for k in 0..3 {
-            let next = (k + 1) % 3;
-            if face.has_edge[k] && is_outside[k] {
-                let across = self.rotation * face.across[k];
-                let swept = SweptEdge::new(corners[k], corners[next], self.reach, [normal, across]);
-                if let Some(height) = swept.and_then(|swept| swept.height(at)) {
-                    self.lower_to(row, column, height);
-                }
-            }
-            // The corner at the end of side k is the start of the next side.
-            if (is_outside[k] || is_outside[next]) && face.has_corner[next] && face.is_sharp[next] {
-                let lowest = self.envelope.heights[row * self.envelope.n_columns + column];
-                if corners[next].z - self.reach < lowest
-                    && let Some(height) = corner_height(corners[next], self.reach, at)
-                {
-                    self.lower_to(row, column, height);
-                }
             }
         }
     }
@@ -351,7 +482,7 @@ impl Sweep<'_> {
     /// Lowers the heights of the taxels of a rectangle that a face stops, row by row.
     #[inline(always)]
     fn lower_to_face(&mut self, face: &SweptFace, [columns, rows]: [Range<usize>; 2]) {
-        let slack = FACE_SLACK * self.reach;
+        let slack = FACE_SLACK * self.placement.reach;
         let is_for_depth = matches!(self.goal, TravelGoal::Depth(_));
         for row in rows {
             let y = self.lines.y.positions[row];
@@ -400,7 +531,8 @@ impl Sweep<'_> {
         for row in rows {
             for column in columns.clone() {
                 let at = DVec2::new(self.lines.x.positions[column], self.lines.y.positions[row]);
-                if let Some(height) = stop_in_front(triangle, self.reach, at, self.behind) {
+                if let Some(height) = stop_in_front(triangle, self.placement.reach, at, self.behind)
+                {
                     self.lower_to(row, column, height);
                 }
             }

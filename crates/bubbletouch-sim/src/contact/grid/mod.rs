@@ -7,6 +7,7 @@
 //! | `sphere_search` | sphere unions → the spheres that reach a taxel |
 //! | `placed_sphere` | a sphere → the deflections of the taxels under it |
 //! | `block_search` | a mesh → the triangles that taxels may touch |
+//! | `pair_batch` | pairs of a taxel and a triangle → the height at which the triangle stops the taxel |
 //! | `envelope` | meshes → the height at which they stop each taxel |
 //! | `deflection_grid` | all deflections, and the rectangle that contains those above zero |
 //! | `output_buffer` | deflections → a row of the caller's array |
@@ -19,6 +20,7 @@ mod envelope;
 pub(super) mod force;
 mod lines;
 mod output_buffer;
+mod pair_batch;
 mod placed_objects;
 mod placed_sphere;
 mod press;

@@ -72,10 +72,10 @@ impl<'a> TriangleOnRay<'a> {
         let mut height = f64::INFINITY;
         for k in 0..3 {
             let next = (k + 1) % 3;
-            if face.has_edge[k] && is_outside[k] {
+            if face.has_edge(k) && is_outside[k] {
                 height = height.min(self.edge_height(k, &sides[k]));
             }
-            if (is_outside[k] || is_outside[next]) && face.has_corner[next] && face.is_sharp[next] {
+            if (is_outside[k] || is_outside[next]) && face.has_corner(next) {
                 height = height.min(self.corner_height(next));
             }
         }

@@ -1,9 +1,9 @@
 //! Laws of grids pressed on meshes at a pose: comparison with every triangle, with a cast for each taxel, and among vector instructions.
 
 use crate::mesh_shapes::{cuboid, icosphere};
-use crate::random_scenes::{direction, random_pose, rng};
+use crate::random_scenes::{TAXEL, direction, random_pose, rng};
 use bubbletouch_sim::contact::{
-    Instructions, Workspace, press_at_pose, press_with_contacts, stopping_height,
+    Instructions, Workspace, press_at_pose, press_to_depth, press_with_contacts, stopping_height,
 };
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Surface, Triangle, TriangleMesh};
@@ -129,6 +129,53 @@ fn a_grid_on_a_mesh_equals_a_cast_for_each_taxel() {
         n_saturated > 10_000 && n_saturated < n_touched,
         "{n_saturated}"
     );
+}
+
+#[test]
+fn a_grid_on_a_rough_scan_equals_a_cast_for_each_taxel() {
+    let mut n_touched = 0;
+    for case in 0..40 {
+        let mut rng = rng("rough scan", case);
+        // Triangles from a tenth of a pitch to several pitches, and bumps from far smaller than a triangle to spikes.
+        let ball = icosphere(rng.gen_range(5e-3..6e-2), rng.gen_range(3..6));
+        let roughness = 10f64.powf(rng.gen_range(-6.0..-3.0));
+        let bumps = ball.vertices().iter();
+        let bumps = bumps.map(|&vertex| vertex + roughness * direction(&mut rng));
+        let mesh = TriangleMesh::new("rough", bumps.collect(), ball.triangles().to_vec()).unwrap();
+        let grid = Grid {
+            nx: 40,
+            ny: 30,
+            pitch: rng.gen_range(1e-3..3e-3),
+        };
+        let patch = Patch::grid(grid, TAXEL).unwrap();
+        let pose = random_pose(&mut rng, 0.0);
+        let far = Pose::new(pose.rotation, DVec3::new(0.0, 0.0, 0.1));
+        let objects = [model(&mesh, 0.0)];
+        let depth = rng.gen_range(0.2..1.5) * TAXEL.stroke;
+        let mut workspace = Workspace::new();
+        let contact = press_to_depth(&patch, &objects, &[far], depth, &mut workspace).unwrap();
+        let pose = Pose::new(pose.rotation, DVec3::new(0.0, 0.0, 0.1 - contact.travel));
+        let mut casts = Workspace::new();
+        n_touched += press_with_contacts(&patch, &objects, &[pose], &mut casts).n_touched;
+        let mut first: Option<Vec<f64>> = None;
+        for &instructions in Instructions::here() {
+            let mut workspace = Workspace::with(instructions);
+            press_at_pose(&patch, &objects, &[pose], &mut workspace);
+            for (found, expected) in workspace.deflections().iter().zip(casts.deflections()) {
+                let difference = (found - expected).abs();
+                assert!(difference < 1e-12, "case {case}: {found} {expected}");
+            }
+            let bits = first.get_or_insert_with(|| workspace.deflections().to_vec());
+            assert!(
+                bits == workspace.deflections(),
+                "case {case}, {instructions:?}"
+            );
+        }
+        let deepest = casts.deflections().iter().fold(0.0_f64, |a, &b| a.max(b));
+        let expected = depth.min(TAXEL.stroke);
+        assert!((deepest - expected).abs() < 1e-12, "case {case}");
+    }
+    assert!(n_touched > 2_000, "{n_touched}");
 }
 
 /// Returns the deflection that the documented rule gives a taxel at `at`, evaluated over all triangles.

@@ -1,0 +1,302 @@
+//! Contact of pairs of a taxel and a triangle, many pairs at once in vectors of double precision.
+//!
+//! The formulas are the formulas of [`swept_triangle`](crate::contact::mesh::swept_triangle), in the same order of operations. The numbers of the pairs are
+//! stored in columns. The loops over pairs have no branches, and the compiler converts them to vector instructions.
+
+use super::lines::GridLines;
+use crate::contact::mesh::swept_triangle::{HIDDEN_SLACK, STEEP};
+use crate::objects::mesh_blocks::ContactTriangle;
+use glam::{DMat3, DVec2, DVec3};
+
+/// Maximum number of pairs in a batch. If larger, more pairs are evaluated whose taxels are already stopped below; if smaller, vectors are used less well.
+pub(super) const PAIRS: usize = 32;
+/// Number of f64 values in the widest vectors.
+const WIDTH: usize = 8;
+/// One number for each pair.
+pub(super) type Column = [f64; PAIRS];
+type Vectors = [Column; 3];
+
+const UNUSED: Column = [0.0; PAIRS];
+
+/// Bit of [`FacePairs::parts`] for triangles that may be behind the substrates of their taxels.
+pub(super) const MAY_BE_BEHIND: u64 = 1 << 6;
+
+/// Taxel and a triangle that may stop it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pair {
+    /// Index of the triangle in the order of the blocks.
+    pub triangle: u32,
+    /// Index of the taxel, and its row and column.
+    pub taxel: u32,
+    pub row: u32,
+    pub column: u32,
+    /// Lower bound of the height at which the triangle stops the taxel, metres.
+    pub low: f32,
+}
+
+/// Pose of a mesh in the frame of the grid, and the radius of the swept ball.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placement {
+    pub rotation: DMat3,
+    pub translation: DVec3,
+    /// Sum of a taxel's radius and the rounding of the mesh, metres.
+    pub reach: f64,
+}
+
+impl Placement {
+    /// Moves a point from the frame of the mesh to the frame of the grid.
+    #[inline(always)]
+    pub fn place(&self, point: DVec3) -> DVec3 {
+        self.turn(point) + self.translation
+    }
+
+    /// Turns a vector from the frame of the mesh to the frame of the grid.
+    #[inline(always)]
+    fn turn(&self, vector: DVec3) -> DVec3 {
+        self.rotation * vector
+    }
+}
+
+/// Pairs of taxels and triangles, whose faces are evaluated first.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(super) struct FacePairs {
+    x: Column,
+    y: Column,
+    /// Heights at which taxels are stopped by triangles evaluated before, metres.
+    limit: Column,
+    corners: [Vectors; 3],
+    normal: Vectors,
+    spread: Column,
+    side_spread: Vectors,
+    /// Bits of the edges and corners of the triangles; after the evaluation, only of the edges and corners that may stop the taxels, and [`MAY_BE_BEHIND`].
+    pub parts: [u64; PAIRS],
+    /// Heights at which the faces stop the taxels, metres; infinite if the face does not stop the taxel.
+    pub heights: Column,
+    pub pairs: [Pair; PAIRS],
+    pub n: usize,
+}
+
+impl Default for FacePairs {
+    fn default() -> Self {
+        Self {
+            pairs: [Pair::default(); PAIRS],
+            n: 0,
+            x: UNUSED,
+            y: UNUSED,
+            limit: UNUSED,
+            corners: [[UNUSED; 3]; 3],
+            normal: [UNUSED; 3],
+            spread: UNUSED,
+            side_spread: [UNUSED; 3],
+            parts: [0; PAIRS],
+            heights: UNUSED,
+        }
+    }
+}
+
+impl FacePairs {
+    /// Adds a pair if `is_wanted`, without a branch, because the processor cannot predict it.
+    #[inline(always)]
+    pub fn add(&mut self, pair: Pair, is_wanted: bool) {
+        self.pairs[self.n % PAIRS] = pair;
+        self.n += usize::from(is_wanted);
+    }
+
+    /// Copies the numbers of all pairs into columns. Reading many triangles one after the other hides the latency of memory.
+    #[inline(always)]
+    fn read(&mut self, triangles: &[ContactTriangle], lines: &GridLines, heights: &[f64]) {
+        for lane in 0..self.n.min(PAIRS) {
+            let pair = self.pairs[lane];
+            let triangle = &triangles[pair.triangle as usize];
+            let face = &triangle.face;
+            for k in 0..3 {
+                set(&mut self.corners[k], lane, triangle.corners[k]);
+                self.side_spread[k][lane] = f64::from(face.side_spread[k]);
+            }
+            set(&mut self.normal, lane, face.normal);
+            self.spread[lane] = face.spread;
+            self.parts[lane] = u64::from(face.parts);
+            self.x[lane] = lines.x.positions[pair.column as usize];
+            self.y[lane] = lines.y.positions[pair.row as usize];
+            self.limit[lane] = heights[pair.taxel as usize];
+        }
+    }
+
+    /// Evaluates the faces of all pairs. If a taxel is under the face, no edge or corner is lower. Otherwise edges and corners that have the taxel on their outer
+    /// side remain in `parts`.
+    ///
+    /// Faces extend by `slack` metres beyond their sides. Bounds are enlarged by `slack`, far more than rounding errors. Triangles that reach below the height
+    /// `behind` minus the radius, metres, may be behind substrates.
+    #[inline(always)]
+    pub fn evaluate(
+        &mut self,
+        (triangles, placement): (&[ContactTriangle], Placement),
+        (lines, heights): (&GridLines, &[f64]),
+        (slack, behind): (f64, f64),
+    ) {
+        self.read(triangles, lines, heights);
+        let n = self.n.next_multiple_of(WIDTH).min(PAIRS);
+        let reach = placement.reach;
+        for lane in 0..n {
+            let [a, b, c] = &self.corners;
+            let (a, b) = (placement.place(get(a, lane)), placement.place(get(b, lane)));
+            let c = placement.place(get(c, lane));
+            let normal = placement.turn(get(&self.normal, lane));
+            let at = DVec2::new(self.x[lane], self.y[lane]);
+            let sign = if normal.z > 0.0 { 1.0 } else { -1.0 };
+            let shift = -(sign * reach) * normal;
+            let spread = self.spread[lane];
+            let slope = sign * normal.z;
+            let is_steep = slope < STEEP;
+            let is_certain = slope > spread + 1e-6;
+            let swept = [
+                (a + shift).truncate(),
+                (b + shift).truncate(),
+                (c + shift).truncate(),
+            ];
+            let (mut is_near, mut outside) = (true, 0);
+            for k in 0..3 {
+                let (from, to) = (swept[k], swept[(k + 1) % 3]);
+                let edge = to - from;
+                let length = edge.x.abs() + edge.y.abs();
+                let side = sign * edge.perp_dot(at - from);
+                // Distance beyond the side at which the taxel touches neither the side nor its corners.
+                let side_spread = if is_certain {
+                    self.side_spread[k][lane]
+                } else {
+                    2.0
+                };
+                is_near &= side >= -(reach * side_spread + slack) * length;
+                outside |= u64::from((side < -slack * length) | is_steep) << k;
+            }
+            // Corner k is the end of side k − 1.
+            let corners = (outside | (outside << 1) | (outside >> 2)) & 7;
+            let beside = outside | (corners << 3);
+
+            let lowest = least(least(a.z, b.z), c.z);
+            let rise = normal.truncate().dot(at - swept[0]);
+            let height = a.z + shift.z - rise / normal.z;
+            // No contact with the triangle is below the plane of the face, moved down by the radius.
+            let is_lower = height - slack / slope < self.limit[lane];
+            let is_wanted = (is_near & is_lower) | is_steep;
+            let is_behind = lowest - reach < behind;
+            let parts = if is_wanted {
+                self.parts[lane] & beside
+            } else {
+                0
+            };
+            self.parts[lane] = if is_behind { MAY_BE_BEHIND } else { parts };
+            let is_under = (outside == 0) & !is_behind;
+            self.heights[lane] = if is_under { height } else { f64::INFINITY };
+        }
+    }
+}
+
+/// Pairs of taxels and edges of triangles.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(super) struct EdgePairs {
+    x: Column,
+    y: Column,
+    ends: [Vectors; 2],
+    normals: [Vectors; 2],
+    /// Heights at which the edges stop the taxels, metres; infinite if an edge does not stop its taxel.
+    pub heights: Column,
+    pub pairs: [Pair; PAIRS],
+    pub n: usize,
+}
+
+impl Default for EdgePairs {
+    fn default() -> Self {
+        Self {
+            pairs: [Pair::default(); PAIRS],
+            n: 0,
+            x: UNUSED,
+            y: UNUSED,
+            ends: [[UNUSED; 3]; 2],
+            normals: [[UNUSED; 3]; 2],
+            heights: UNUSED,
+        }
+    }
+}
+
+impl EdgePairs {
+    /// Adds the side `side` of a triangle for the taxel of a pair at the position `at`.
+    #[inline(always)]
+    pub fn add(&mut self, pair: Pair, at: DVec2, (triangle, side): (&ContactTriangle, usize)) {
+        let lane = self.n % PAIRS;
+        self.pairs[lane] = pair;
+        (self.x[lane], self.y[lane]) = (at.x, at.y);
+        set(&mut self.ends[0], lane, triangle.corners[side]);
+        set(&mut self.ends[1], lane, triangle.corners[(side + 1) % 3]);
+        set(&mut self.normals[0], lane, triangle.face.normal);
+        set(&mut self.normals[1], lane, triangle.face.across[side]);
+        self.n += 1;
+    }
+
+    /// Evaluates all pairs.
+    #[inline(always)]
+    pub fn evaluate(&mut self, placement: Placement) {
+        let n = self.n.next_multiple_of(WIDTH).min(PAIRS);
+        let radius = placement.reach;
+        for lane in 0..n {
+            let from = placement.place(get(&self.ends[0], lane));
+            let edge = placement.place(get(&self.ends[1], lane)) - from;
+            let slack = HIDDEN_SLACK * radius * (edge.y.abs() + edge.x.abs());
+            let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+            for normals in &self.normals {
+                let normal = placement.turn(get(normals, lane));
+                let shift = radius * (normal.x * -edge.y + normal.y * edge.x);
+                let is_left = normal.z > 0.0;
+                let is_right = !is_left & ((normal.z < 0.0) | (shift != 0.0));
+                let (right_end, left_end) = (slack - shift, shift - slack);
+                high = if is_left & (right_end < high) {
+                    right_end
+                } else {
+                    high
+                };
+                low = if is_right & (left_end > low) {
+                    left_end
+                } else {
+                    low
+                };
+            }
+            let x = self.x[lane] - from.x;
+            let y = self.y[lane] - from.y;
+            let length2 = edge.x * edge.x + edge.y * edge.y;
+            let whole2 = length2 + edge.z * edge.z;
+            let beside = edge.x * y - edge.y * x;
+            let (length, whole) = (length2.sqrt(), whole2.sqrt());
+            let (sine, cosine) = (edge.z / whole, length / whole);
+            let d = beside / length;
+            let r2 = radius * radius - d * d;
+            let r = (if r2 > 0.0 { r2 } else { 0.0 }).sqrt();
+            let foot = (edge.x * x + edge.y * y) / length - r * sine;
+            let is_edge = (length2 > STEEP * STEEP * whole2)
+                & (beside >= low)
+                & (beside <= high)
+                & (beside * beside <= radius * radius * length2)
+                & (foot >= 0.0)
+                & (foot <= length);
+            let height = from.z + foot * (edge.z / length) - r * cosine;
+            self.heights[lane] = if is_edge { height } else { f64::INFINITY };
+        }
+    }
+}
+
+/// Returns the smaller number; a single instruction, unlike `f64::min`.
+#[inline(always)]
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn set([x, y, z]: &mut Vectors, lane: usize, vector: DVec3) {
+    (x[lane], y[lane], z[lane]) = (vector.x, vector.y, vector.z);
+}
+
+#[inline(always)]
+fn get([x, y, z]: &Vectors, lane: usize) -> DVec3 {
+    DVec3::new(x[lane], y[lane], z[lane])
+}
