@@ -69,6 +69,23 @@ def test_arrays_in_memory_give_the_rows_of_files(arrays, usual, tmp_path):
     assert len(list((out / "recorded").glob("*.npy"))) == 3
 
 
+def test_a_layout_is_a_patch_or_an_array(arrays):
+    frames, labels, groups = arrays
+    row, column = np.mgrid[:8, :8]
+    places = 4e-3 * np.stack([column.ravel(), row.ravel(), np.zeros(64)], axis=1)
+    axes = np.tile([0.0, 0.0, 1.0], (64, 1))
+    study = {**STUDY, "recognition": {"classifier": "linear_svm", "features": "fourier_magnitude"}, "sensing": {"ensemble": "identity"}}
+    expected = accuracy(bt.Recorded(frames, labels, groups), study)
+    patch = bt.Patch.grid(8, 8, 4e-3, stroke=5e-3)
+    for layout in (places, np.hstack([places, axes]), patch):
+        found = bt.Recorded(frames.reshape(N, 64), labels, groups, keys={"layout": layout})
+        assert accuracy(found, study) == expected
+    with pytest.raises(ValueError, match=r"recorded.layout: shape \(64, 2\) of float64; a Patch, or positions"):
+        accuracy(bt.Recorded(frames.reshape(N, 64), labels, groups, keys={"layout": places[:, :2]}), study)
+    with pytest.raises(ValueError, match=r"layout-.*\.npz: 63 taxels; 64, as "):
+        accuracy(bt.Recorded(frames.reshape(N, 64), labels, groups, keys={"layout": places[1:]}), study)
+
+
 def test_sensors_in_memory_are_joined(arrays):
     frames, labels, groups = arrays
     whole = bt.Recorded(frames.reshape(N, 64), labels, groups, keys={"full_scale": 2.0})

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from bubbletouch._arrays import Array, as_keys, padded
+from bubbletouch._core import Patch
 
 __all__ = ["Recorded"]
 
@@ -30,7 +31,8 @@ class Recorded:
     groups: group of each touch (grasp, subject, session), shape (n,); None without groups.
     order: letters of the axes of the frames as in `recorded.order`, or a dict by the names of the sensors; None for the default order.
     lengths: number of frames of each touch, shape (n,); None if all touches have the same number.
-    keys: further keys of `[recorded]`, such as {"full_scale": 255.0}. Of several sensors, each has its keys under its name.
+    keys: further keys of `[recorded]`, such as {"full_scale": 255.0}. Of several sensors, each has its keys under its name. The key `layout` may be a
+    Patch, or an array of positions, metres, shape (n_taxels, 3), or of positions and axes, shape (n_taxels, 6).
     """
 
     def __init__(
@@ -84,11 +86,26 @@ def with_files(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
             written[key] = _file(folder, key, frames)
             if lengths is not None:
                 written[key.replace("frames", "lengths")] = _file(folder, "lengths", lengths)
-        elif key in _ARRAYS and not isinstance(value, str | PathLike | float | int):
+        elif key in _ARRAYS and not isinstance(value, str | PathLike | float | int | np.generic):
             written[key] = _file(folder, key, np.asarray(value))
+        elif key == "layout" and not isinstance(value, str | PathLike):
+            written[key] = _layout(folder, value)
         elif value is not None:
             written[key] = value
     return written
+
+
+def _layout(folder: Path, value: Any) -> str:
+    """Writes a layout file of a patch, of positions or of positions and axes, and returns its path."""
+    taxels = np.hstack([value.centers, value.axes]) if isinstance(value, Patch) else np.asarray(value)
+    if taxels.dtype.kind not in "fiu" or taxels.ndim != 2 or taxels.shape[1] not in (3, 6):
+        allowed = "a Patch, or positions (n, 3) in metres, or positions and axes (n, 6)"
+        raise ValueError(f"recorded.layout: shape {taxels.shape} of {taxels.dtype}; {allowed}")
+    # Positions alone are taxels whose axes point along +z.
+    axes = taxels[:, 3:] if taxels.shape[1] == 6 else np.tile([0.0, 0.0, 1.0], (len(taxels), 1))
+    content = io.BytesIO()
+    np.savez(content, positions=taxels[:, :3].astype(np.float64), normals=axes.astype(np.float64))
+    return _written(folder, "layout", ".npz", content.getvalue())
 
 
 def _file(folder: Path, name: str, values: Array) -> str:
@@ -99,8 +116,12 @@ def _file(folder: Path, name: str, values: Array) -> str:
         raise ValueError(f"recorded.{name}: elements of type {values.dtype}; numbers, or texts of labels and groups")
     content = io.BytesIO()
     np.save(content, values, allow_pickle=False)
-    data = content.getvalue()
-    path = folder / f"{name}-{hashlib.sha256(data).hexdigest()[:16]}.npy"
+    return _written(folder, name, ".npy", content.getvalue())
+
+
+def _written(folder: Path, name: str, suffix: str, data: bytes) -> str:
+    """Writes a file that is named after its content, unless it exists, and returns its path."""
+    path = folder / f"{name}-{hashlib.sha256(data).hexdigest()[:16]}{suffix}"
     if not path.exists():
         folder.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part")

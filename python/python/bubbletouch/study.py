@@ -142,7 +142,8 @@ def run(
     callback: function that is called as callback(stage, n_done, n_total), from any thread, at most 20 times per second. If the callback raises an
     exception, the run ends and the exception is passed on.
     recorded: recorded touches: a Recorded, or a dict with keys of `[recorded]` whose files may be arrays, such as {"frames": frames, "labels": labels}.
-    These keys replace the keys of the study. The arrays are stored in the result folder. A list of frames contains touches of unequal length.
+    These keys replace the keys of the study. The arrays are stored in the result folder. A list of frames contains touches of unequal length. The key
+    `layout` may be a Patch, or positions of taxels, metres, shape (n_taxels, 3), or positions and axes, shape (n_taxels, 6).
     classifiers: estimators with fit(X, y) and predict(X) as in scikit-learn, by name; a tuple (estimator, version) sets the version. The study trains each of
     them beside its own classifiers, on its splits and scaled features. A `random_state` that is None becomes the seed of the trial. If there is a
     predict_proba, decisions on several touches add log-probabilities; otherwise they count votes.
