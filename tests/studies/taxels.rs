@@ -159,6 +159,24 @@ fn adaptive_blocks_give_a_frame_per_touch_at_any_budget() {
 }
 
 #[test]
+fn a_learned_estimate_of_adaptive_blocks_is_a_frame_of_equal_readings() {
+    let text = STUDY.replace("\"selected\"", "[\"adaptive\", \"adaptive_learned\"]");
+    let text = text.replace("classifier =", "features = \"descriptors\"\nclassifier =");
+    let tables = Study::new(&text).run();
+    let summary = tables.summary.iter();
+    let accuracies: Vec<_> = summary
+        .map(|(c, score)| (c.measurements, score.accuracy))
+        .collect();
+    assert_eq!(accuracies.len(), 4);
+    assert!(
+        accuracies.iter().all(|(_, accuracy)| *accuracy > 0.3),
+        "{accuracies:?}"
+    );
+    let text = STUDY.replace("\"selected\"", "\"adaptive_learned\"");
+    assert_eq!(features(&text, 0, 0).data.records.ncols(), 576);
+}
+
+#[test]
 fn with_all_readings_adaptive_blocks_are_the_identity() {
     let text = STUDY.replace("measurements = [8, 24]", "measurements = 576");
     let images = "features = [\"raw\", \"descriptors\"]\nclassifier =";

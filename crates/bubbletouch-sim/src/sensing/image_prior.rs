@@ -70,7 +70,7 @@ impl ImagePrior {
 
 /// Returns the frames, followed by equally many copies of each frame, up to `n_frames` in total. Copies are shifted by up to a quarter of the array and may be
 /// mirrored. Shifted images are equally likely, and more frames reduce overfitting.
-fn with_copies(
+pub(super) fn with_copies(
     frames: ArrayView2<f64>,
     (ny, nx): (usize, usize),
     n_frames: usize,

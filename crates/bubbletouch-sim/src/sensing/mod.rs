@@ -13,6 +13,7 @@
 //! | [`Subsample`](Ensemble::Subsample) | one taxel | 1 | m indices |
 //! | [`Selected`](Ensemble::Selected) | one taxel that a [`Selection`] selects on training frames | 1 | m indices |
 //! | [`Adaptive`](Ensemble::Adaptive) | none: m readings of blocks that depend on the frame | at most 1 | nothing |
+//! | [`AdaptiveLearned`](Ensemble::AdaptiveLearned) | none: the readings of `Adaptive`, and an estimate that is learned from training frames | at most 1 | 2 k × n numbers, k components |
 //! | [`Fourier`](Ensemble::Fourier) | a cosine or sine of a low frequency, ±√2/√n at most | 1 | m × n numbers |
 //! | [`PrincipalComponents`](Ensemble::PrincipalComponents) | a principal component of training frames | 1 | m × n numbers |
 //! | [`Identity`](Ensemble::Identity) | one taxel, all n in order | 1 | nothing |

@@ -42,7 +42,7 @@ impl Projection {
         let operator = match ensemble.about().source {
             Source::Drawn(draw) => draw(grid, m, seed),
             Source::Adaptive(adapt) => adapt(grid, m),
-            Source::Learned(_) => {
+            Source::Learned(_) | Source::LearnedAdaptive(_) => {
                 let given = format!("{}, which are learned from touches", ensemble.about().words);
                 return Err(Error::input("ensemble", given, "an ensemble that is drawn"));
             }
@@ -68,17 +68,23 @@ impl Projection {
         m: usize,
         (training, seed): (impl Into<TrainingFrames<'a>>, &Seed),
     ) -> Result<Self> {
-        let Source::Learned(learn) = ensemble.about().source else {
+        let source = ensemble.about().source;
+        if matches!(source, Source::Drawn(_) | Source::Adaptive(_)) {
             return Self::new(ensemble, grid, m, seed);
-        };
+        }
         let n = check_size(grid, m)?;
         let training = training.into();
         assert_eq!(training.frames.ncols(), n, "taxels in a frame");
+        let operator = match source {
+            Source::Learned(learn) => learn(&training, m, seed)?,
+            Source::LearnedAdaptive(learn) => learn(&training, grid, m, seed)?,
+            Source::Drawn(_) | Source::Adaptive(_) => unreachable!("returned above"),
+        };
         Ok(Self {
             ensemble,
             n_taxels: n,
-            n_measurements: m,
-            operator: learn(&training, m, seed)?.into(),
+            n_measurements: ensemble.n_measurements(m, n),
+            operator: operator.into(),
         })
     }
 

@@ -27,18 +27,12 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     is_whole_frame: false,
     needs_rows: true,
     bytes: |_, _| 0.0,
-    source: Source::Adaptive(|grid, m| {
-        Box::new(Adaptive {
-            nx: grid.1,
-            n_readings: m,
-            coarse: split_blocks(grid, (m / COARSE_PART).max(1)),
-        })
-    }),
+    source: Source::Adaptive(|grid, m| Box::new(Adaptive::new(grid, m))),
 };
 
 /// Readout of an array with nx columns, with at most `n_readings` readings per frame.
 #[derive(Debug)]
-struct Adaptive {
+pub(super) struct Adaptive {
     nx: usize,
     n_readings: usize,
     coarse: Vec<Block>,
@@ -46,13 +40,22 @@ struct Adaptive {
 
 /// Block with the sum of its readings. Blocks are ordered by the absolute sum. If the sums are equal, the earlier block is greater.
 #[derive(Clone, Debug)]
-struct ReadBlock {
-    block: Block,
-    sum: f64,
+pub(super) struct ReadBlock {
+    pub block: Block,
+    pub sum: f64,
     number: usize,
 }
 
 impl Adaptive {
+    /// Prepares the readout of an ny × nx array with at most m readings per frame.
+    pub(super) fn new(grid: (usize, usize), m: usize) -> Self {
+        Self {
+            nx: grid.1,
+            n_readings: m,
+            coarse: split_blocks(grid, (m / COARSE_PART).max(1)),
+        }
+    }
+
     fn read(&self, block: Block, number: usize, frame: &[f64]) -> ReadBlock {
         let lines = block.lines(self.nx);
         let sum = lines.map(|taxels| frame[taxels].iter().sum::<f64>()).sum();
@@ -60,7 +63,7 @@ impl Adaptive {
     }
 
     /// Returns the blocks into which the readings divide a frame, with their sums.
-    fn blocks(&self, frame: &[f64]) -> Vec<ReadBlock> {
+    pub(super) fn blocks(&self, frame: &[f64]) -> Vec<ReadBlock> {
         let coarse = self.coarse.iter().cloned().enumerate();
         let coarse = coarse.map(|(number, block)| self.read(block, number, frame));
         let mut largest_first: BinaryHeap<ReadBlock> = coarse.collect();

@@ -24,6 +24,8 @@ pub enum Source {
     Learned(Learn),
     /// Adapted to each frame: earlier readings determine the later readings. The map is not linear; it returns an estimate of the frame, one value per taxel.
     Adaptive(Adapt),
+    /// Adapted to each frame; the estimate of the frame is learned from frames of training touches.
+    LearnedAdaptive(fn(&TrainingFrames, (usize, usize), usize, &Seed) -> Result<Box<dyn Operator>>),
 }
 
 /// Frames of training touches from which a measurement map is learned.
@@ -118,7 +120,8 @@ impl Ensemble {
 
     /// Returns whether the map is learned from frames of training touches.
     pub fn is_learned(self) -> bool {
-        matches!(self.about().source, Source::Learned(_))
+        let source = self.about().source;
+        matches!(source, Source::Learned(_) | Source::LearnedAdaptive(_))
     }
 
     /// Returns whether the map is drawn at random or fixed, and therefore linear and independent of all frames.
@@ -129,7 +132,11 @@ impl Ensemble {
     /// Returns whether a measured frame has one value per taxel: each taxel is measured, or an adaptive readout estimates it.
     pub fn gives_frames(self) -> bool {
         let about = self.about();
-        about.is_whole_frame || matches!(about.source, Source::Adaptive(_))
+        let is_adaptive = matches!(
+            about.source,
+            Source::Adaptive(_) | Source::LearnedAdaptive(_)
+        );
+        about.is_whole_frame || is_adaptive
     }
 
     /// Returns the number of values of a measured frame for n taxels and a requested number m of measurements. The result is n if the ensemble gives one

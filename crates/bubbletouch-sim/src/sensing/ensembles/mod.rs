@@ -15,6 +15,7 @@ ensembles! {
     Subsample subsample "Some taxels, drawn without replacement.";
     Selected selected "Some taxels, selected on frames of training touches by the method `selection`.";
     Adaptive adaptive "Averages over blocks of taxels, chosen anew in each frame: coarse blocks first, then halves of the block with the largest sum, m readings in all. The values of a frame are an estimate of the whole frame.";
+    AdaptiveLearned adaptive_learned "The readings of `adaptive`; the frame is estimated by the mean and the principal components of training frames instead of block means.";
     Fourier fourier "The lowest Fourier coefficients: products of cosines and sines, the lowest frequencies first.";
     PrincipalComponents principal_components "The first principal components of frames that training touches read: directions in which they differ most.";
     Identity identity "The frame itself, whatever m.";
