@@ -3,7 +3,7 @@
 use crate::objects::mesh_blocks::{LANES, Lane};
 use crate::world::LEAF;
 use glam::{BVec4A, Vec4};
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 /// Number of lanes.
 pub(super) const N: usize = 8;
@@ -92,6 +92,14 @@ impl Eight {
 }
 
 impl Mask {
+    /// Returns the mask of the lanes whose bits are set.
+    #[inline(always)]
+    pub fn of_bits(bits: u32) -> Self {
+        let is_set = |lane: u32| bits >> lane & 1 == 1;
+        let four = |k: u32| BVec4A::new(is_set(k), is_set(k + 1), is_set(k + 2), is_set(k + 3));
+        Self([four(0), four(4)])
+    }
+
     /// Returns one bit for each lane that is true.
     #[inline(always)]
     pub fn bits(self) -> u32 {
@@ -128,6 +136,15 @@ impl Sub for Eight {
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self.zip(other, |a, b| a - b)
+    }
+}
+
+impl Div for Eight {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
     }
 }
 

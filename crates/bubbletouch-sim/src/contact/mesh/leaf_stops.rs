@@ -62,7 +62,7 @@ const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
 struct Waiting {
     /// Lower bounds of the heights for each taxel, metres.
     low: [f32; N],
-    /// Smallest of these bounds, metres.
+    /// Lower bound of the heights along the thick line, metres.
     lowest: f32,
     /// Twice the index of a node, or twice the index of a block plus one.
     child: u32,
@@ -147,6 +147,12 @@ impl LeafSearch<'_> {
         low.is_below(Eight::new(&self.limits)).bits()
     }
 
+    /// Returns the largest height along the thick line at which a triangle stops a taxel below its present height, metres.
+    #[inline(always)]
+    fn top(&self) -> f32 {
+        self.lines.top(Eight::new(&self.limits)) + self.lines.slack
+    }
+
     #[inline(always)]
     fn descend(&mut self, stack: &mut [Waiting; STACK]) {
         let blocks = self.mesh.model().blocks();
@@ -162,7 +168,7 @@ impl LeafSearch<'_> {
             let waiting = &stack[n_waiting];
             let (child, number) = (waiting.child, (waiting.child / 2) as usize);
             let taxels = waiting.taxels & self.below(Eight::new(&waiting.low));
-            if taxels == 0 {
+            if taxels == 0 || waiting.lowest > self.top() {
                 continue;
             }
             if child % 2 == 1 {
@@ -185,39 +191,43 @@ impl LeafSearch<'_> {
             lines,
             middle,
             thickness,
-            top,
             slack,
             ..
         } = self.lines;
-        let mut near = 0;
+        let limit = Eight::splat(self.top());
+        let (mut near, mut behind, mut lows) = (0, 0, [[0.0; N]; GROUPS]);
         for group in 0..GROUPS {
             let children = Boxes::of_node(node, group);
             let thick = children.compare::<true>(middle, thickness, *slack);
-            let is_low = thick.low.is_at_most(Eight::splat(top + slack)).bits();
-            near |= (thick.near & is_low) << (N * group);
+            near |= (thick.near & thick.low.is_at_most(limit).bits()) << (N * group);
+            behind |= thick.behind << (N * group);
+            lows[group] = thick.low.to_lanes();
         }
         let start = *n_waiting;
         for lane in set_bits(near & node.used) {
-            let child = Boxes::of_child(node, lane);
-            let pairs = child.compare::<false>(lines, &Thickness::ZERO, *slack);
-            self.behind |= pairs.behind & taxels;
-            let near = pairs.near & taxels & self.below(pairs.low);
-            if near == 0 {
+            let mut waiting = Waiting {
+                low: [f32::NEG_INFINITY; N],
+                lowest: lows[lane / N][lane % N],
+                child: node.children[lane],
+                taxels,
+            };
+            // An inner node in front of all substrates is larger than most leaves, so the comparison with each taxel would exclude few.
+            if waiting.child % 2 == 1 || behind >> lane & 1 == 1 {
+                let child = Boxes::of_child(node, lane);
+                let pairs = child.compare::<false>(lines, &Thickness::ZERO, *slack);
+                self.behind |= pairs.behind & taxels;
+                waiting.taxels &= pairs.near & self.below(pairs.low);
+                waiting.low = pairs.low.to_lanes();
+            }
+            if waiting.taxels == 0 {
                 continue;
             }
-            let low = pairs.low.to_lanes();
-            let lowest = set_bits(near).fold(f32::INFINITY, |lowest, k| lowest.min(low[k]));
             let mut at = *n_waiting;
-            while at > start && stack[at - 1].lowest < lowest {
+            while at > start && stack[at - 1].lowest < waiting.lowest {
                 stack[at] = stack[at - 1];
                 at -= 1;
             }
-            stack[at] = Waiting {
-                low,
-                lowest,
-                child: node.children[lane],
-                taxels: near,
-            };
+            stack[at] = waiting;
             *n_waiting += 1;
         }
     }
@@ -253,11 +263,12 @@ impl LeafSearch<'_> {
             }
             return;
         }
+        let limit = Eight::splat(self.top());
         let mut near = 0;
         for group in 0..GROUPS {
             let triangles = Triangles::of_block(block, group);
             let thick = triangles.compare::<true>(middle, thickness, *slack);
-            near |= thick.near << (N * group);
+            near |= (thick.near & thick.low.is_at_most(limit).bits()) << (N * group);
         }
         for lane in set_bits(near & block.used) {
             let triangle = Triangles::of_lane(block, lane);

@@ -229,6 +229,43 @@ fn the_search_of_a_leaf_finds_the_stop_by_every_triangle() {
 }
 
 #[test]
+fn a_rigid_motion_of_skin_and_mesh_changes_no_stop() {
+    let (mut n_touched, mut n_changed) = (0, 0);
+    for case in 0..300 {
+        let scene = random_scene(case);
+        let mut rng = Seed::new(32).numbered(case).rng();
+        let motion = Pose::new(turn(&mut rng), 0.1 * direction(&mut rng));
+        let patch = &scene.patch;
+        let moved = Scene {
+            patch: Patch::new(
+                "moved",
+                patch.layout().moved(&motion),
+                patch.taxels().clone(),
+            )
+            .unwrap(),
+            mesh: scene.mesh.clone(),
+            pose: motion.compose(&scene.pose),
+        };
+        // The deflection needed by a taxel inside the mesh depends on the ray that enters the mesh, so heights are limited to the stroke.
+        let heights = |scene: &Scene| {
+            let mut heights = vec![0.0; scene.patch.n_taxels()];
+            each_stop(scene, Instructions::Best, |taxel, stop| {
+                let lowest = taxel.behind + taxel.radius;
+                heights[taxel.number as usize] = stop.map_or(0.0, |stop| stop.0.max(lowest));
+            });
+            heights
+        };
+        let (before, after) = (heights(&scene), heights(&moved));
+        n_touched += before.iter().filter(|height| **height < 0.0).count();
+        let pairs = before.iter().zip(&after);
+        n_changed += pairs.filter(|(a, b)| (**a - **b).abs() > 1e-9).count();
+    }
+    assert!(n_touched > 5_000, "{n_touched}");
+    // A ray a hundredth of a radius beside the axis decides whether a substrate is inside the mesh.
+    assert!(n_changed <= n_touched / 1000, "{n_changed} of {n_touched}");
+}
+
+#[test]
 fn the_lowest_stop_of_a_leaf_is_the_lowest_of_its_taxels() {
     let mut n_touched = 0;
     for case in 0..300 {

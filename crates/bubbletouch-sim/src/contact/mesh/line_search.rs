@@ -93,10 +93,14 @@ impl Boxes {
             false => gap.max(hidden - slack2),
         };
         let behind = gap.max(zero - hidden - slack2);
+        let low = contact.low(heights[0], up, lines, slack);
         Pairs {
             near: near.is_at_most(zero).bits(),
             behind: behind.is_at_most(zero).bits(),
-            low: contact.low(heights[0], up, lines, slack),
+            low: match IS_THICK {
+                true => low,
+                false => low.max(contact.entry((&from, &self.half, &self.axis), lines, slack)),
+            },
         }
     }
 }
@@ -213,6 +217,23 @@ impl Directions {
     fn low(&self, bottom: Eight, up: Eight, lines: &Lines, slack: f32) -> Eight {
         // No direction is longer than one.
         (bottom + self.shift * up - self.wide).max(bottom - lines.reach) - Eight::splat(slack)
+    }
+
+    /// Returns lower bounds of the heights at which lines enter boxes, metres. `middle` is relative to the lines.
+    #[inline(always)]
+    fn entry(
+        &self,
+        (middle, half, axis): (&Eight3, &Eight3, &Eight3),
+        lines: &Lines,
+        slack: f32,
+    ) -> Eight {
+        let wide = self.wide + Eight::splat(2.0 * slack);
+        let along = |k: usize| {
+            let moved = middle[k] + self.shift * axis[k];
+            let inverse = lines.inverse[k];
+            moved * inverse - (half[k] + wide) * inverse.abs() + lines.floor[k]
+        };
+        along(0).max(along(1)).max(along(2)) - Eight::splat(slack)
     }
 
     /// Returns the largest component by which lines pass beside boxes, metres; negative for lines that meet a box. `middle` is relative to the lines.

@@ -13,6 +13,9 @@ use glam::DVec3;
 const ROUNDING: f64 = 4e-6;
 /// Cosine below which the direction of a taxel counts as perpendicular to the thick line. Far below any cosine between neighbouring taxels of a smooth layout.
 const STEEP: f32 = 1e-3;
+/// Component of a direction below which the component does not bound the heights at which a line enters a box. If larger, bounds are weaker; if smaller, rounding
+/// errors are enlarged more.
+const SMALL: f32 = 0.02;
 
 /// Axis of a taxel in the frame of a mesh, in double precision.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +35,10 @@ pub(super) struct Lines {
     pub direction: Eight3,
     /// Absolute values of the directions' components.
     pub absolute: Eight3,
+    /// Reciprocals of the directions' components; 0 for components that are too small.
+    pub inverse: Eight3,
+    /// −∞ for components that are too small, otherwise 0.
+    pub floor: Eight3,
     /// Sums of a taxel's radius and the rounding of the mesh, metres.
     pub reach: Eight,
     /// Heights along the lines below which a triangle may lie behind the substrate of a taxel, metres.
@@ -39,6 +46,23 @@ pub(super) struct Lines {
 }
 
 impl Lines {
+    /// Creates lines from their origins and directions.
+    #[inline(always)]
+    fn new((origin, direction): (Eight3, Eight3), reach: Eight, behind: Eight) -> Self {
+        let absolute = direction.map(Eight::abs);
+        let (zero, one) = (Eight::splat(0.0), Eight::splat(1.0));
+        let is_small = absolute.map(|component| component.is_below(Eight::splat(SMALL)));
+        Self {
+            origin,
+            direction,
+            absolute,
+            inverse: [0, 1, 2].map(|k| is_small[k].select(zero, one / direction[k])),
+            floor: is_small.map(|mask| mask.select(Eight::splat(f32::NEG_INFINITY), zero)),
+            reach,
+            behind,
+        }
+    }
+
     /// Returns one line in all lanes.
     #[inline(always)]
     pub fn one(ray: &Ray, center: DVec3, behind: f64) -> Self {
@@ -46,14 +70,11 @@ impl Lines {
             let [x, y, z] = vector.to_array();
             [x, y, z].map(|component| Eight::splat(component as f32))
         };
-        let direction = splat(ray.direction);
-        Self {
-            origin: splat(ray.origin - center),
-            direction,
-            absolute: direction.map(Eight::abs),
-            reach: Eight::splat(ray.reach as f32),
-            behind: Eight::splat(behind as f32),
-        }
+        Self::new(
+            (splat(ray.origin - center), splat(ray.direction)),
+            Eight::splat(ray.reach as f32),
+            Eight::splat(behind as f32),
+        )
     }
 }
 
@@ -95,7 +116,11 @@ pub(super) struct TaxelLines {
     pub middle: Lines,
     pub thickness: Thickness,
     /// Largest height along the thick line of a taxel's centre when a triangle stops the taxel, metres.
-    pub top: f32,
+    top: f32,
+    /// Heights along the thick line of the taxels' centres at rest, metres; −∞ for taxels that are not active.
+    ahead: Eight,
+    /// Cosines between the taxels' axes and the thick line.
+    cosine: Eight,
     /// Bound of rounding errors, metres.
     pub slack: f32,
 }
@@ -128,14 +153,10 @@ impl TaxelLines {
             limit[k] = limits[k] as f32;
             ray
         });
-        let direction = direction.map(|lanes| Eight::new(&lanes));
-        let lines = Lines {
-            origin: origin.map(|lanes| Eight::new(&lanes)),
-            direction,
-            absolute: direction.map(Eight::abs),
-            reach: Eight::new(&reach),
-            behind: Eight::new(&behind),
-        };
+        let [origin, direction] =
+            [origin, direction].map(|vectors| vectors.map(|lanes| Eight::new(&lanes)));
+        let (reach, behind) = (Eight::new(&reach), Eight::new(&behind));
+        let lines = Lines::new((origin, direction), reach, behind);
         let length = dot(&lines.origin, &lines.origin).largest().sqrt() + lines.reach.largest();
         let slack = (ROUNDING * (blocks.radius + f64::from(length))) as f32;
         let mut used = 0;
@@ -147,17 +168,26 @@ impl TaxelLines {
         if active == 0 {
             return None;
         }
-        let lines_and_ends = (&lines, &ends);
-        let (middle, thickness, top) = thick_line(lines_and_ends, ends.may_touch, active);
+        let (middle, thickness, [top, ahead, cosine]) = thick_line((&lines, &ends), active);
         Some(Self {
             rays,
             lines,
             active,
             middle,
             thickness,
-            top,
+            top: top.largest(),
+            ahead,
+            cosine,
             slack,
         })
+    }
+
+    /// Returns the largest height along the thick line of a taxel's centre when a triangle stops the taxel below its limit, metres.
+    #[inline(always)]
+    pub fn top(&self, limits: Eight) -> f32 {
+        let is_backwards = self.cosine.is_at_most(Eight::splat(STEEP)).bits() != 0;
+        let top = (self.ahead + limits * self.cosine).largest();
+        if is_backwards { self.top } else { top }
     }
 }
 
@@ -197,14 +227,11 @@ impl Ends {
     }
 }
 
-/// Returns the thick line around the active lines in all lanes, its thickness, and the largest height along it of a taxel's centre at a stop, metres. At least
-/// one line is active.
+/// Returns the thick line around the active lines in all lanes, and its thickness. At least one line is active. The function also returns, for each lane, the
+/// largest height along the thick line of a taxel's centre at a stop, the height at rest (metres), and the cosine between the axis and the thick line.
 #[inline(always)]
-fn thick_line(
-    (lines, ends): (&Lines, &Ends),
-    is_active: Mask,
-    active: u32,
-) -> (Lines, Thickness, f32) {
+fn thick_line((lines, ends): (&Lines, &Ends), active: u32) -> (Lines, Thickness, [Eight; 3]) {
+    let is_active = Mask::of_bits(active);
     let first = active.trailing_zeros() as usize;
     // Other lanes repeat an active line, so that all lanes count below.
     let pick = |of: Eight| is_active.select(of, Eight::splat(of.to_lanes()[first]));
@@ -231,7 +258,8 @@ fn thick_line(
     let near = square[0].max(square[1]);
     let turned = difference(&direction, &along);
     let cosine = dot(&direction, &along);
-    let substrate = dot(&away, &along) + pick(lines.behind) * cosine;
+    let ahead = dot(&away, &along);
+    let substrate = ahead + pick(lines.behind) * cosine;
     let is_steep = cosine.is_at_most(Eight::splat(STEEP));
     let substrate = is_steep.select(Eight::splat(f32::INFINITY), substrate);
     let thickness = Thickness {
@@ -244,13 +272,9 @@ fn thick_line(
     };
     // The far end is the highest if a taxel's axis points down along the thick line.
     let [low, high, far] = [low, high, far].map(|away| dot(&away, &along));
-    let top = low.max(high).max(far).largest();
-    let line = Lines {
-        origin: middle,
-        direction: along,
-        absolute: along.map(Eight::abs),
-        reach: Eight::splat(reach.largest()),
-        behind: Eight::splat(substrate.largest()),
-    };
-    (line, thickness, top)
+    let top = low.max(high).max(far);
+    let (reach, behind) = (reach.largest(), substrate.largest());
+    let line = Lines::new((middle, along), Eight::splat(reach), Eight::splat(behind));
+    let ahead = is_active.select(ahead, Eight::splat(f32::NEG_INFINITY));
+    (line, thickness, [top, ahead, cosine])
 }
