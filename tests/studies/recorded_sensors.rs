@@ -588,6 +588,16 @@ fn recordings_that_contradict_themselves_are_refused() {
     assert!(
         error(&case, &grids, &tilted).contains("tilted copies of 2 sensors (left 24, right 40)")
     );
+    // Beside a single row of taxels, the distance of neighbours is undefined.
+    let leaky = format!("{SKIN}[signal]\nsteps = [\"crosstalk\"]\ncrosstalk = 0.2\n{RAW}");
+    let columns = sensors("grid = [24, 1]", "grid = [5, 8]");
+    let said = error(&case, &columns, &leaky);
+    assert!(
+        said.contains("\"crosstalk\" of sensors of which one has a single row"),
+        "{said}"
+    );
+    assert!(planned(&case, &grids, &leaky).is_ok());
+    assert!(planned(&case, &format!("sensor = \"left\"\n{columns}"), &leaky).is_ok());
     let named = format!("{SKIN}layout = \"hexagonal\"\ntaxels = 8\n{RAW}");
     assert!(
         error(&case, &grids, &named)

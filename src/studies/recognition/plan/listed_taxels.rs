@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::inputs::content_hash::Hashed;
 use crate::inputs::units::{MAX_SIDE, millimetres};
-use crate::world::{Grid, Layout, nearest_distances};
+use crate::world::{Grid, Layout, Neighbours, Patch, nearest_distances};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -222,6 +222,19 @@ impl ListedTaxels {
     /// Returns the numbers of rows and columns of taxels; `None` for several sensors, or if the taxels are not numbered row by row.
     pub fn sides(&self) -> Option<(usize, usize)> {
         self.sides
+    }
+
+    /// Returns whether taxels of different sensors are neighbours in the patch. The distance of neighbours depends on the local spacing, which is undefined
+    /// beside a single row of taxels.
+    pub fn has_neighbours_across(&self, patch: &Patch) -> bool {
+        let neighbours = Neighbours::new(patch);
+        self.sensors.iter().any(|sensor| {
+            let mut others = sensor
+                .taxels
+                .clone()
+                .flat_map(|taxel| neighbours.of_taxel(taxel));
+            others.any(|other| !sensor.taxels.contains(&other))
+        })
     }
 
     /// Returns the positions of the taxels in pictures, metres.

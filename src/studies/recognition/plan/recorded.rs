@@ -109,6 +109,21 @@ impl Check<'_> {
                 return Err(self.error("signal.steps", given, allowed));
             }
         }
+        let is_of_neighbours = |step: &&StepSpec| match step {
+            StepSpec::Error(error) => error.about().needs_places,
+            StepSpec::Smoothing | StepSpec::Force | StepSpec::Noise => false,
+        };
+        let mut steps = spec.signal.steps.iter();
+        if let Some(step) = steps.find(is_of_neighbours)
+            && array.couples_sensors()
+        {
+            let given = format!(
+                "\"{}\" of sensors of which one has a single row of taxels",
+                step.word()
+            );
+            let allowed = "sensors with rows and columns, or one sensor (recorded.sensor)";
+            return Err(self.error("signal.steps", given, allowed));
+        }
         Ok(vec![array])
     }
 

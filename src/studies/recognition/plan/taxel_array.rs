@@ -122,6 +122,12 @@ impl TaxelArray {
         (self.is_placed && self.listed.is_none()).then_some(self.layout)
     }
 
+    /// Returns whether taxels of different sensors are neighbours.
+    pub fn couples_sensors(&self) -> bool {
+        let listed = self.listed.as_ref();
+        listed.is_some_and(|listed| listed.has_neighbours_across(&self.patch))
+    }
+
     /// Returns words for the layout of the array's taxels, such as `a square grid`.
     pub fn layout_words(&self) -> String {
         match &self.listed {
