@@ -107,7 +107,7 @@ impl ScenePlan {
             spec.layout.pitch_mm().unwrap_or(listed)
         });
         let finest_mm = pitches.fold(f64::INFINITY, f64::min);
-        // Free objects touch only spheres.
+        // Packed spheres are smoother than scans, on which a mesh of another scan meets one facet after another.
         let default_model = match spec.objects.iter().any(|object| object.free.is_some()) {
             true => ModelSpec::Packed,
             false => ModelSpec::Mesh,

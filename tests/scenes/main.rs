@@ -16,6 +16,7 @@ mod scene_cut;
 mod scene_errors;
 mod scene_forces;
 mod scene_laws;
+mod scene_meshes;
 mod scene_mounts;
 mod scene_robots;
 mod scene_signal;

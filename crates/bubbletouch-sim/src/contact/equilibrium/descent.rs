@@ -31,6 +31,8 @@ const ACCEPTED_RESIDUAL: f64 = 1e-5;
 /// Largest step of the bodies, relative to the longest allowed step, for which all possible contacts are collected. A larger value collects more pairs of
 /// spheres and taxels; a smaller value needs more steps.
 const NEARBY: f64 = 0.04;
+/// Value of [`NEARBY`] if a mesh can touch a rigid shape. A mesh that rolls meets a new contact after a part of a triangle, and a step that meets an unknown one is rejected.
+const NEARBY_MESH: f64 = 0.25;
 /// Width of the smoothing of ties (taxels pushed equally far by several spheres). The width is relative to the largest deflection and to the deflection at
 /// which one taxel carries all the weight.
 const SMOOTHING: f64 = 1e-2;
@@ -393,7 +395,8 @@ impl<'a, 'b> Descent<'a, 'b> {
 
     /// Returns the largest step, metres, for which all possible contacts are gathered.
     fn nearby(&self) -> f64 {
-        NEARBY * self.farthest
+        let nearby = if self.has_mesh { NEARBY_MESH } else { NEARBY };
+        nearby * self.farthest
     }
 
     /// Returns the largest deflection of any taxel, metres; 0 if only rigid contacts carry load, `None` if nothing carries load.

@@ -1,0 +1,103 @@
+//! Free objects that are triangle meshes.
+
+use bubbletouch::contact::{Workspace, press_with_contacts};
+use bubbletouch::geometry::Pose;
+use bubbletouch::scene::{Frame, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping};
+use glam::DVec3;
+use std::fs;
+use std::path::Path;
+
+const BOX: &str = "v -15 -11 -9\nv 15 -11 -9\nv -15 11 -9\nv 15 11 -9\nv -15 -11 9\nv 15 -11 9\nv -15 11 9\nv 15 11 9\n\
+    f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+/// Tray of 60 mm width and 14 mm height, with walls of 4 mm. Its origin is the middle of its base.
+const TRAY: &str = "v -30 -30 0\nv 30 -30 0\nv 30 30 0\nv -30 30 0\nv -30 -30 14\nv 30 -30 14\nv 30 30 14\nv -30 30 14\n\
+    v -26 -26 14\nv 26 -26 14\nv 26 26 14\nv -26 26 14\nv -26 -26 4\nv 26 -26 4\nv 26 26 4\nv -26 26 4\n\
+    f 1 4 3 2\nf 13 14 15 16\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 10 9\nf 6 7 11 10\nf 7 8 12 11\nf 8 5 9 12\n\
+    f 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 13 16\n";
+
+fn plan(objects: &str) -> bubbletouch::Result<ScenePlan> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("box.obj"), BOX).unwrap();
+    fs::write(folder.path().join("tray.obj"), TRAY).unwrap();
+    let open = BOX.replace("f 5 6 8 7\n", "");
+    fs::write(folder.path().join("open.obj"), open).unwrap();
+    let text = format!(
+        "title = \"A bed\"\noutput_hz = 20.0\ndt_ms = 5.0\nduration_s = 0.0\n\
+         [[patches]]\nname = \"bed\"\nlayout = {{ grid = {{ nx = 40, ny = 40, pitch_mm = 2.5 }} }}\n\
+         stroke_mm = 6.0\nstiffness_n_per_m = 60.0\n{objects}"
+    );
+    ScenePlan::new("s.toml", folder.path(), SceneSpec::parse("s.toml", &text)?)
+}
+
+/// Returns a free object of a mesh file, at a position in mm.
+fn mesh(name: &str, file: &str, position: [f64; 3], mass: f64) -> String {
+    format!(
+        "[[objects]]\nname = \"{name}\"\nmesh = \"{file}\"\nunit = \"mm\"\nmodel = \"mesh\"\n\
+         at = {{ position_mm = {position:?}, rotation_deg = [0.0, 0.0, 12.0] }}\nfree = {{ mass_kg = {mass:?} }}\n"
+    )
+}
+
+fn first_frame(plan: &ScenePlan) -> Frame {
+    let mut frames: Vec<Frame> = Vec::new();
+    let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
+    simulation.run(&mut [&mut frames]).unwrap();
+    frames.remove(0)
+}
+
+#[test]
+fn a_box_rests_in_a_tray_and_the_bed_carries_both() {
+    let objects = mesh("tray", "tray.obj", [1.0, 0.5, 3.0], 0.1)
+        + &mesh("box", "box.obj", [4.0, -3.0, 18.0], 0.05);
+    let plan = plan(&objects).unwrap();
+    let frame = first_frame(&plan);
+    for (object, mass) in frame.objects.iter().zip([0.1, 0.05]) {
+        assert_eq!(object.held, PoseControl::AtRest);
+        let balance = object.balance.unwrap();
+        assert!(balance.imbalance <= 1e-6, "{}", balance.imbalance);
+        assert!((balance.force - DVec3::new(0.0, 0.0, mass * 9.81)).length() < 1e-6 * mass * 9.81);
+    }
+    let force = frame.patches[0].wrench.force.z;
+    assert!((force + 0.15 * 9.81).abs() < 1e-5, "{force} N");
+    // The forces between the two meshes carry the box.
+    let between: DVec3 = frame.touches.iter().map(|touch| touch.force).sum();
+    assert!((between.z.abs() - 0.05 * 9.81).abs() < 1e-5, "{between}");
+    // The recorded deflections are those of a press at the final poses.
+    let poses: Vec<Pose> = frame.objects.iter().map(|object| object.pose).collect();
+    let mut workspace = Workspace::new();
+    press_with_contacts(&plan.patches[0].skin, &plan.models, &poses, &mut workspace);
+    assert_eq!(frame.patches[0].deflection, workspace.deflections());
+}
+
+#[test]
+fn a_block_in_the_shipped_cup_comes_to_rest() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes/block_in_cup.toml");
+    let frame = first_frame(&ScenePlan::read(&path).unwrap());
+    let held: Vec<_> = frame.objects.iter().map(|object| object.held).collect();
+    assert_eq!(held, [PoseControl::AtRest; 2]);
+    let force = frame.patches[0].wrench.force.z;
+    assert!((force + 0.25 * 9.81).abs() < 1e-5, "{force} N");
+}
+
+#[test]
+fn open_and_overlapping_meshes_beside_others_are_refused() {
+    let said = |objects: String| {
+        let error = plan(&objects).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        error.to_string()
+    };
+    let tray = mesh("tray", "tray.obj", [1.0, 0.5, 3.0], 0.1);
+    assert_eq!(
+        said(tray.clone() + &mesh("box", "open.obj", [4.0, -3.0, 18.0], 0.05)),
+        "s.toml, key objects.box.mesh: an open mesh, beside another object in a scene with a free object; \
+         a closed mesh, or model = \"packed\": an open mesh has no inside"
+    );
+    // The lower corners of the box are 2 mm below the floor of the tray.
+    assert_eq!(
+        said(tray + &mesh("box", "box.obj", [4.0, -3.0, 14.0], 0.05)),
+        "s.toml, key objects.box.at: free object `box` starts 2.0 mm inside `tray`; \
+         free objects that overlap no other object at the start"
+    );
+    // Alone on the skin, an open mesh has a contact without an inside.
+    let alone = plan(&mesh("box", "open.obj", [0.0, 0.0, 12.0], 0.05)).unwrap();
+    assert_eq!(first_frame(&alone).objects[0].held, PoseControl::AtRest);
+}
