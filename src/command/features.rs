@@ -48,6 +48,7 @@ pub fn features(args: &Args) -> Result<()> {
         loaded.part_of(args.configuration),
         (args.configuration, args.trial),
     );
+    part.check_features(which)?;
     let progress = progress::to_stderr();
     let claimed = DataFolder::claim(&args.out, "features", FEATURE_FILES)?;
     output_folder(&args.out)?;

@@ -181,6 +181,14 @@ fn a_cell_or_a_trial_that_the_study_has_not_is_refused() {
             error.contains(": 16; ") && error.contains(allowed),
             "{error}"
         );
-        assert!(!case.path("data/features.npy").exists());
+        assert!(!case.path("data").exists(), "nothing is written");
     }
+    let text = STUDY.replace("[recognition]", "[recognition]\nfeatures = \"mine@1\"");
+    assert_ne!(text, STUDY);
+    case.file("study.toml", text);
+    let output = case.run(&["features", "study.toml", "--out", "data"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("features mine: no code"), "{error}");
+    assert!(!case.path("data").exists(), "nothing is written");
 }

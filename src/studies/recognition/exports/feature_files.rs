@@ -128,6 +128,19 @@ impl StudyPart {
         })
     }
 
+    /// Checks whether the study has the configuration and the trial, and whether the running program provides the features of the configuration.
+    ///
+    /// # Errors
+    /// If one of these conditions is not met.
+    pub fn check_features(&self, (configuration, trial): (usize, usize)) -> Result<()> {
+        let (_, configuration) = find(&self.sweep, configuration)?;
+        self.sweep.trial(&self.plan, trial)?;
+        match configuration.features.foreign() {
+            Some(foreign) => Ok(foreign.n_values(configuration.measurements).map(drop)?),
+            None => Ok(()),
+        }
+    }
+
     /// Simulates the touches of a group of configurations, and computes their measurements in one trial.
     pub(crate) fn measured(
         &self,
