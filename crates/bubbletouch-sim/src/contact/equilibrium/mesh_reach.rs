@@ -242,7 +242,7 @@ impl Probe {
         let rounding = self.reach - self.taxel.radius;
         let reach = Reach::new(corner, rounding, &self.taxel, self.motion)?;
         let found = reach.derivatives();
-        is_nearest(found.gradient.normalize()).then(|| Stop {
+        is_nearest(found.gradient.normalize()).then_some(Stop {
             deflection: reach.deflection,
             center: corner,
             curvature: Curvature {

@@ -196,12 +196,12 @@ impl LeafSearch<'_> {
         } = self.lines;
         let limit = Eight::splat(self.top());
         let (mut near, mut behind, mut lows) = (0, 0, [[0.0; N]; GROUPS]);
-        for group in 0..GROUPS {
+        for (group, low) in lows.iter_mut().enumerate() {
             let children = Boxes::of_node(node, group);
             let thick = children.compare::<true>(middle, thickness, *slack);
             near |= (thick.near & thick.low.is_at_most(limit).bits()) << (N * group);
             behind |= thick.behind << (N * group);
-            lows[group] = thick.low.to_lanes();
+            *low = thick.low.to_lanes();
         }
         let start = *n_waiting;
         for lane in set_bits(near & node.used) {

@@ -15,6 +15,10 @@ pub type Learn = fn(&TrainingFrames, usize, &Seed) -> Result<Box<dyn Operator>>;
 /// Function that prepares the adaptive readout of an ny × nx array with at most m readings per frame, 1 ≤ m ≤ ny · nx.
 pub type Adapt = fn((usize, usize), usize) -> Box<dyn Operator>;
 
+/// Function that prepares an adaptive readout as [`Adapt`] does, and learns the estimate of a frame from training frames.
+pub type LearnAdaptive =
+    fn(&TrainingFrames, (usize, usize), usize, &Seed) -> Result<Box<dyn Operator>>;
+
 /// Origin of a measurement map: drawn at random, learned from frames, or adapted to each frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
@@ -25,7 +29,7 @@ pub enum Source {
     /// Adapted to each frame: earlier readings determine the later readings. The map is not linear; it returns an estimate of the frame, one value per taxel.
     Adaptive(Adapt),
     /// Adapted to each frame; the estimate of the frame is learned from frames of training touches.
-    LearnedAdaptive(fn(&TrainingFrames, (usize, usize), usize, &Seed) -> Result<Box<dyn Operator>>),
+    LearnedAdaptive(LearnAdaptive),
 }
 
 /// Frames of training touches from which a measurement map is learned.
