@@ -51,7 +51,13 @@ fn onset(context: &Context) -> Option<Array2<f64>> {
         return None;
     }
     let stds = context.residuals.std_axis(Axis(0), 0.0);
-    let is_active = stds.mapv(|std| if std > 0.5 * context.active_std { 1.0 } else { 0.0 });
+    let is_active = stds.mapv(|std| {
+        if std > 0.5 * context.active_std {
+            1.0
+        } else {
+            0.0
+        }
+    });
     let (mut onsets, mut at_rest, mut growth) = (Vec::new(), 0.0, 0.0);
     for touch in &context.sample {
         let rows = touch * n_frames..(touch + 1) * n_frames;

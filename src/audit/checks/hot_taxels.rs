@@ -23,7 +23,8 @@ pub fn found(context: &Context) -> Vec<HotTaxel> {
 
 fn run(context: &Context) -> Result<Vec<Finding>> {
     if context.data.grid.is_none() {
-        let why = "The taxels have no rows and columns, so that the taxels around a taxel are unknown.";
+        let why =
+            "The taxels have no rows and columns, so that the taxels around a taxel are unknown.";
         return Ok(vec![Finding::not_checked("", why)]);
     }
     let found = found(context);
