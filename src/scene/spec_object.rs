@@ -40,7 +40,7 @@ pub struct ObjectSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub mesh: Option<FilePath>,
-    /// Contact model of a mesh. Default: spheres around its vertices.
+    /// Contact model of a mesh. Default: `mesh`, or `packed` in a scene with a free object.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelSpec>,
     /// Length unit of a mesh or of spheres. Default: metres. The size must then be between 0.1 mm and 10 m.
