@@ -11,7 +11,8 @@ fn scenes() -> Vec<PathBuf> {
     let paths = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path());
-    let mut paths: Vec<PathBuf> = paths.collect();
+    let is_scene = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml");
+    let mut paths: Vec<PathBuf> = paths.filter(is_scene).collect();
     paths.sort();
     assert!(paths.len() >= 5);
     paths

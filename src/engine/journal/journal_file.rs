@@ -7,6 +7,7 @@ use serde::Serialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::value::RawValue;
 use std::fs::{File, OpenOptions, TryLockError};
+use std::io::ErrorKind::{NotADirectory, NotFound};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, MutexGuard};
@@ -81,7 +82,8 @@ impl Journal {
     /// If the file cannot be read or is damaged.
     pub fn read(path: &Path) -> Result<Option<(Identity, Self)>> {
         let bytes = match std::fs::read(path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            // There is no journal below a path that is a file. A command that makes the folder refuses this path.
+            Err(error) if matches!(error.kind(), NotFound | NotADirectory) => return Ok(None),
             bytes => bytes.map_err(|e| Error::io(path, "read", e))?,
         };
         let (identity, journal) = Self::of_bytes(path, &bytes)?;
