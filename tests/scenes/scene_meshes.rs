@@ -15,6 +15,11 @@ const TRAY: &str = "v -30 -30 0\nv 30 -30 0\nv 30 30 0\nv -30 30 0\nv -30 -30 14
     f 1 4 3 2\nf 13 14 15 16\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 10 9\nf 6 7 11 10\nf 7 8 12 11\nf 8 5 9 12\n\
     f 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 13 16\n";
 
+/// Bed that rises by 20 mm.
+const RISING: &str = "[[robots]]\nname = \"bed\"\nfloating = true\n\
+    motion = { interpolation = \"monotone\", way_points = [\n    { time_s = 0.0 },\n    \
+    { time_s = 0.2 },\n    { time_s = 0.6, position_mm = [0.0, 0.0, 20.0] },\n] }\n";
+
 fn plan(objects: &str) -> bubbletouch::Result<ScenePlan> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("box.obj"), BOX).unwrap();
@@ -76,6 +81,38 @@ fn a_block_in_the_shipped_cup_comes_to_rest() {
     assert_eq!(held, [PoseControl::AtRest; 2]);
     let force = frame.patches[0].wrench.force.z;
     assert!((force + 0.25 * 9.81).abs() < 1e-5, "{force} N");
+}
+
+/// Turned, a corner of the block slides past the border of the floor and below the wall that rises there; the wall must stay a contact. The bed then rises by
+/// 20 mm with both.
+#[test]
+fn a_turned_block_in_the_shipped_cup_rests_and_rises_with_the_bed() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes");
+    let shipped = fs::read_to_string(folder.join("block_in_cup.toml")).unwrap();
+    for yaw in [20.0, 33.0, 61.0] {
+        let turned = shipped
+            .replace("[8.0, 5.0, 0.0]", &format!("[8.0, 5.0, {yaw:?}]"))
+            .replace("duration_s = 0.0\n", "")
+            .replace(
+                "[[patches]]\n",
+                &format!("{RISING}[[patches]]\nrobot = \"bed\"\n"),
+            );
+        let spec = SceneSpec::parse("s.toml", &turned).unwrap();
+        let plan = ScenePlan::new("s.toml", &folder, spec).unwrap();
+        let mut frames: Vec<Frame> = Vec::new();
+        let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+        simulation.run(&mut [&mut frames]).unwrap();
+        let height = |frame: &Frame| frame.objects[0].pose.translation.z;
+        let (first, last) = (&frames[0], frames.last().unwrap());
+        assert!((height(last) - height(first) - 20e-3).abs() < 1e-3, "{yaw}");
+        for frame in &frames {
+            for object in &frame.objects {
+                assert_eq!(object.held, PoseControl::AtRest, "{yaw}");
+                let imbalance = object.balance.unwrap().imbalance;
+                assert!(imbalance <= 1e-6, "{yaw}: {imbalance}");
+            }
+        }
+    }
 }
 
 #[test]

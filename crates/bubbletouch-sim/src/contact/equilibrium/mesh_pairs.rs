@@ -24,8 +24,8 @@ use crate::mesh::{Edge, MeshFeatures};
 use crate::objects::MeshModel;
 use glam::{DMat3, DVec3};
 
-/// Depth, relative to the largest depth that is searched, below which a second face of a penetrated solid is always a contact. If larger, the back of a thin
-/// wall can count; if smaller, corners in a valley can lose one of their two faces during the search.
+/// Depth, relative to the largest depth that is searched, below which a second face of a penetrated solid is always a contact. Behind a valley, [`VALLEY`] gives
+/// this depth. If larger, the back of a thin wall can count; if smaller, corners in a valley can lose one of their two faces during the search.
 const SHALLOW: f64 = 1e-2;
 /// Distance behind a valley up to which its faces continue, relative to the largest depth that is searched. If smaller, corners that penetrate a valley lose its
 /// faces.
@@ -191,6 +191,9 @@ impl Points {
                 return;
             }
         }
+        if nearest.is_some_and(|nearest| self.is_past_valley(mesh, place, nearest, within)) {
+            allowed = allowed.max(2.0 * valley);
+        }
         for &(triangle, normal, height) in &self.faces {
             let face = features.face(triangle);
             let above = normal.dot(outside - face.corners[0]);
@@ -213,6 +216,24 @@ impl Points {
         if reach > 0.0 && !is_inside {
             self.touch_edges(mesh, place, reach + range.gap);
         }
+    }
+
+    /// Returns whether the foot of a point on its nearest face, given by normal and height, is on the part of the face that continues behind a valley. The point
+    /// is then behind the face that rises there, by up to the length of this part.
+    fn is_past_valley(
+        &self,
+        mesh: &MeshModel,
+        place: DVec3,
+        (normal, height): (DVec3, f64),
+        within: f64,
+    ) -> bool {
+        let foot = place - height * normal;
+        let mut nearest = self.faces.iter().filter(|face| face.2 == height);
+        let past = |triangle| {
+            let face = mesh.features().face(triangle);
+            face.beyond(foot, normal, 0.0) > 1e-9 * within
+        };
+        nearest.all(|&(triangle, ..)| past(triangle))
     }
 
     /// Collects the faces whose planes are within a distance of a point and that contain the foot of the point, or miss it by at most `miss` metres. Beside a
