@@ -187,7 +187,8 @@ def _open_csv(file: Path) -> Source:
             raise ValueError(f"row {number} has {len(row)} of {len(names)} columns")
 
     def read(name: str) -> Array:
-        texts = [row[names.index(name)].strip() for row in rows]
+        column = names.index(name)
+        texts = [row[column].strip() for row in rows]
         for kind in (np.int64, np.float64):
             try:
                 # An empty cell is a missing reading.
