@@ -96,9 +96,7 @@ impl AuditFiles {
         let read = || toml::from_str::<RecordedToml>(&text);
         let spec = crate::files::with_folder(self.data.clone(), read).map_err(refuse)?;
         let mut spec = spec.recorded;
-        for file in spec.files_mut() {
-            *file = self.data.join(&*file);
-        }
+        spec.change_files(|_, file| *file = self.data.join(&*file));
         // Checks compare the readings of taxels, so each sensor has an audit of its own.
         let sensors = spec.used_sensors();
         let [(_, spec)] = &sensors[..] else {

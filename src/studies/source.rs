@@ -73,9 +73,7 @@ impl Source {
     pub fn replace_recorded(&self, recorded: &mut RecordedSpec) -> Option<PathBuf> {
         let folder = self.objects.as_ref()?;
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
-        for file in recorded.files_mut() {
-            *file = folder.join(&*file);
-        }
+        recorded.change_files(|_, file| *file = folder.join(&*file));
         Some(folder)
     }
 

@@ -37,6 +37,7 @@ mod recorded;
 mod recorded_arrays;
 mod recorded_law;
 mod recorded_sensors;
+mod recorded_subsets;
 mod repeatability;
 mod sensor_error_names;
 mod shear;

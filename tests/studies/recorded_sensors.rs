@@ -11,7 +11,7 @@ use ndarray_npy::read_npy;
 use std::fmt::Write as _;
 use std::path::Path;
 
-const N: usize = 60;
+pub const N: usize = 60;
 
 /// Returns frames of three classes, 8 × 8, of which an SVM misclassifies some.
 fn frames() -> Array3<f64> {
@@ -23,7 +23,7 @@ fn frames() -> Array3<f64> {
     })
 }
 
-fn written() -> Case {
+pub fn written() -> Case {
     let case = Case::new();
     let frames = frames();
     let list = frames.clone().into_shape_with_order((N, 64)).unwrap();
@@ -52,14 +52,14 @@ fn layout(places: impl Iterator<Item = (f64, f64)>) -> String {
     text
 }
 
-const SKIN: &str = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n";
-const NOISE: &str =
+pub const SKIN: &str = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n";
+pub const NOISE: &str =
     "[signal]\nsteps = [\"gain\", \"noise\"]\ngain_std = 0.1\nnoise_std_full_scale = 0.05\n";
 const COUPLED: &str = "[signal]\nsteps = [\"crosstalk\", \"noise\", \"smoothing\"]\ncrosstalk = 0.2\nnoise_std_full_scale = 0.05\nsmoothing_mm = 3.0\n";
-const RAW: &str = "[sensing]\nmeasurements = 8\n[recognition]\nclassifier = \"linear_svm\"\n";
-const IMAGES: &str = "[sensing]\nensemble = \"identity\"\n[recognition]\nclassifier = \"linear_svm\"\nfeatures = [\"fourier_magnitude\", \"descriptors\"]\n";
+pub const RAW: &str = "[sensing]\nmeasurements = 8\n[recognition]\nclassifier = \"linear_svm\"\n";
+pub const IMAGES: &str = "[sensing]\nensemble = \"identity\"\n[recognition]\nclassifier = \"linear_svm\"\nfeatures = [\"fourier_magnitude\", \"descriptors\"]\n";
 
-fn planned(case: &Case, recorded: &str, rest: &str) -> bubbletouch::Result<RecognitionStudy> {
+pub fn planned(case: &Case, recorded: &str, rest: &str) -> bubbletouch::Result<RecognitionStudy> {
     let folder = case.folder().display().to_string();
     let recorded = recorded.replace("FOLDER/", &format!("{folder}/"));
     laid_out(&format!(
@@ -67,22 +67,22 @@ fn planned(case: &Case, recorded: &str, rest: &str) -> bubbletouch::Result<Recog
     ))
 }
 
-fn rows(case: &Case, recorded: &str, rest: &str) -> Vec<(Configuration, TrialScore)> {
+pub fn rows(case: &Case, recorded: &str, rest: &str) -> Vec<(Configuration, TrialScore)> {
     let study = planned(case, recorded, rest).unwrap_or_else(|error| panic!("{recorded}\n{error}"));
     study.run(&Silent).unwrap().accuracy
 }
 
-fn scores(case: &Case, recorded: &str, rest: &str) -> Vec<TrialScore> {
+pub fn scores(case: &Case, recorded: &str, rest: &str) -> Vec<TrialScore> {
     let rows = rows(case, recorded, rest).into_iter();
     rows.map(|(_, score)| score).collect()
 }
 
-fn error(case: &Case, recorded: &str, rest: &str) -> String {
+pub fn error(case: &Case, recorded: &str, rest: &str) -> String {
     let planned = planned(case, recorded, rest);
     planned.err().expect(recorded).to_string()
 }
 
-const LABELS: &str = "labels = \"FOLDER/labels.npy\"\n";
+pub const LABELS: &str = "labels = \"FOLDER/labels.npy\"\n";
 
 /// Returns `[recorded]` with the sensors left and right, each with further keys.
 fn sensors(left: &str, right: &str) -> String {
@@ -496,8 +496,33 @@ fn recordings_that_contradict_themselves_are_refused() {
         ),
         (
             two("sensor = \"thumb\"", ""),
-            "key recorded.sensor: \"thumb\"; all, left, right",
+            "key recorded.sensor: \"thumb\"; all, left, right, or several names, each once: \"left+right\"",
         ),
+        (
+            two("sensor = \"left+thumb\"", ""),
+            "key recorded.sensor: \"left+thumb\"; all, left, right",
+        ),
+        (
+            two("sensor = \"left+left\"", ""),
+            "key recorded.sensor: \"left+left\"; all, left, right",
+        ),
+        (
+            two("sensor = [\"left\", \"all\"]", ""),
+            "key recorded.sensor: [\"left\", \"all\"]; all, left, right",
+        ),
+        (
+            two("sensor = []", ""),
+            "key recorded.sensor: an empty list; at least one value",
+        ),
+        (
+            two("sensor = 3", ""),
+            "expected the name of a sensor, names joined by `+`, a list of names, or `all`",
+        ),
+        (
+            two("", "groups = \"FOLDER/labels.npy\""),
+            "unknown field `groups`",
+        ),
+        (two("name = \"left\"", ""), "unknown field `name`"),
         (
             two("", "pitch_mm = 0.0"),
             "key recorded.sensors[1].pitch_mm: 0; a positive number",

@@ -30,12 +30,24 @@ use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec};
 use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2};
 use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
+use std::path::PathBuf;
+
+/// Identity of a recording by the contents of its files. Files may move to another folder, or have other names.
+#[derive(Clone, Debug)]
+pub struct RecordedContent {
+    /// SHA-256 hash of each file, by its key.
+    pub hashes: BTreeMap<String, String>,
+    /// Text that is equal exactly if all keys and the contents of all files are equal.
+    pub identity: String,
+}
 
 /// Touches that a real skin recorded.
 #[derive(Clone, Debug)]
 pub struct RecordedFrames {
     /// Specification of the recording, from the table `[recorded]`.
     pub spec: RecordedSpec,
+    /// Contents of the files.
+    content: RecordedContent,
     /// Names of the classes, in the order of their labels.
     names: Vec<String>,
     /// Names from which the seeds of the random numbers of each class are derived.
@@ -118,6 +130,7 @@ impl RecordedFrames {
         };
         Ok(Self {
             spec: spec.clone(),
+            content: spec.content()?,
             names,
             streams,
             counts,
@@ -187,14 +200,22 @@ impl RecordedFrames {
 }
 
 impl RecordedSpec {
-    /// Returns the SHA-256 hash of each file of the recording, by path.
-    ///
-    /// # Errors
-    /// If a file cannot be read.
-    pub fn content(&self) -> Result<BTreeMap<String, String>> {
-        let files = self.files().into_iter();
-        let content = files.map(|path| Ok((path.display().to_string(), file_content(path)?)));
-        content.collect()
+    /// Returns the identity of the recording, which depends on the contents of the files.
+    fn content(&self) -> Result<RecordedContent> {
+        let (mut spec, mut hashes) = (self.clone(), BTreeMap::new());
+        let mut read: BTreeMap<PathBuf, Result<String>> = BTreeMap::new();
+        spec.change_files(|key, path| {
+            let hash = read
+                .entry(path.clone())
+                .or_insert_with(|| file_content(path));
+            if let Ok(hash) = hash {
+                hashes.insert(key.to_owned(), hash.clone());
+                *path = PathBuf::from(&*hash);
+            }
+        });
+        read.into_values().collect::<Result<Vec<_>>>()?;
+        let identity = format!("{spec:?}");
+        Ok(RecordedContent { hashes, identity })
     }
 
     /// Returns the class labels of all touches; the separate test set comes last.
@@ -375,6 +396,10 @@ impl TouchSet for RecordedFrames {
 
     fn given_sides(&self) -> Option<&[Side]> {
         self.sides.as_deref()
+    }
+
+    fn recorded_content(&self) -> Option<&RecordedContent> {
+        Some(&self.content)
     }
 
     fn n_masked(&self) -> (usize, usize) {

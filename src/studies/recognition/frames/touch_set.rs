@@ -7,6 +7,7 @@ use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::TouchToRead;
+use crate::studies::recognition::frames::recorded_frames::RecordedContent;
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::pose_groups::KeepTogether;
 use crate::studies::recognition::plan::study_plan::Plan;
@@ -50,6 +51,11 @@ pub trait TouchSet: Sync {
 
     /// Returns the side (training or test) of every touch if the data define a test set, otherwise `None`; the sides are equal in all trials.
     fn given_sides(&self) -> Option<&[Side]> {
+        None
+    }
+
+    /// Returns the contents of the files of a recording; `None` for simulated touches.
+    fn recorded_content(&self) -> Option<&RecordedContent> {
         None
     }
 

@@ -6,141 +6,101 @@ use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::is_member;
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
-use crate::studies::recognition::spec::recorded_sensor::{RecordedSensorSpec, SensorPlace};
+use crate::studies::recognition::spec::recorded_sensor::{
+    RecordedSensorSpec, SensorPlace, sensor_spec, sensor_table,
+};
+use crate::studies::recognition::spec::used_sensors::SensorChoice;
 use crate::studies::recognition::spec::zero::ZeroSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Keys of `[recorded]`: frames that a real skin recorded, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). The table `[skin]` gives the pitch and the
-/// stroke of the taxels. `frames` contains the frames of one sensor; `[[recorded.sensors]]` lists several sensors that recorded the same touches.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RecordedSpec {
-    /// File with the frames, shape (n, rows, columns); (n, F, rows, columns) for F frames per touch; (n, taxels) without rows and columns. Any numeric type of
-    /// up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
-    #[serde(
-        default,
-        skip_serializing_if = "is_empty",
-        deserialize_with = "file_path"
-    )]
-    pub frames: PathBuf,
-    /// File with the tangential forces of a skin that reads shear, newtons: two forces across the axis of each taxel. The array has the axes of `frames` plus
-    /// an axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub shear: Option<PathBuf>,
-    /// File of the class of every touch: integers or texts, shape (n,), or entries 0 and 1, shape (n, classes).
-    #[serde(
-        default,
-        skip_serializing_if = "is_empty",
-        deserialize_with = "file_path"
-    )]
-    pub labels: PathBuf,
-    /// File with the group of every touch, such as its grasp or day, shape (n,). A split never divides a group.
-    #[serde(default, deserialize_with = "optional_file_path")]
-    pub groups: Option<PathBuf>,
-    /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels. The axis
-    /// `c` contains the values of a taxel if the frames have rows and columns, otherwise the taxels. Default: `n y x`, `n t y x` or `n c`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub order: Option<String>,
-    /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub grid: Option<[usize; 2]>,
-    /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames: `.csv`, `.npz`, `.txt` or `.ini` (iCub), `.json`
-    /// (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid. If one of several axes `c` counts the positions, the other axes count values
-    /// at each position, such as events of two signs.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub layout: Option<PathBuf>,
-    /// File with the number of frames of each touch, shape (n,), from 1 to the number of frames in the array. Without this key, frames at the end of a touch
-    /// in which all readings are NaN are missing. Touches of unequal length need `resampled_frames`.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub lengths: Option<PathBuf>,
-    /// File with the number of frames of each touch of the separate test set, in the format of `lengths`.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub lengths_test: Option<PathBuf>,
-    /// Number F of frames to which each touch is resampled, at least 1: linear interpolation at F instants, evenly spaced from its first to its last frame. If F
-    /// is 1, the last frame is used. Default: all frames.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub resampled_frames: Option<usize>,
-    /// Sensors that recorded the same touches, instead of `frames`. Their readings are joined to one frame, each with its own zero and full scale.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub sensors: Vec<RecordedSensorSpec>,
-    /// Sensor whose readings the study uses: a name of `sensors`, or `all` (default).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sensor: Option<String>,
-    /// File with the frames of a separate test set, with the array axes of `frames`; all touches of `frames` are then training touches.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub frames_test: Option<PathBuf>,
-    /// File with the tangential forces of the separate test set, newtons, in the format of `shear`.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub shear_test: Option<PathBuf>,
-    /// File with the classes of the separate test set, in the format of `labels`.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub labels_test: Option<PathBuf>,
-    /// File with the groups of the separate test set, in the format of `groups`. The interval of the accuracy is computed over these groups.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub groups_test: Option<PathBuf>,
-    /// Names of the classes, in the order of their numbers from 0.
-    pub names: Option<Vec<String>>,
-    /// Reading of an untouched taxel: one number, or a file with one number per taxel. Default: 0.
-    #[serde(default)]
-    pub zero: ZeroSpec,
-    /// Reading of a taxel at full scale, where the deflection equals the stroke. Default: the largest reading.
-    pub full_scale: Option<f64>,
-    /// File with the press depth of each touch, metres, shape (n,). Together with `speed_mm_per_s`, it determines the time between the frames of a touch.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub depths: Option<PathBuf>,
-    /// Speed of the skin towards the object when it was read, mm/s, at least 0; the speed affects the damper force. Default: 0.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub speed_mm_per_s: f64,
-    /// Time between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub frame_interval_s: Option<f64>,
-    /// Rule that determines the preceding touch of each touch, for sensor errors with memory. Values: `random` (default) or `none`.
-    #[serde(default, skip_serializing_if = "is_usual")]
-    pub previous_touch: PreviousTouch,
-    /// Number of values per taxel in the frames. The plan sets it, not the study file; 0 counts as 1.
-    #[serde(skip)]
-    pub n_values: usize,
-    /// Properties of the sensor if the specification describes one of several sensors. The plan sets them, not the study file.
-    #[serde(skip)]
-    pub place: SensorPlace,
+sensor_spec! {
+    /// Keys of `[recorded]`: frames that a real skin recorded, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). The table `[skin]` gives the pitch and the
+    /// stroke of the taxels. `frames` contains the frames of one sensor; `[[recorded.sensors]]` lists several sensors that recorded the same touches.
+    pub struct RecordedSpec {
+        /// File with the frames, shape (n, rows, columns); (n, F, rows, columns) for F frames per touch; (n, taxels) without rows and columns. Any numeric type of
+        /// up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
+        #[serde(
+            default,
+            skip_serializing_if = "is_empty",
+            deserialize_with = "file_path"
+        )]
+        pub frames: PathBuf,
+        /// File with the tangential forces of a skin that reads shear, newtons: two forces across the axis of each taxel. The array has the axes of `frames` plus
+        /// an axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
+        #[serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "optional_file_path"
+        )]
+        pub shear: Option<PathBuf>,
+        /// File of the class of every touch: integers or texts, shape (n,), or entries 0 and 1, shape (n, classes).
+        #[serde(
+            default,
+            skip_serializing_if = "is_empty",
+            deserialize_with = "file_path"
+        )]
+        pub labels: PathBuf,
+        /// File with the group of every touch, such as its grasp or day, shape (n,). A split never divides a group.
+        #[serde(default, deserialize_with = "optional_file_path")]
+        pub groups: Option<PathBuf>,
+        /// Number F of frames to which each touch is resampled, at least 1: linear interpolation at F instants, evenly spaced from its first to its last frame. If F
+        /// is 1, the last frame is used. Default: all frames.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub resampled_frames: Option<usize>,
+        /// Sensors that recorded the same touches, instead of `frames`. Their readings are joined to one frame, each with its own zero and full scale.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub sensors: Vec<RecordedSensorSpec>,
+        /// Sensors whose readings the study uses: `all` (default), a name of `sensors`, several names joined by `+`, or a list of names.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub sensor: Option<SensorChoice>,
+        /// File with the tangential forces of the separate test set, newtons, in the format of `shear`.
+        #[serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "optional_file_path"
+        )]
+        pub shear_test: Option<PathBuf>,
+        /// File with the classes of the separate test set, in the format of `labels`.
+        #[serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "optional_file_path"
+        )]
+        pub labels_test: Option<PathBuf>,
+        /// File with the groups of the separate test set, in the format of `groups`. The interval of the accuracy is computed over these groups.
+        #[serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "optional_file_path"
+        )]
+        pub groups_test: Option<PathBuf>,
+        /// Names of the classes, in the order of their numbers from 0.
+        pub names: Option<Vec<String>>,
+        /// File with the press depth of each touch, metres, shape (n,). Together with `speed_mm_per_s`, it determines the time between the frames of a touch.
+        #[serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "optional_file_path"
+        )]
+        pub depths: Option<PathBuf>,
+        /// Speed of the skin towards the object when it was read, mm/s, at least 0; the speed affects the damper force. Default: 0.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        pub speed_mm_per_s: f64,
+        /// Time between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub frame_interval_s: Option<f64>,
+        /// Rule that determines the preceding touch of each touch, for sensor errors with memory. Values: `random` (default) or `none`.
+        #[serde(default, skip_serializing_if = "is_usual")]
+        pub previous_touch: PreviousTouch,
+        /// Number of values per taxel in the frames. The plan sets it, not the study file; 0 counts as 1.
+        #[serde(skip)]
+        pub n_values: usize,
+        /// Properties of the sensor if the specification describes one of several sensors. The plan sets them, not the study file.
+        #[serde(skip)]
+        pub place: SensorPlace,
+    }
 }
 
 /// Rule that determines the touch before each touch, for sensor errors with memory, such as hysteresis.
@@ -186,48 +146,29 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns mutable references to all paths in the table, so that a caller can change them to another folder.
-    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
-        let arrays = [&mut self.frames, &mut self.labels];
-        let files = arrays.into_iter().filter(|path| !is_empty(path));
-        let files = files.chain(self.zero.path_mut());
-        let others = [
-            &mut self.layout,
-            &mut self.lengths,
-            &mut self.lengths_test,
-            &mut self.shear,
-            &mut self.shear_test,
-            &mut self.groups,
-            &mut self.frames_test,
-            &mut self.labels_test,
-            &mut self.groups_test,
-            &mut self.depths,
+    /// Calls `change` with the key and the path of each file of the recording. `change` may replace the path.
+    pub fn change_files(&mut self, mut change: impl FnMut(&str, &mut PathBuf)) {
+        self.change_sensor_files("recorded", &mut change);
+        let files = [
+            (
+                "labels",
+                Some(&mut self.labels).filter(|path| !is_empty(path)),
+            ),
+            ("groups", self.groups.as_mut()),
+            ("shear", self.shear.as_mut()),
+            ("labels_test", self.labels_test.as_mut()),
+            ("groups_test", self.groups_test.as_mut()),
+            ("shear_test", self.shear_test.as_mut()),
+            ("depths", self.depths.as_mut()),
         ];
-        let files = files.chain(others.into_iter().flatten());
-        let sensors = self.sensors.iter_mut();
-        files.chain(sensors.flat_map(RecordedSensorSpec::paths_mut))
-    }
-
-    /// Returns the paths of all files of the recording.
-    pub fn files(&self) -> Vec<&Path> {
-        let arrays = [&self.frames, &self.labels];
-        let files = arrays.into_iter().filter(|path| !is_empty(path));
-        let files = files.chain(self.zero.path());
-        let others = [
-            &self.layout,
-            &self.lengths,
-            &self.lengths_test,
-            &self.shear,
-            &self.shear_test,
-            &self.groups,
-            &self.frames_test,
-            &self.labels_test,
-            &self.groups_test,
-            &self.depths,
-        ];
-        let files = files.chain(others.into_iter().flatten());
-        let sensors = self.sensors.iter().flat_map(RecordedSensorSpec::paths);
-        files.chain(sensors).map(PathBuf::as_path).collect()
+        for (key, path) in files {
+            if let Some(path) = path {
+                change(&format!("recorded.{key}"), path);
+            }
+        }
+        for (number, sensor) in self.sensors.iter_mut().enumerate() {
+            sensor.change_sensor_files(&sensor_table(number), &mut change);
+        }
     }
 
     /// Returns the file that contains the array `name`: the file given by its key, or the archive with the frames.

@@ -1,4 +1,4 @@
-//! Specification of one of several sensors of a recording: `[[recorded.sensors]]`.
+//! Keys of one sensor of a recording: those of `[recorded]`, and those of each of `[[recorded.sensors]]`.
 
 use crate::files::{file_path, optional_file_path};
 use crate::studies::recognition::spec::zero::ZeroSpec;
@@ -6,59 +6,102 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Keys of `[[recorded.sensors]]`: one of several sensors that recorded the same touches, such as the fingertips of a hand.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RecordedSensorSpec {
-    /// Name of the sensor; each name once, not `all`.
-    pub name: String,
-    /// File with the frames of the sensor, in the format of `recorded.frames`. All sensors have the same touches in the same order. In an archive, the array
-    /// with the name of the sensor is read if it exists.
-    #[serde(deserialize_with = "file_path")]
-    pub frames: PathBuf,
-    /// File with the frames of the separate test set (in an archive, the array with the sensor's name and `_test`).
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub frames_test: Option<PathBuf>,
-    /// Order of the array axes of the frames, in the format of `recorded.order`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub order: Option<String>,
-    /// Numbers of rows and columns of the sensor, in the format of `recorded.grid`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub grid: Option<[usize; 2]>,
-    /// File with the positions of the taxels, in the format of `recorded.layout`.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub layout: Option<PathBuf>,
-    /// Side of the square area per taxel of the sensor, mm, positive. Default: `skin.pitch_mm`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub pitch_mm: Option<f64>,
-    /// File with the number of frames of each touch, in the format of `recorded.lengths`.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub lengths: Option<PathBuf>,
-    /// File with the number of frames of each touch of the separate test set.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "optional_file_path"
-    )]
-    pub lengths_test: Option<PathBuf>,
-    /// Reading of an untouched taxel of the sensor, in the format of `recorded.zero`. Default: 0.
-    #[serde(default)]
-    pub zero: ZeroSpec,
-    /// Reading of a taxel of the sensor at full scale. Default: the largest reading of the sensor.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub full_scale: Option<f64>,
+/// Defines the specification of a sensor: the given keys, followed by the keys that `[recorded]` and `[[recorded.sensors]]` share. The method
+/// `change_sensor_files` changes the paths among the shared keys.
+macro_rules! sensor_spec {
+    ($(#[$about:meta])* pub struct $name:ident { $($keys:tt)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name {
+            $($keys)*
+            /// File with the frames of a separate test set, with the array axes of `frames`; all touches of `frames` are then training touches. In an archive, the
+            /// array `frames_test`, or the array with the sensor's name and `_test`, is read if it exists.
+            #[serde(
+                default,
+                skip_serializing_if = "Option::is_none",
+                deserialize_with = "optional_file_path"
+            )]
+            pub frames_test: Option<PathBuf>,
+            /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels. The axis
+            /// `c` contains the values of a taxel if the frames have rows and columns, otherwise the taxels. Default: `n y x`, `n t y x` or `n c`.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            pub order: Option<String>,
+            /// Numbers of rows and columns of the sensor, if the axis `c` of the frames lists its taxels row by row.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            pub grid: Option<[usize; 2]>,
+            /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames: `.csv`, `.npz`, `.txt` or `.ini` (iCub), `.json`
+            /// (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid. If one of several axes `c` counts the positions, the other axes count
+            /// values at each position, such as events of two signs.
+            #[serde(
+                default,
+                skip_serializing_if = "Option::is_none",
+                deserialize_with = "optional_file_path"
+            )]
+            pub layout: Option<PathBuf>,
+            /// File with the number of frames of each touch, shape (n,), from 1 to the number of frames in the array. Without this key, frames at the end of a touch
+            /// in which all readings are NaN are missing. Touches of unequal length need `resampled_frames`.
+            #[serde(
+                default,
+                skip_serializing_if = "Option::is_none",
+                deserialize_with = "optional_file_path"
+            )]
+            pub lengths: Option<PathBuf>,
+            /// File with the number of frames of each touch of the separate test set, in the format of `lengths`.
+            #[serde(
+                default,
+                skip_serializing_if = "Option::is_none",
+                deserialize_with = "optional_file_path"
+            )]
+            pub lengths_test: Option<PathBuf>,
+            /// Reading of an untouched taxel: one number, or a file with one number per taxel. Default: 0.
+            #[serde(default)]
+            pub zero: ZeroSpec,
+            /// Reading of a taxel at full scale, where the deflection equals the stroke. Default: the largest reading of the sensor.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            pub full_scale: Option<f64>,
+        }
+
+        impl $name {
+            /// Calls `change` with the key and the path of each file among the shared keys. `table` is the name of the table with the keys.
+            pub(super) fn change_sensor_files(
+                &mut self,
+                table: &str,
+                change: &mut impl FnMut(&str, &mut PathBuf),
+            ) {
+                let files = [
+                    ("frames", Some(&mut self.frames).filter(|path| !path.as_os_str().is_empty())),
+                    ("frames_test", self.frames_test.as_mut()),
+                    ("layout", self.layout.as_mut()),
+                    ("lengths", self.lengths.as_mut()),
+                    ("lengths_test", self.lengths_test.as_mut()),
+                    ("zero", self.zero.path_mut()),
+                ];
+                for (key, path) in files {
+                    if let Some(path) = path {
+                        change(&format!("{table}.{key}"), path);
+                    }
+                }
+            }
+        }
+    };
+}
+
+pub(super) use sensor_spec;
+
+sensor_spec! {
+    /// Keys of `[[recorded.sensors]]`: one of several sensors that recorded the same touches, such as the fingertips of a hand.
+    pub struct RecordedSensorSpec {
+        /// Name of the sensor; each name once, not `all`.
+        pub name: String,
+        /// File with the frames of the sensor, in the format of `recorded.frames`. All sensors have the same touches in the same order. In an archive, the array
+        /// with the name of the sensor is read if it exists.
+        #[serde(deserialize_with = "file_path")]
+        pub frames: PathBuf,
+        /// Side of the square area per taxel of the sensor, mm, positive. Default: `skin.pitch_mm`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub pitch_mm: Option<f64>,
+    }
 }
 
 /// Properties of one sensor that the plan sets, not the study file.
@@ -70,6 +113,11 @@ pub struct SensorPlace {
     pub pitch_mm: Option<f64>,
     /// Name of the sensor; `None` if the recording has one sensor without a name.
     pub name: Option<String>,
+}
+
+/// Returns the name of the table with the keys of a sensor, given the number of the sensor from 0.
+pub(super) fn sensor_table(number: usize) -> String {
+    format!("recorded.sensors[{}]", number + 1)
 }
 
 impl SensorPlace {
@@ -90,37 +138,5 @@ impl SensorPlace {
             _ => None,
         };
         own.into_iter().chain([array.to_owned()]).collect()
-    }
-}
-
-impl RecordedSensorSpec {
-    /// Returns the paths of all files of the sensor.
-    pub(super) fn paths(&self) -> impl Iterator<Item = &PathBuf> {
-        let others = [
-            &self.frames_test,
-            &self.layout,
-            &self.lengths,
-            &self.lengths_test,
-        ];
-        let files = [Some(&self.frames), self.zero.path()];
-        files
-            .into_iter()
-            .chain(others.map(Option::as_ref))
-            .flatten()
-    }
-
-    /// Returns mutable references to the paths of all files of the sensor.
-    pub(super) fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
-        let others = [
-            &mut self.frames_test,
-            &mut self.layout,
-            &mut self.lengths,
-            &mut self.lengths_test,
-        ];
-        let files = [Some(&mut self.frames), self.zero.path_mut()];
-        files
-            .into_iter()
-            .chain(others.map(Option::as_mut))
-            .flatten()
     }
 }

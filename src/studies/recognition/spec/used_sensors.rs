@@ -2,11 +2,50 @@
 
 use crate::error::{Error, Result};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
-use crate::studies::recognition::spec::recorded_sensor::{RecordedSensorSpec, SensorPlace};
+use crate::studies::recognition::spec::recorded_sensor::{
+    RecordedSensorSpec, SensorPlace, sensor_table,
+};
 use crate::studies::recognition::spec::zero::ZeroSpec;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Value of `recorded.sensor` that selects all sensors.
 const ALL: &str = "all";
+/// Character between the names of several sensors in a text.
+const AND: char = '+';
+
+/// Sensors whose readings a study uses, such as `"all"`, `"palm"`, `"palm+thumb"` or `["palm", "thumb"]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "expected the name of a sensor, names joined by `+`, a list of names, or `all`"
+)]
+pub enum SensorChoice {
+    /// `all`, a name, or names joined by `+`.
+    Text(String),
+    /// List of names.
+    Names(Vec<String>),
+}
+
+impl SensorChoice {
+    /// Returns the chosen names; `None` for all sensors. A text that is the name of a sensor is one name.
+    fn names(&self, known: &[RecordedSensorSpec]) -> Option<Vec<&str>> {
+        match self {
+            Self::Text(text) if text == ALL => None,
+            Self::Text(text) if known.iter().any(|sensor| sensor.name == *text) => Some(vec![text]),
+            Self::Text(text) => Some(text.split(AND).map(str::trim).collect()),
+            Self::Names(names) => Some(names.iter().map(String::as_str).collect()),
+        }
+    }
+
+    /// Returns the value as in a study file.
+    fn words(&self) -> String {
+        match self {
+            Self::Text(text) => format!("{text:?}"),
+            Self::Names(names) => format!("{names:?}"),
+        }
+    }
+}
 
 impl RecordedSpec {
     /// Returns the name and the specification of each sensor that the study uses. A recording without `sensors` is one sensor with the name `skin`. The
@@ -15,9 +54,10 @@ impl RecordedSpec {
         if self.sensors.is_empty() {
             return vec![("skin".to_owned(), self.clone())];
         }
-        let is_used = |sensor: &RecordedSensorSpec| match self.sensor.as_deref() {
-            None | Some(ALL) => true,
-            Some(name) => sensor.name == name,
+        let chosen = self.chosen_sensors();
+        let is_used = |sensor: &RecordedSensorSpec| match &chosen {
+            None => true,
+            Some(names) => names.contains(&&sensor.name[..]),
         };
         let numbered = self.sensors.iter().enumerate();
         let used = numbered.filter(|(_, sensor)| is_used(sensor));
@@ -36,7 +76,7 @@ impl RecordedSpec {
                 sensors: Vec::new(),
                 sensor: None,
                 place: SensorPlace {
-                    table: format!("recorded.sensors[{}]", number + 1),
+                    table: sensor_table(number),
                     pitch_mm: sensor.pitch_mm,
                     name: Some(sensor.name.clone()),
                 },
@@ -62,9 +102,9 @@ impl RecordedSpec {
                 return refuse("frames", "no such key".to_owned(), allowed);
             }
             return match &self.sensor {
-                Some(name) => {
+                Some(choice) => {
                     let allowed = "no such key without [[recorded.sensors]]";
-                    refuse("sensor", format!("{name:?}"), allowed)
+                    refuse("sensor", choice.words(), allowed)
                 }
                 None => Ok(()),
             };
@@ -108,13 +148,27 @@ impl RecordedSpec {
                 return refuse(&key("full_scale"), full_scale.to_string(), &allowed);
             }
         }
-        match self.sensor.as_deref() {
-            None | Some(ALL) => Ok(()),
-            Some(name) if names.contains(&name) => Ok(()),
-            Some(name) => {
-                let allowed = format!("{ALL}, {}", names.join(", "));
-                refuse("sensor", format!("{name:?}"), &allowed)
+        let chosen = self.chosen_sensors().unwrap_or_default();
+        let is_wrong = |(number, name): (usize, &&str)| {
+            !names.contains(name) || chosen[..number].contains(name)
+        };
+        match &self.sensor {
+            Some(choice) if chosen.iter().enumerate().any(is_wrong) => {
+                let several = match &names[..] {
+                    [one, other, ..] => {
+                        format!(", or several names, each once: \"{one}{AND}{other}\"")
+                    }
+                    _ => String::new(),
+                };
+                let allowed = format!("{ALL}, {}{several}", names.join(", "));
+                refuse("sensor", choice.words(), &allowed)
             }
+            _ => Ok(()),
         }
+    }
+
+    /// Returns the names of the sensors that `recorded.sensor` chooses; `None` for all sensors.
+    fn chosen_sensors(&self) -> Option<Vec<&str>> {
+        self.sensor.as_ref()?.names(&self.sensors)
     }
 }

@@ -15,7 +15,6 @@ use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{StageTime, Tables};
-use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::studies::recognition::spec::study::ConfusionMatrices;
 use crate::studies::recognition::study::rows::{RecognitionRows, TouchRow};
 use crate::studies::recognition::study::touch_inputs::TouchInputs;
@@ -140,9 +139,16 @@ impl RecognitionStudy {
     fn place_groups(&mut self) {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
         let mut known_groups: HashMap<String, usize> = HashMap::new();
-        for (part, StudyPart { plan, sweep, .. }) in self.parts.iter().enumerate() {
-            let touched = [plan, plan.tested.as_deref().unwrap_or(plan)];
-            let touched = touched.map(|plan| (plan, TouchInputs::new(plan).content()));
+        for (part, of_part) in self.parts.iter().enumerate() {
+            let StudyPart { plan, sweep, .. } = of_part;
+            let touched = [
+                (plan, &of_part.touched),
+                (plan.tested.as_deref().unwrap_or(plan), &of_part.tested),
+            ];
+            let content = |(plan, set): (_, &Arc<dyn TouchSet + Send>)| {
+                (plan, TouchInputs::new(plan).content(set.as_ref()))
+            };
+            let touched = touched.map(content);
             for (place, group) in sweep.groups.iter().enumerate() {
                 let number = self.groups.len();
                 let mut place_touches = |of: usize| {
@@ -230,8 +236,8 @@ impl RecognitionStudy {
         arrays.collect::<HashSet<_>>().len()
     }
 
-    /// Returns the SHA-256 hash of each object's content, by the object's name. If an object differs between parts of the study, the values in `[axes]` are
-    /// added to its name.
+    /// Returns the SHA-256 hash of each object's content, by the object's name, and of each file of a recording, by its key. If several parts of the study have
+    /// different objects of one name, the hash is added to the name.
     ///
     /// # Errors
     /// If a file of an object cannot be read.
@@ -241,17 +247,22 @@ impl RecognitionStudy {
         let specs =
             plans.flat_map(|plan| [Some(&plan.spec), plan.tested.as_ref().map(|t| &t.spec)]);
         let specs = specs.flatten();
-        let mut made_of: Vec<(&ObjectsSpec, &Option<RecordedSpec>)> =
-            specs.map(|spec| (&spec.objects, &spec.recorded)).collect();
+        let mut made_of: Vec<&ObjectsSpec> = specs.map(|spec| &spec.objects).collect();
         made_of.dedup();
-        for (objects, recorded) in made_of {
-            let recorded = recorded.as_ref().map(RecordedSpec::content).transpose()?;
-            let content = objects_content(objects)?.into_iter();
-            for (name, hash) in content.chain(recorded.into_iter().flatten()) {
-                let known = all.entry(name.clone()).or_insert_with(|| hash.clone());
-                if *known != hash {
-                    all.insert(format!("{name} of {}", &hash[..12]), hash);
-                }
+        let mut content: Vec<(String, String)> = Vec::new();
+        for objects in made_of {
+            content.extend(objects_content(objects)?);
+        }
+        let sets = self
+            .parts
+            .iter()
+            .flat_map(|part| [&part.touched, &part.tested]);
+        let recorded = sets.filter_map(|set| set.recorded_content());
+        content.extend(recorded.flat_map(|of| of.hashes.clone()));
+        for (name, hash) in content {
+            let known = all.entry(name.clone()).or_insert_with(|| hash.clone());
+            if *known != hash {
+                all.insert(format!("{name} of {}", &hash[..12]), hash);
             }
         }
         Ok(all)

@@ -1,6 +1,7 @@
 //! Inputs that determine the touches of a study.
 
 use crate::inputs::objects_spec::ObjectsSpec;
+use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
@@ -35,14 +36,25 @@ impl<'a> TouchInputs<'a> {
     }
 
     /// Returns a text that identifies the set of touches. The text does not contain the pitch and size of the arrays, because they only affect which objects
-    /// are rejected or noted. An axis of arrays may therefore be extended.
-    pub fn content(&self) -> String {
+    /// are rejected or noted. An axis of arrays may therefore be extended. Files of a recording are identified by their contents.
+    pub fn content(&self, touched: &dyn TouchSet) -> String {
         let objects = ObjectsSpec {
             pitch: None,
             sizes: None,
             ..self.objects.clone()
         };
         let objects = &objects;
-        TouchInputs { objects, ..*self }.key()
+        match touched.recorded_content() {
+            None => TouchInputs { objects, ..*self }.key(),
+            Some(content) => {
+                let recorded = None;
+                let others = TouchInputs {
+                    objects,
+                    recorded,
+                    ..*self
+                };
+                format!("{} {}", others.key(), content.identity)
+            }
+        }
     }
 }
