@@ -40,10 +40,10 @@ fn said(finding: &Finding) -> SaidFinding {
     )
 }
 
-/// Audits frames, shape (n_touches, n_frames, n_taxels), with one label, group, session and time per touch. Writes the page, tables and charts to a
-/// folder. Returns the findings and the tables.
+/// Audits frames, shape (n_touches, n_frames, n_taxels), with one label, group, session and time per touch. Touches from number `n_training` on are a
+/// given test set. Writes the page, tables and charts to a folder. Returns the findings and the tables.
 #[pyfunction]
-#[pyo3(signature = (frames, grid, labels, classes, groups, sessions, times, full_scale, before_contact, seed, permutations, name, out))]
+#[pyo3(signature = (frames, grid, labels, classes, groups, sessions, times, n_training, full_scale, before_contact, seed, permutations, name, out))]
 #[expect(
     clippy::too_many_arguments,
     reason = "called by bubbletouch.audit alone"
@@ -57,6 +57,7 @@ pub fn run_audit<'py>(
     groups: Option<Vec<usize>>,
     sessions: Option<Vec<usize>>,
     times: Option<Vec<f64>>,
+    n_training: Option<usize>,
     full_scale: Option<f64>,
     before_contact: Option<(usize, usize)>,
     seed: u64,
@@ -86,6 +87,7 @@ pub fn run_audit<'py>(
             classes,
             groups,
             sessions,
+            is_test: n_training.map(|n_training| (0..n).map(|touch| touch >= n_training).collect()),
             full_scale,
             ..AuditData::default()
         };

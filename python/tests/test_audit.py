@@ -50,3 +50,39 @@ def test_wrong_arguments_are_named() -> None:
         bt.audit(frames, labels, order="n t y")
     with pytest.raises(ValueError, match="^before_contact: 0..2; "):
         bt.audit(frames, labels, before_contact=(0, 2))
+
+
+def test_a_given_test_set_is_one_more_split(tmp_path: Path) -> None:
+    frames, labels = data(160)
+    # The touches of the test set have a pattern of their class in place of the disc.
+    random = np.random.default_rng(7)
+    patterns = 0.2 * random.standard_normal((3, 12, 12))
+    frames[110:] = patterns[np.unique(labels, return_inverse=True)[1][110:]] + 0.02 * random.standard_normal((50, 12, 12))
+    found = bt.audit(frames[:110], labels[:110], test=(frames[110:], labels[110:]), out=tmp_path / "audit", permutations=399)
+    given = [finding for finding in found.findings if finding.subject == "given split"]
+    split = next(finding for finding in given if finding.check == "accuracy_by_split")
+    assert split.verdict == "fault" and split.value + 0.2 < split.baseline
+    assert "the given test set held out" in split.sentence
+    table = found.tables["accuracy_by_split"]
+    assert {n for held_out, n in zip(table["split"], table["n_tested"], strict=True) if held_out == "given"} == {50}
+    groups = np.arange(160) % 8
+    whole = bt.audit(frames[:110], labels[:110], groups[:110], test=(frames[110:], labels[110:], groups[110:]), permutations=399)
+    keys = {"frames_test": frames[110:], "labels_test": labels[110:], "groups_test": groups[110:]}
+    recorded = bt.Recorded(frames[:110], labels[:110], groups[:110], keys=keys)
+    same = bt.audit(recorded, permutations=399)
+    assert repr(whole.findings) == repr(same.findings)
+    assert any(finding.subject == "group split" for finding in whole.findings)
+
+
+def test_wrong_test_sets_are_named() -> None:
+    frames, labels = data()
+    with pytest.raises(ValueError, match="^test: frames of shape "):
+        bt.audit(frames, labels, test=(frames[:, :5], labels))
+    with pytest.raises(ValueError, match="^test: labels of one part alone"):
+        bt.audit(frames, labels, test=(frames, None))
+    with pytest.raises(ValueError, match="^labels: shape "):
+        bt.audit(frames, labels, test=(frames[:30], labels[:29]))
+    with pytest.raises(ValueError, match="^test: not a test set"):
+        bt.audit(frames, labels, test=frames)
+    with pytest.raises(ValueError, match="^test: labels are numbers and texts"):
+        bt.audit(frames, labels, test=(frames, np.zeros(len(frames), dtype=int)))

@@ -1277,6 +1277,7 @@ def run_audit(
     groups: list[int] | None,
     sessions: list[int] | None,
     times: list[float] | None,
+    n_training: int | None,
     full_scale: float | None,
     before_contact: tuple[int, int] | None,
     seed: int,
@@ -1284,8 +1285,8 @@ def run_audit(
     name: str,
     out: _Path,
 ) -> tuple[list[tuple[Any, ...]], list[tuple[str, str, str, dict[str, Any]]]]:
-    """Audits frames, shape (n_touches, n_frames, n_taxels), with one label, group, session and time per touch. Writes the page, tables and charts to a
-    folder. Returns the findings and the tables.
+    """Audits frames, shape (n_touches, n_frames, n_taxels), with one label, group, session and time per touch. Touches from number `n_training` on are a
+    given test set. Writes the page, tables and charts to a folder. Returns the findings and the tables.
     """
 
 def run_study(

@@ -82,6 +82,7 @@ def audit(
     *,
     sessions: ArrayLike | None = None,
     times: ArrayLike | None = None,
+    test: Recorded | ArrayLike | tuple[ArrayLike, ...] | None = None,
     order: str | None = None,
     full_scale: float | None = None,
     before_contact: tuple[int, int] | None = None,
@@ -96,6 +97,8 @@ def audit(
     labels: class of each touch, numbers or texts, shape (n,). If None, only checks without classes are made.
     groups, sessions: group (grasp, pose, subject) and session (file, day, mounting) of each touch, shape (n,).
     times: time of each touch, shape (n,). If None, the order of the touches is their order in time.
+    test: given test set, one more split: a tuple (frames, labels) or (frames, labels, groups), or a Recorded. Its touches follow those of `frames`, so
+    that `sessions` and `times`, if given, contain the values of both. None: a Recorded may contain `frames_test`, `labels_test` and `groups_test` in its keys.
     order: one letter for each axis of `frames`: n touches, t frames, y rows, x columns, c taxels. None: "nc", "nyx" or "ntyx".
     full_scale: reading at full scale. If None, a plateau of the largest readings counts as saturation.
     before_contact: range (start, stop) of the frames of each touch before the contact. If None, the audit detects the frames without contact.
@@ -111,11 +114,22 @@ def audit(
         labels = recorded.labels if labels is None else labels
         groups = recorded.groups if groups is None else groups
         order = order or (recorded.order if isinstance(recorded.order, str) else None)
+        test = _test_of_keys(recorded) if test is None else test
         full_scale = recorded.keys.get("full_scale") if full_scale is None else full_scale
         frames = recorded.frames
     array, n_frames, grid = _arranged(np.asarray(frames), order)
     if not 399 <= permutations <= 100_000:
         raise ValueError(f"permutations: {permutations}; 399 to 100000")
+    n_training = len(array)
+    if test is not None:
+        tested, *of_test = _test_set(test, order)
+        if tested.shape[1:] != array.shape[1:]:
+            raise ValueError(f"test: frames of shape {tested.shape[1:]} a touch; {array.shape[1:]}, as the other frames")
+        array = np.concatenate([array, tested])
+        labels, groups = (
+            _joined(name, (first, n_training), (second, len(tested)))
+            for name, first, second in zip(("labels", "groups"), (labels, groups), of_test, strict=True)
+        )
     classes, numbers = _numbered("labels", labels)
     kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
     folder = Path(kept.name) if kept is not None else Path(out or "")
@@ -127,6 +141,7 @@ def audit(
         _numbered("groups", groups)[1],
         _numbered("sessions", sessions)[1],
         None if times is None else np.asarray(times, dtype=np.float64).ravel().tolist(),
+        None if test is None else n_training,
         full_scale,
         before_contact,
         seed,
@@ -135,6 +150,39 @@ def audit(
         folder,
     )
     return Audit(folder, findings, tables, kept)
+
+
+def _test_of_keys(recorded: Recorded) -> tuple[Any, ...] | None:
+    """Returns frames, labels and groups of the test set that the keys of a recording contain; None without such a set."""
+    names = ("frames_test", "labels_test", "groups_test")
+    of_test = tuple(recorded.keys.get(name) for name in names)
+    return None if of_test[0] is None else of_test
+
+
+def _test_set(test: Any, order: str | None) -> tuple[np.ndarray[Any, Any], Any, Any]:
+    """Returns the frames of a given test set with the axes of `_arranged`, its labels and its groups."""
+    if isinstance(test, Recorded):
+        order = test.order if isinstance(test.order, str) else order
+        test = (test.frames, test.labels, test.groups)
+    if not isinstance(test, tuple) or len(test) not in (2, 3) or isinstance(test[0], Mapping):
+        raise ValueError("test: not a test set; (frames, labels), (frames, labels, groups), or a Recorded of one sensor")
+    frames, labels, groups = test if len(test) == 3 else (*test, None)
+    return _arranged(np.asarray(frames), order)[0], labels, groups
+
+
+def _joined(name: str, *parts: tuple[ArrayLike | None, int]) -> ArrayLike | None:
+    """Returns the values of the training touches, followed by those of the test set; each part has its values and its number of touches."""
+    arrays = [np.asarray(values) for values, _ in parts if values is not None]
+    if not arrays:
+        return None
+    if len(arrays) < len(parts):
+        raise ValueError(f"test: {name} of one part alone; {name} of the touches and of the test set, or of neither")
+    for values, (_, n) in zip(arrays, parts, strict=True):
+        if values.shape != (n,):
+            raise ValueError(f"{name}: shape {values.shape}; ({n},), one for each touch")
+    if len({values.dtype.kind in "US" for values in arrays}) > 1:
+        raise ValueError(f"test: {name} are numbers and texts; one of both")
+    return np.concatenate(arrays)
 
 
 def _arranged(frames: np.ndarray[Any, Any], order: str | None) -> tuple[np.ndarray[Any, Any], int, tuple[int, int] | None]:
