@@ -11,7 +11,7 @@ from bubbletouch.drake import Skin, shape_surface  # noqa: E402
 from pydrake import geometry as shapes  # noqa: E402
 from pydrake.math import RigidTransform, RotationMatrix  # noqa: E402
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction  # noqa: E402
-from pydrake.multibody.tree import FixedOffsetFrame, SpatialInertia  # noqa: E402
+from pydrake.multibody.tree import FixedOffsetFrame, PrismaticJoint, SpatialInertia  # noqa: E402
 from pydrake.systems.analysis import Simulator  # noqa: E402
 from pydrake.systems.framework import DiagramBuilder  # noqa: E402
 
@@ -93,3 +93,21 @@ def test_hulls_and_names(tmp_path) -> None:
     assert skin.skin.n_taxels == 400
     with pytest.raises(ValueError, match="geometries: 'cup'; one of .*thing"):
         scene(shapes.Sphere(0.03), 0.03, geometries=["cup"])
+
+
+def test_neighbours_that_drake_filters_press_no_patch() -> None:
+    builder = DiagramBuilder()
+    plant, scene_graph = AddMultibodyPlantSceneGraph(builder, time_step=1e-3)
+    below = plant.world_body()
+    for name in ("base", "link", "tip"):
+        body = plant.AddRigidBody(name, SpatialInertia.SolidBoxWithMass(MASS, 0.04, 0.04, 0.04))
+        plant.RegisterCollisionGeometry(body, RigidTransform(), shapes.Box(0.05, 0.05, 0.06), name, CoulombFriction(0.8, 0.8))
+        plant.AddJoint(PrismaticJoint(name, below.body_frame(), body.body_frame(), [0, 0, 1]))
+        below = body
+    plant.Finalize()
+    patch = bt.Patch.grid(4, 4, 3e-3, 5e-3)
+    # The boxes overlap; joints connect base and link, and link and tip.
+    skin = Skin(plant, scene_graph, {"link": patch, "tip": patch})
+    assert [plant.get_body(body).name() for body in skin.bodies] == ["base"]
+    read = skin.read(Simulator(builder.Build()).get_context())
+    assert not read[:16].any() and read[16:].all()

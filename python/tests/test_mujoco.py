@@ -174,6 +174,36 @@ def test_a_user_sensor_holds_the_readings_at_every_step(model) -> None:
         Skin(model, {"palm": patches()["palm"]}).install("skin")
 
 
+def test_skins_of_several_sensors_and_models_share_the_callback(model) -> None:
+    # MuJoCo compiles no model with a <user> sensor while a callback in Python is set.
+    text = MODEL.replace("<sensor>", '<sensor><user name="left" dim="16" needstage="pos"/><user name="right" dim="9" needstage="pos"/>')
+    other, again = (mujoco.MjModel.from_xml_string(text) for _ in range(2))
+    bare = mujoco.MjModel.from_xml_string('<mujoco><worldbody/><sensor><user name="s" dim="128" needstage="pos"/></sensor></mujoco>')
+    calls = []
+    mujoco.set_mjcb_sensor(lambda model, data, stage: calls.append(stage))
+    try:
+        left = Skin(other, {"palm": bt.Patch.grid(4, 4, 4e-3, 5e-3)})
+        right = Skin(other, {"palm": bt.Patch.grid(3, 3, 4e-3, 5e-3)})
+        first = Skin(model, patches())
+        left.install("left", output="deflection")
+        right.install("right")
+        first.install("skin")
+        for of, skins in ((other, {"left": left, "right": right}), (again, {"left": left, "right": right}), (model, {"skin": first})):
+            data = placed(of, ball=[0.002, 0, 0.1305, 1, 0, 0, 0])
+            for name, skin in skins.items():
+                read = skin.read(data, output="deflection" if name == "left" else "force")
+                assert np.array_equal(data.sensor(name).data, read) and read.any(), name
+        assert calls
+        # A model without skins, with as many sensor values.
+        mujoco.mj_forward(bare, mujoco.MjData(bare))
+        mujoco.set_mjcb_sensor(None)
+        left.install("left")
+        data = placed(other, ball=[0.002, 0, 0.1305, 1, 0, 0, 0])
+        assert data.sensor("left").data.any() and not data.sensor("right").data.any()
+    finally:
+        mujoco.set_mjcb_sensor(None)
+
+
 def test_taxels_are_drawn_where_they_are(model) -> None:
     skin = Skin(model, patches())
     data = placed(model, ball=[0.002, 0, 0.1305, 1, 0, 0, 0])
@@ -221,11 +251,8 @@ def test_names_that_are_not_there_are_refused(model) -> None:
         Skin(model, patches(), geoms=["cup"])
     with pytest.raises(ValueError, match="geom: 'foot'; one of floor"):
         Skin(model, {"geom:foot": patches()["palm"]})
-    hills = """
-    <mujoco><asset><hfield name="hills" nrow="2" ncol="2" size="1 1 1 1"/></asset>
-      <worldbody><geom name="hills" type="hfield" hfield="hills"/><site name="palm"/></worldbody></mujoco>"""
-    with pytest.raises(ValueError, match="geom hills: a hfield; a plane"):
-        Skin(mujoco.MjModel.from_xml_string(hills), {"palm": patches()["palm"]}, geoms=["hills"])
+    with pytest.raises(ValueError, match="geoms: none that can touch the skin"):
+        Skin(model, {"palm": patches()["palm"]}, geoms=["plate"])
 
 
 def test_a_floor_presses_a_foot_from_below_alone() -> None:

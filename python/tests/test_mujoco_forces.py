@@ -50,15 +50,15 @@ def test_the_sum_of_forces_is_the_engine_s_in_random_grasps(kind: str) -> None:
             data = mujoco.MjData(model)
             close_gripper(model, data, n_steps=int(rng.integers(120, 400)))
             skin = Skin(model, pads(kind))
-            assert skin.bodies == ["gripper_base", "object"]
-            pair_forces, residuals, travels = np.empty((2, 2)), np.empty((2, 2)), np.empty((2, 2))
+            assert skin.bodies == ["left_finger", "right_finger", "object"]
+            pair_forces, residuals, travels = np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3))
             read = skin.read(
                 data, output="force", **MATCH, pair_forces=pair_forces, residuals=residuals, travels=travels
             )
             forces = normal_forces(model, data)
             engine = np.array([forces.get(f"{side}_finger", 0.0) for side in ("left", "right")])
             assert engine.max() > 0.1
-            assert np.abs(pair_forces[:, 1] - engine).max() < 1e-6 and np.abs(residuals).max() < 1e-6, (text, residuals)
+            assert np.abs(pair_forces[:, 2] - engine).max() < 1e-6 and np.abs(residuals).max() < 1e-6, (text, residuals)
             assert abs(read.sum() - engine.sum()) < 1e-6
 
 

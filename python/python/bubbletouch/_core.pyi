@@ -179,11 +179,19 @@ class Skin:
 
     objects: index of the rigid object to which each body belongs, (n_bodies,), from 0. If None, each body is an object. Requested forces act between
     patches and objects, so the bodies of an object press a patch together.
+    can_touch: pairs of patch and body that can touch, (n_patches, n_bodies) bool; None for all pairs. A body never presses a patch that it cannot touch.
 
-    Raises ValueError if the sequence of patches is empty, or if the indices of objects skip a number.
+    Raises ValueError if the sequence of patches is empty, if the indices of objects skip a number, or if can_touch has another shape.
     """
 
-    def __new__(cls, patches: Sequence[Patch], bodies: Sequence[_Model], *, objects: Sequence[int] | None = None) -> Skin: ...
+    def __new__(
+        cls,
+        patches: Sequence[Patch],
+        bodies: Sequence[_Model],
+        *,
+        objects: Sequence[int] | None = None,
+        can_touch: ArrayLike | None = None,
+    ) -> Skin: ...
     @property
     def n_taxels(self) -> int:
         """Number of taxels of all patches."""

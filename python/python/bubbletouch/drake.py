@@ -27,8 +27,8 @@ Array = NDArray[np.float64]
 class Skin:
     """Patches on frames of a finalized plant, under its collision geometries.
 
-    layout: patches by the name of the frame or body that carries each. geometries: "all", or names of geometries with the proximity role; with "all",
-    geometries of the patches' own bodies are left out. tolerance: as for bubbletouch.mujoco.Skin.
+    layout: patches by the name of the frame or body that carries each. geometries: "all", or names of geometries with the proximity role; with "all", a
+    geometry can touch a patch if Drake's collision filter allows it to touch the patch's body. tolerance: as for bubbletouch.mujoco.Skin.
     """
 
     def __init__(
@@ -42,8 +42,14 @@ class Skin:
         found = [i for i in of.GetAllGeometryIds() if of.GetProximityProperties(i)]
         bodies = {i: plant.GetBodyFromFrameId(of.GetFrameId(i)).index() for i in found}
         names = {of.GetName(i).split("::")[-1]: i for i in found}
+        fixed = {body.index() for body in plant.GetBodiesWeldedTo(plant.world_body())}
+        own = [[i for i in found if bodies[i] == body] for body in carriers]
+        can = {i: np.array([bodies[i] != body for body in carriers]) for i in found}
         if geometries == "all":
-            self._touching = [i for i in found if bodies[i] not in carriers]
+            for i in found:  # Drake filters all pairs of bodies that are fixed to the world.
+                filtered = [bool(j) and all(of.CollisionFiltered(i, k) for k in j) for j in own]
+                can[i] &= [not filtered[p] or (bodies[i] in fixed and body in fixed) for p, body in enumerate(carriers)]
+            self._touching = [i for i in found if any(can[i])]
         else:
             if unknown := [name for name in geometries if name not in names]:
                 raise ValueError(f"geometries: {unknown[0]!r}; one of {', '.join(names)}")
@@ -52,7 +58,7 @@ class Skin:
         self.bodies = list(dict.fromkeys(bodies[i] for i in self._touching))
         objects = {i: self.bodies.index(bodies[i]) for i in self._touching}
         surfaces = [shape_surface(of.GetShape(i), tolerance) for i in self._touching]
-        self.skin = _core.Skin(list(layout.values()), surfaces, objects=list(objects.values()))
+        self.skin = _core.Skin(list(layout.values()), surfaces, objects=list(objects.values()), can_touch=np.array([can[i] for i in self._touching]).T)
         self._contact_forces = ContactForces(list(layout.values()), carriers, bodies, objects)
 
     def read(self, context: Context, *, match: Literal["normal_force"] | None = None, **options: Any) -> Array:

@@ -38,6 +38,16 @@ pub struct RigidObject {
     pub models: Vec<Model>,
 }
 
+impl RigidObject {
+    /// Returns the object without some of its bodies.
+    pub fn without(&self, excluded: &[usize]) -> Self {
+        let all = self.members.iter().zip(&self.models);
+        let kept = all.filter(|(member, _)| !excluded.contains(member));
+        let (members, models) = kept.map(|(member, model)| (*member, model.clone())).unzip();
+        Self { members, models }
+    }
+}
+
 impl Body {
     /// Prepares a contact model for presses.
     pub fn new(model: Model) -> Self {

@@ -5,7 +5,7 @@ use super::force_match::{WantedForce, press_pair};
 use super::parts::{Body, RigidObject, SkinPatch, take_maximum};
 use super::poses::read_poses;
 use super::shear_state::ShearState;
-use crate::arrays::each;
+use crate::arrays::{each, shape_of, view};
 use crate::batch::Spare;
 use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
@@ -18,6 +18,7 @@ use bubbletouch::world::{Shear, Shears};
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
+use std::sync::Arc;
 
 /// Distance, metres, to which a body without contact is moved. The body keeps its index in the list of bodies.
 const OUT_OF_REACH: f64 = 1e6;
@@ -29,13 +30,17 @@ const OUT_OF_REACH: f64 = 1e6;
 ///
 /// objects: index of the rigid object to which each body belongs, (n_bodies,), from 0. If None, each body is an object. Requested forces act between
 /// patches and objects, so the bodies of an object press a patch together.
+/// can_touch: pairs of patch and body that can touch, (n_patches, n_bodies) bool; None for all pairs. A body never presses a patch that it cannot touch.
 ///
-/// Raises ValueError if the sequence of patches is empty, or if the indices of objects skip a number.
+/// Raises ValueError if the sequence of patches is empty, if the indices of objects skip a number, or if can_touch has another shape.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Skin {
     parts: Vec<SkinPatch>,
     bodies: Vec<Body>,
-    objects: Vec<RigidObject>,
+    /// Objects of each patch, with the bodies that can touch the patch.
+    objects: Vec<Arc<[RigidObject]>>,
+    /// Bodies that cannot touch each patch.
+    excluded: Vec<Vec<usize>>,
     /// Contact models of all bodies in one sequence, as presses with shear springs need them.
     models: Vec<Model>,
     /// Number of taxels of all patches.
@@ -88,11 +93,12 @@ struct ReadOptions {
 #[pymethods]
 impl Skin {
     #[new]
-    #[pyo3(signature = (patches, bodies, *, objects=None))]
+    #[pyo3(signature = (patches, bodies, *, objects=None, can_touch=None))]
     fn new(
         patches: Vec<Bound<Patch>>,
         bodies: Vec<Bound<PyAny>>,
         objects: Option<Vec<usize>>,
+        can_touch: Option<&Bound<PyAny>>,
     ) -> PyResult<Self> {
         guarded(|| {
             if patches.is_empty() {
@@ -110,8 +116,18 @@ impl Skin {
                 Ok(Body::new(model.clone()))
             });
             let bodies: Vec<Body> = bodies.collect::<PyResult<_>>()?;
+            let objects: Arc<[RigidObject]> = rigid_objects(&bodies, objects)?.into();
+            let excluded = match can_touch {
+                None => vec![Vec::new(); parts.len()],
+                Some(given) => excluded_bodies(given, parts.len(), bodies.len())?,
+            };
+            let of_patch = |excluded: &Vec<usize>| match excluded.is_empty() {
+                true => objects.clone(),
+                false => objects.iter().map(|it| it.without(excluded)).collect(),
+            };
             Ok(Self {
-                objects: rigid_objects(&bodies, objects)?,
+                objects: excluded.iter().map(of_patch).collect(),
+                excluded,
                 models: bodies.iter().map(|body| body.model.clone()).collect(),
                 bodies,
                 parts,
@@ -186,7 +202,7 @@ impl Skin {
             let shape = |last: &[usize]| -> Vec<usize> {
                 n_sets.into_iter().chain(last.iter().copied()).collect()
             };
-            let (n_patches, n_objects) = (self.parts.len(), self.objects.len());
+            let (n_patches, n_objects) = (self.parts.len(), self.objects[0].len());
             let pairs = shape(&[n_patches, n_objects]);
             read_optional("forces", forces, &pairs, &mut scratch.forces)?;
             let vectors = shape(&[n_patches, n_objects, 3]);
@@ -326,7 +342,7 @@ impl Skin {
         options: ReadOptions,
         mut shear: Option<&mut ShearState>,
     ) {
-        let (n_patches, n_objects) = (self.parts.len(), self.objects.len());
+        let (n_patches, n_objects) = (self.parts.len(), self.objects[0].len());
         let n_read = n * n_patches;
         clear(&mut scratch.frame, n * self.n_taxels);
         clear(&mut scratch.wrenches, n_read * 6);
@@ -381,11 +397,15 @@ impl Skin {
         scratch.placed.clear();
         let placed = poses.iter().map(|pose| patch_from_world.compose(pose));
         scratch.placed.extend(placed);
+        for body in &self.excluded[number] {
+            scratch.placed[*body].translation.z += OUT_OF_REACH;
+        }
+        let objects = &self.objects[number];
         let frame = &mut scratch.frame[set * self.n_taxels + part.first..][..part.patch.n_taxels()];
         let reads_pairs = !has_shear || !scratch.forces.is_empty() || options.wants_pairs;
         let reach = options.reach.unwrap_or(part.reach);
         let mut any_near = false;
-        for (at, object) in (index * self.objects.len()..).zip(&self.objects) {
+        for (at, object) in (index * objects.len()..).zip(&objects[..]) {
             let wanted = scratch.forces.get(at).copied().unwrap_or(f64::NAN);
             let margin = if wanted.is_nan() { 0.0 } else { reach };
             let is_near = |placed: &[Pose], member: usize| {
@@ -448,6 +468,32 @@ impl Skin {
         }
         any_near
     }
+}
+
+/// Returns the bodies that cannot touch each patch, given the argument `can_touch`.
+fn excluded_bodies(
+    given: &Bound<PyAny>,
+    n_patches: usize,
+    n_bodies: usize,
+) -> PyResult<Vec<Vec<usize>>> {
+    let shape = [n_patches, n_bodies];
+    let allowed = format!("bool, {}", shape_of(&shape));
+    view(
+        "can_touch",
+        given,
+        &allowed,
+        |is| is == shape,
+        |array| {
+            let rows = array.rows().into_iter();
+            let excluded = rows.map(|row| {
+                row.indexed_iter()
+                    .filter(|(_, can)| **can == 0.0)
+                    .map(|(body, _)| body)
+                    .collect()
+            });
+            Ok(excluded.collect())
+        },
+    )
 }
 
 /// Groups bodies into rigid objects by the index of the object of each body.

@@ -10,9 +10,11 @@ import bubbletouch._core as _core
 
 
 def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5) -> _core.Mesh | _core.SphereUnion:
-    """Returns the surface of a geom in the geom's frame: exact for spheres, boxes, capsules and meshes, otherwise facets within the tolerance, metres.
+    """Returns the surface of a geom in the geom's frame: exact for spheres, boxes, capsules, meshes and height fields, otherwise facets within the
+    tolerance, metres.
 
-    A plane is a box of 2 km whose upper face is in the plane. Raises ValueError for height fields and signed distance fields.
+    A plane is a box of 2 km whose upper face is in the plane. A height field is the solid of MuJoCo's prisms. A mesh is the mesh itself, while MuJoCo's
+    contacts use its convex hull. A signed distance field (SDF) is the mesh that MuJoCo samples from the field.
     """
     kind, size = mujoco.mjtGeom(model.geom_type[geom]), model.geom_size[geom]
     kinds = mujoco.mjtGeom
@@ -29,10 +31,32 @@ def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5) -> _
         return _core.Mesh.capsule(size[0], 2.0 * size[1], tolerance)
     if kind == kinds.mjGEOM_CYLINDER:
         return _core.Mesh.cylinder(size[0], 2.0 * size[1], tolerance)
-    if kind == kinds.mjGEOM_MESH:
+    if kind == kinds.mjGEOM_HFIELD:
+        return _height_field(model, int(model.geom_dataid[geom]))
+    if kind in (kinds.mjGEOM_MESH, kinds.mjGEOM_SDF):
         mesh = model.geom_dataid[geom]
         vertices = model.mesh_vert[model.mesh_vertadr[mesh] :][: model.mesh_vertnum[mesh]]
         triangles = model.mesh_face[model.mesh_faceadr[mesh] :][: model.mesh_facenum[mesh]]
         return _core.Mesh(vertices.astype(np.float64), triangles)
     name = model.geom(geom).name or f"geom_{geom}"
-    raise ValueError(f"geom {name}: a {kind.name[7:].lower()}; a plane, sphere, box, ellipsoid, capsule, cylinder or mesh")
+    raise ValueError(f"geom {name}: a {kind.name[7:].lower()}; a plane, sphere, box, ellipsoid, capsule, cylinder, mesh, hfield or sdf")
+
+
+def _height_field(model: mujoco.MjModel, field: int) -> _core.Mesh:
+    """Returns the solid between a height field and its base. Each cell has two triangles, which meet on the diagonal from the lower row and column."""
+    n_rows, n_columns = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
+    width, depth, top, base = model.hfield_size[field]
+    numbers = np.arange(n_rows * n_columns).reshape(n_rows, n_columns)
+    heights = top * model.hfield_data[model.hfield_adr[field] :][: numbers.size].astype(np.float64)
+    x, y = np.meshgrid(np.linspace(-width, width, n_columns), np.linspace(-depth, depth, n_rows))
+    surface = np.stack([x.ravel(), y.ravel(), heights], axis=1)
+    a, b, c, d = (part.ravel() for part in (numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, 1:], numbers[1:, :-1]))
+    # Rim, counterclockwise from above; below it the rim of the base, with a vertex in the middle.
+    rim = np.concatenate([numbers[0, :-1], numbers[:-1, -1], numbers[-1, :0:-1], numbers[:0:-1, 0]])
+    below = numbers.size + np.arange(len(rim))
+    following, below_following = np.roll(rim, -1), np.roll(below, -1)
+    middle = np.full(len(rim), numbers.size + len(rim))
+    foot = np.append(surface[rim], [[0.0, 0.0, 0.0]], axis=0)
+    foot[:, 2] = -base
+    triangles = [(a, b, c), (a, c, d), (rim, below, below_following), (rim, below_following, following), (middle, below_following, below)]
+    return _core.Mesh(np.append(surface, foot, axis=0), np.concatenate([np.stack(corners, axis=1) for corners in triangles]))

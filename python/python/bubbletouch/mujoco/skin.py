@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 import bubbletouch._core as _core
 from bubbletouch._contact_forces import Contact, ContactForces
+from bubbletouch.mujoco.collisions import carrying_bodies, geoms_of_others, touching_geoms
 from bubbletouch.mujoco.geoms import geom_surface
+from bubbletouch.mujoco.sensor_callback import install
 
 Array = NDArray[np.float64]
 Output = Literal["deflection", "force"]
@@ -24,12 +26,14 @@ class Skin:
     layout: patches by the name of the site or body that carries each. If a site and a body have one name, the site carries the patch. "geom:NAME"
         is the frame of a geom, as for a patch draped on its geom_surface; "site:NAME" and "body:NAME" are possible, too. Taxels of a flat patch
         point along z of the frame.
-    geoms: "all", or names of the geoms that can touch the skin. With "all", geoms of the patches' own bodies are left out, as are visual geoms
-        (contype and conaffinity 0), height fields and SDFs.
-    tolerance: largest distance of the facets of cylinders and ellipsoids from the surface, metres. Planes, spheres, boxes, capsules and meshes are
-        exact.
+    geoms: "all", or names of the geoms that can touch the skin. With "all", a geom can touch a patch if MuJoCo can create a contact between the geom
+        and the body of the patch, by contype and conaffinity, `<pair>`, `<exclude>`, and the filter of parent and child. Named geoms can touch the
+        patches of all other bodies, geoms of the world all patches. Flexes never touch the skin.
+    tolerance: largest distance of the facets of cylinders and ellipsoids from the surface, metres. Planes, spheres, boxes, capsules, meshes and height
+        fields are exact; an SDF is the mesh that MuJoCo samples from it.
 
-    Raises ValueError for names that the model does not have, and for geoms without a surface (height fields, SDFs) that are named.
+    If the body of a frame has no collision geoms, the patch belongs to the nearest parent body that has some, provided that no joint lies between.
+    The surfaces are read once; a model whose geoms change needs a new skin. Raises ValueError for names that the model does not have.
     """
 
     def __init__(
@@ -43,14 +47,16 @@ class Skin:
         self._model = model
         self._patches = dict(layout)
         self._frames = _Frames(model, list(self._patches))
-        carriers = self._frames.bodies
+        carriers = carrying_bodies(model, self._frames.bodies)
         if isinstance(geoms, str):
             if geoms != "all":
                 raise ValueError(f'geoms: {geoms!r}; "all" or names of geoms')
-            found = [geom for geom in range(model.ngeom) if _can_touch(model, geom, set(carriers))]
+            can_touch = touching_geoms(model, carriers)
+            found = np.flatnonzero(can_touch.any(axis=0)).tolist()
         else:
+            can_touch = geoms_of_others(model, carriers)
             found = [_identity(model, mujoco.mjtObj.mjOBJ_GEOM, name) for name in geoms]
-        if not found:
+        if not can_touch[:, found].any():
             raise ValueError("geoms: none that can touch the skin; at least one")
         self._geoms = np.array(found, dtype=np.intp)
         bodies = [geom_surface(model, geom, tolerance) for geom in found]
@@ -58,7 +64,7 @@ class Skin:
         of_geoms: dict[int, int] = dict(enumerate(model.geom_bodyid.tolist()))
         self._bodies = list(dict.fromkeys(of_geoms[geom] for geom in found))
         objects = {geom: self._bodies.index(of_geoms[geom]) for geom in found}
-        self._skin = _core.Skin(list(self._patches.values()), bodies, objects=list(objects.values()))
+        self._skin = _core.Skin(list(self._patches.values()), bodies, objects=list(objects.values()), can_touch=can_touch[:, found])
         self._contact_forces = ContactForces(list(self._patches.values()), carriers, of_geoms, objects)
         names = zip(self._patches, self._skin.ranges, strict=True)
         self._slices = {name: slice(first, last) for name, (first, last) in names}
@@ -166,7 +172,10 @@ class Skin:
         """Writes the readings into a `<user>` sensor at every evaluation of the sensors, by MuJoCo's sensor callback.
 
         The sensor has `dim` = n_taxels and `needstage="pos"` (with `match`: `needstage="acc"`), so that recordings, viewers and observations contain the
-        skin. MuJoCo has one sensor callback for each process: the last installed skin holds it. Raises ValueError if the sensor does not fit.
+        skin. MuJoCo has one sensor callback for each process. Several skins share it, of one model or of several, and a callback that was set before is
+        still called. A second skin at one sensor replaces the first. `mujoco.set_mjcb_sensor(None)` removes all skins. While a
+        callback in Python is set, MuJoCo compiles no model with a `<user>` sensor, so compile all models first. Raises ValueError if the sensor does
+        not fit.
         """
         number = _identity(self._model, mujoco.mjtObj.mjOBJ_SENSOR, sensor)
         is_user = self._model.sensor_type[number] == mujoco.mjtSensor.mjSENS_USER
@@ -179,11 +188,10 @@ class Skin:
         first = int(self._model.sensor_adr[number])
         target = slice(first, first + self.n_taxels)
 
-        def callback(model: mujoco.MjModel, data: mujoco.MjData, now: int) -> None:
-            if now == stage and model.nsensordata == self._model.nsensordata:
-                self.read(data, output=output, match=match, out=data.sensordata[target])
+        def fill(data: mujoco.MjData) -> None:
+            self.read(data, output=output, match=match, out=data.sensordata[target])
 
-        mujoco.set_mjcb_sensor(callback)
+        install(self._model, number, stage, fill)
 
     def draw(self, scene: mujoco.MjvScene, data: mujoco.MjData, forces: Array, *, largest: float = 1.0) -> None:
         """Adds a sphere for each taxel to a scene of the viewer (`viewer.user_scn`), grey at rest to red at `largest` newtons.
@@ -268,11 +276,3 @@ def _names(model: mujoco.MjModel, kind: mujoco.mjtObj) -> str:
     count = {"site": model.nsite, "body": model.nbody, "geom": model.ngeom, "sensor": model.nsensor}[word]
     names = [mujoco.mj_id2name(model, kind, other) for other in range(count)]
     return ", ".join(name for name in names if name) or f"a model with named {word}s"
-
-
-def _can_touch(model: mujoco.MjModel, geom: int, carriers: set[int]) -> bool:
-    """Returns whether a geom collides, has a surface, and is not on a body that carries a patch."""
-    kind = mujoco.mjtGeom(model.geom_type[geom])
-    has_surface = kind not in (mujoco.mjtGeom.mjGEOM_HFIELD, mujoco.mjtGeom.mjGEOM_SDF)
-    collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
-    return has_surface and collides and int(model.geom_bodyid[geom]) not in carriers
