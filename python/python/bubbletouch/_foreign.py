@@ -155,7 +155,7 @@ def _pickled(call: bytes) -> bytes:
     return pickle.dumps(function(*arguments))
 
 
-def _pickler() -> Any:
+def pickler() -> Any:
     """Returns cloudpickle, which supports lambdas and classes of notebooks, or pickle if cloudpickle is not installed."""
     try:
         return import_module("cloudpickle")
@@ -176,7 +176,7 @@ class Host:
         """Returns the result of a call; bitwise equal in this process and in a process of the pool."""
         if self._pool is None:
             return function(*arguments)
-        call = _pickler().dumps((function, arguments))
+        call = pickler().dumps((function, arguments))
         return pickle.loads(self._pool.submit(_pickled, call).result())
 
     def close(self) -> None:

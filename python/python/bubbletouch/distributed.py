@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import os
+import pickle
 import tempfile
+import warnings
 from collections.abc import Mapping
 from concurrent.futures import Executor, Future, as_completed
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from bubbletouch import _core
-from bubbletouch._foreign import Given, Host, hosted, identified
-from bubbletouch.study import Study, _text
+from bubbletouch._foreign import Given, Host, hosted, identified, pickler
+from bubbletouch.recorded import Recorded, with_paths
+from bubbletouch.study import Study, StudySource
 
 __all__ = ["RayExecutor", "run"]
 
@@ -43,6 +47,10 @@ class RayExecutor(Executor):
         ended.add_done_callback(lambda future: self._ray.cancel(task) if future.cancelled() else None)
         return ended
 
+    def shared(self, value: Any) -> Any:
+        """Returns a reference to a value, which is an argument of many tasks."""
+        return self._ray.put(value)
+
     def _end(self, ended: Future[Any], done: Future[Any]) -> None:
         if not ended.set_running_or_notify_cancel():
             return
@@ -61,6 +69,7 @@ def run(
     out: str | PathLike[str] | None = None,
     *,
     seed: int | None = None,
+    recorded: Recorded | Mapping[str, Any] | None = None,
     classifiers: Mapping[str, Any] | None = None,
     features: Mapping[str, Any] | None = None,
     threads: int = 1,
@@ -74,29 +83,31 @@ def run(
     the touches that it needs, so many shards repeat simulations.
     out: result folder. Journals of finished shards are kept there; the same call continues an interrupted run with the same n_shards. None: a temporary
     folder that is deleted with the Study.
-    seed, classifiers, features: as for bubbletouch.run.
+    seed, recorded: as for bubbletouch.run. Arrays in memory are sent to the workers.
+    classifiers, features: as for bubbletouch.run. They are sent to the workers by cloudpickle, or by pickle if cloudpickle is not installed. A worker
+    imports the modules of their code, except `__main__`.
     threads: threads of each task.
 
     Raises the exceptions of bubbletouch.run; the first shard that fails ends the run.
     """
-    text, place, name, folder = _text(study)
-    folder = folder.resolve()
     for key, number in (("n_shards", n_shards), ("threads", threads)):
         if number is not None and number < 1:
             raise ValueError(f"{key}: {number}; at least 1")
     is_dask = hasattr(client, "get_executor")
     if n_shards is None:
         n_shards = max(1, sum(client.nthreads().values()) if is_dask else getattr(client, "n_threads", os.cpu_count() or 1))
-    kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
-    results = Path(kept.name) / name if kept is not None else Path(out or "")
     given = identified(classifiers, features)
-    call: dict[str, Any] = {"text": text, "place": place, "name": name, "folder": folder, "seed": seed}
+    code = _pickled(given)
+    source, kept = StudySource.of(study, recorded, out, seed)
+    source = replace(source, folder=source.folder.resolve())
+    results = source.results
     executor = client.get_executor(pure=False) if is_dask else client
+    files = _shared(client, {path: Path(path).read_bytes() for path in source.files})
     shards: dict[Future[bytes], Path] = {}
     for number in range(1, n_shards + 1):
         journal = results / f"journal.{number}-of-{n_shards}.jsonl"
         begun = journal.read_bytes() if journal.exists() else b""
-        shards[executor.submit(bubbletouch_shard, call, given, f"{number}/{n_shards}", begun, threads)] = journal
+        shards[executor.submit(bubbletouch_shard, source, files, code, f"{number}/{n_shards}", begun, threads)] = journal
     try:
         for done in as_completed(shards):
             journal = shards[done]
@@ -108,23 +119,58 @@ def run(
     finally:
         for task in shards:
             task.cancel()
-    host = Host()
-    tables = _core.run_study(out=results, callback=None, **call, **_hosted(host, given), merges=True)
+    tables = _core.run_study(out=results, callback=None, **source.call(), **_hosted(given), merges=True)
     return Study(results, tables, kept)
 
 
-def bubbletouch_shard(call: dict[str, Any], given: tuple[list[Given], list[Given]], shard: str, begun: bytes, threads: int) -> bytes:
-    """Computes a shard of a study in a temporary folder, and returns its journal."""
+def bubbletouch_shard(source: StudySource, files: Mapping[str, bytes], code: bytes, shard: str, begun: bytes, threads: int) -> bytes:
+    """Computes a shard of a study in a temporary folder, and returns its journal. `files` contains the recorded arrays by their paths in the calling process."""
+    try:
+        given = pickle.loads(code)
+    except Exception as error:
+        allowed = "code that all workers can import, or that is defined in the main script"
+        raise ValueError(f"classifiers, features: cannot be loaded on a worker ({type(error).__name__}: {error}); {allowed}") from None
     file = f"journal.{shard.replace('/', '-of-')}.jsonl"
     with tempfile.TemporaryDirectory(prefix="bubbletouch-") as kept:
         out = Path(kept) / "shard"
         out.mkdir()
         if begun:
             (out / file).write_bytes(begun)
-        _core.run_study(out=out, callback=None, **call, **_hosted(Host(), given), shard=shard, threads=threads)
+        paths = {path: str(Path(kept) / Path(path).name) for path in files}
+        for path, content in files.items():
+            Path(paths[path]).write_bytes(content)
+        call = replace(source, recorded=with_paths(source.recorded, paths)).call()
+        _core.run_study(out=out, callback=None, **call, **_hosted(given), shard=shard, threads=threads)
         return (out / file).read_bytes()
 
 
-def _hosted(host: Host, given: tuple[list[Given], list[Given]]) -> dict[str, Any]:
-    classifiers, features = hosted(host, given)
+def _shared(client: Any, files: dict[str, bytes]) -> Any:
+    """Returns files as an argument of many tasks, which a cluster stores once."""
+    if hasattr(client, "get_executor") and files:
+        with warnings.catch_warnings():
+            # Dask warns of tasks with much data. A scattered value would be lost with its worker; the result of a task is computed again.
+            warnings.simplefilter("ignore")
+            return client.submit(_same, files, pure=False)
+    return client.shared(files) if hasattr(client, "shared") else files
+
+
+def _same(files: dict[str, bytes]) -> dict[str, bytes]:
+    return files
+
+
+def _pickled(given: tuple[list[Given], list[Given]]) -> bytes:
+    """Returns classifiers and features for the workers."""
+    for what, things in zip(("classifier", "features"), given, strict=True):
+        for name, _, thing in things:
+            try:
+                pickler().dumps(thing)
+            except Exception as error:
+                allowed = "an object that cloudpickle can send to a worker"
+                raise ValueError(f"{what} {name}: cannot be sent to the workers ({type(error).__name__}: {error}); {allowed}") from error
+    code: bytes = pickler().dumps(given)
+    return code
+
+
+def _hosted(given: tuple[list[Given], list[Given]]) -> dict[str, Any]:
+    classifiers, features = hosted(Host(), given)
     return {"classifiers": classifiers, "features": features}

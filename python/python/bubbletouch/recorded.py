@@ -75,24 +75,42 @@ class Recorded:
         return {"sensors": sensors} | {name: value for name, value in {**shared, **others}.items() if value is not None}
 
 
-def with_files(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Returns a table `[recorded]` with files in place of arrays. Each file is named after its content and is written into the folder."""
+def with_files(table: Mapping[str, Any], folder: Path, files: list[str]) -> dict[str, Any]:
+    """Returns a table `[recorded]` with files in place of arrays. Each file is named after its content and is written into the folder; its path is added to
+    `files`.
+    """
     written: dict[str, Any] = {}
+
+    def stored(key: str, values: Array) -> str:
+        files.append(_file(folder, key, values))
+        return files[-1]
+
     for key, value in table.items():
         if key == "sensors":
-            written[key] = [with_files(sensor, folder) for sensor in value]
+            written[key] = [with_files(sensor, folder, files) for sensor in value]
         elif key in _FRAMES and isinstance(value, list | tuple):
             frames, lengths = padded(value)
-            written[key] = _file(folder, key, frames)
+            written[key] = stored(key, frames)
             if lengths is not None:
-                written[key.replace("frames", "lengths")] = _file(folder, "lengths", lengths)
+                written[key.replace("frames", "lengths")] = stored("lengths", lengths)
         elif key in _ARRAYS and not isinstance(value, str | PathLike | float | int | np.generic):
-            written[key] = _file(folder, key, np.asarray(value))
+            written[key] = stored(key, np.asarray(value))
         elif key == "layout" and not isinstance(value, str | PathLike):
-            written[key] = _layout(folder, value)
+            files.append(_layout(folder, value))
+            written[key] = files[-1]
         elif value is not None:
             written[key] = value
     return written
+
+
+def with_paths(table: Mapping[str, Any], paths: Mapping[str, str]) -> dict[str, Any]:
+    """Returns a table `[recorded]` in which paths are replaced by other paths."""
+    def moved(value: Any) -> Any:
+        if isinstance(value, list):
+            return [with_paths(sensor, paths) if isinstance(sensor, Mapping) else sensor for sensor in value]
+        return paths.get(value, value) if isinstance(value, str) else value
+
+    return {key: moved(value) for key, value in table.items()}
 
 
 def _layout(folder: Path, value: Any) -> str:

@@ -156,24 +156,61 @@ def run(
     Raises ValueError, which names the key, if the study is invalid; OSError if a file cannot be read or written; KeyboardInterrupt after Ctrl-C.
     The first work item that fails ends the run. Finished work items are kept in `out`.
     """
-    kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
-    name = "study" if isinstance(study, Mapping) else Path(study).stem
-    results = Path(kept.name) / name if kept is not None else Path(out or "")
-    given_table = recorded.table() if isinstance(recorded, Recorded) else dict(recorded or {})
-    if isinstance(study, Mapping):
-        own = study.get("recorded") or {}
-        table = with_files({**own, **given_table}, results / "recorded") if isinstance(own, Mapping) else {}
-        study = {**study, "recorded": table} if table else study
-    text, place, name, folder = _text(study)
-    if given_table and not isinstance(study, Mapping):
-        text = _core.with_recorded(text, place, _json(with_files(given_table, results / "recorded")))
+    source, kept = StudySource.of(study, recorded, out, seed)
     host = Host(processes)
     given = hosted(host, identified(classifiers, features))
     try:
-        tables = _core.run_study(text, place, name, folder, results, seed, callback, *given)
+        tables = _core.run_study(**source.call(), out=source.results, callback=callback, classifiers=given[0], features=given[1])
     finally:
         host.close()
-    return Study(results, tables, kept)
+    return Study(source.results, tables, kept)
+
+
+@dataclass(frozen=True)
+class StudySource:
+    """Study to run.
+
+    text, place, name, folder: TOML text of the study, its place in errors, its name, and the folder of its paths.
+    seed: replaces the seed of the study; None keeps it.
+    results: result folder.
+    recorded: keys that replace keys of `[recorded]`.
+    files: paths of the arrays in memory, which are stored in the result folder.
+    """
+
+    text: str
+    place: str
+    name: str
+    folder: Path
+    seed: int | None
+    results: Path
+    recorded: dict[str, Any]
+    files: list[str]
+
+    @classmethod
+    def of(
+        cls,
+        study: str | PathLike[str] | Mapping[str, Any],
+        recorded: Recorded | Mapping[str, Any] | None,
+        out: str | PathLike[str] | None,
+        seed: int | None,
+    ) -> tuple[StudySource, tempfile.TemporaryDirectory[str] | None]:
+        """Returns a study whose recorded arrays are stored in the result folder, and the temporary folder of its results, if any."""
+        kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
+        table = recorded.table() if isinstance(recorded, Recorded) else dict(recorded or {})
+        if isinstance(study, Mapping) and isinstance(study.get("recorded"), Mapping):
+            # The table of a dict may contain arrays, too.
+            table = {**study["recorded"], **table}
+            study = {key: value for key, value in study.items() if key != "recorded"}
+        text, place, name, folder = _text(study)
+        results = Path(kept.name) / name if kept is not None else Path(out or "")
+        files: list[str] = []
+        table = with_files(table, results / "recorded", files)
+        return cls(text, place, name, folder, seed, results, table, files), kept
+
+    def call(self) -> dict[str, Any]:
+        """Returns the arguments of run_study that describe the study."""
+        text = _core.with_recorded(self.text, self.place, _json(self.recorded)) if self.recorded else self.text
+        return {"text": text, "place": self.place, "name": self.name, "folder": self.folder, "seed": self.seed}
 
 
 def _text(study: str | PathLike[str] | Mapping[str, Any]) -> tuple[str, str, str, Path]:
