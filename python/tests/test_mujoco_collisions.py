@@ -79,6 +79,20 @@ def test_patches_feel_the_geoms_that_mujoco_collides_with_their_body() -> None:
     assert pairs[0, named.bodies.index("proximal")] > 0
 
 
+def test_links_of_a_fixed_robot_press_no_patch_of_each_other_and_fixed_objects_do() -> None:
+    model = mujoco.MjModel.from_xml_string("""
+    <mujoco><worldbody>
+      <geom name="floor" type="plane" size="1 1 1"/>
+      <body name="base"><geom name="base" size="0.02"/><body name="head" pos="0 0 0.02"><geom name="head" size="0.02"/><site name="top" pos="0 0 0.02"/></body></body>
+      <body name="lamp" pos="0 0 0.06"><geom name="lamp" size="0.022"/></body>
+    </worldbody></mujoco>""")
+    skin = Skin(model, {"top": bt.Patch.grid(4, 4, 2e-3, **SOFT)})
+    assert skin.geoms == ["floor", "lamp"]
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert skin.read(data).all()
+
+
 def test_pairs_that_cannot_touch_are_read_as_if_the_body_were_absent() -> None:
     rng = np.random.default_rng(4)
     patches = [bt.Patch.grid(6, 6, 3e-3, **SOFT), bt.Patch.sphere_cap(0.01, 1.5, 3e-3, **SOFT)]

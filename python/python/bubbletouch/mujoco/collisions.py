@@ -31,7 +31,7 @@ def touching_geoms(model: mujoco.MjModel, bodies: Sequence[int]) -> NDArray[np.b
 
     A geom can touch a patch if MuJoCo can create a contact between the geom and a geom of the patch's body. These rules apply: contype and conaffinity,
     `<pair>`, `<exclude>`, and the filters of welded bodies and of parent and child. If the body has no collision geoms, every collision geom of another
-    body passes the rule of contype and conaffinity. Bodies that are fixed to the world are separate bodies here, as their poses may be set by hand.
+    body passes the rule of contype and conaffinity. Unlike in MuJoCo, bodies that are fixed to the world can touch each other, unless they belong to one tree.
     """
     return np.array([_touching(model, body) for body in bodies]).reshape(len(bodies), model.ngeom)
 
@@ -39,7 +39,8 @@ def touching_geoms(model: mujoco.MjModel, bodies: Sequence[int]) -> NDArray[np.b
 def geoms_of_others(model: mujoco.MjModel, bodies: Sequence[int]) -> NDArray[np.bool_]:
     """Returns which geoms are on other bodies than the patches, (n_patches, ngeom). Geoms of the world body count as others for all patches."""
     of_geoms: NDArray[np.intp] = model.geom_bodyid
-    return (of_geoms == 0) | (of_geoms != np.array(bodies, dtype=np.intp)[:, None])
+    are_others: NDArray[np.bool_] = (of_geoms == 0) | (of_geoms != np.array(bodies, dtype=np.intp)[:, None])
+    return are_others
 
 
 def _touching(model: mujoco.MjModel, body: int) -> NDArray[np.bool_]:
@@ -50,8 +51,9 @@ def _touching(model: mujoco.MjModel, body: int) -> NDArray[np.bool_]:
         can = ((contype[own, None] & conaffinity) | (contype & conaffinity[own, None])).any(axis=0)
     weld, parent = model.body_weldid, model.body_weldid[model.body_parentid[model.body_weldid]]
     is_other = others != body
+    # Different trees that are fixed to the world can touch, as their poses may be set by hand.
+    is_other &= (weld[others] != weld[body]) | (weld[body] == 0) & (model.body_rootid[others] != model.body_rootid[body])
     if weld[body] != 0:
-        is_other &= weld[others] != weld[body]
         if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_FILTERPARENT:
             is_relative = (weld[others] == parent[body]) | (parent[others] == weld[body])
             is_other &= (weld[others] == 0) | ~is_relative
