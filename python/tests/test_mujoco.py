@@ -126,13 +126,13 @@ def test_a_batch_of_poses_is_its_poses_one_by_one(model) -> None:
     assert np.array_equal(skin.read(patch_poses, (body_poses[..., :3], matrices)), batch)
     sheared = matrices + 0.0
     sheared[..., 0, 1] = 0.5  # of determinant one, and no rotation
-    with pytest.raises(ValueError, match=r"body_poses\[0\]: no pose"):
+    with pytest.raises(ValueError, match=r"body_poses\[0, 0\]: position .*; a finite position, and a right-handed rotation matrix"):
         skin.read(patch_poses, (body_poses[..., :3], sheared))
     for poses, wanted in [
         (body_poses[:, :, :6], "shape"),
         (np.zeros((5, 2, 7)), "k = 1 poses"),
-        (np.zeros((5, 1, 7)), r"body_poses\[0\]: no pose"),
-        (body_poses[:3], "equally many"),
+        (np.zeros((5, 1, 7)), r"body_poses\[0, 0\]: \[0, 0, .*a quaternion"),
+        (body_poses[:3], "5 sets of patch_poses, 3 of body_poses"),
     ]:
         with pytest.raises(ValueError, match=wanted):
             skin.read(patch_poses, poses)

@@ -167,6 +167,8 @@ class ShearState:
     def slipping(self) -> NDArray[np.bool_]:
         """Whether each taxel slipped during the last step, (n_taxels,) or (n, n_taxels)."""
 
+    def __copy__(self) -> ShearState: ...
+    def __deepcopy__(self, memo: Any) -> ShearState: ...
     def reset(self, sets: Sequence[int] | None = None) -> None:
         """Sets the shear forces to zero, as before the first read. `sets` contains the indices of the sets of poses; None selects all sets."""
 
@@ -221,7 +223,8 @@ class Skin:
 
         patch_poses, body_poses: poses of the k patches and of the k bodies in the world, in their order. The shape is (k, 7) or (n, k, 7) of x, y, z, qw, qx,
         qy, qz, or (…, k, 4, 4). A pair (positions, rotations) is also allowed. Its positions are (…, k, 3). Its rotations are quaternions w, x, y, z,
-        (…, k, 4), or matrices by rows, (…, k, 9) or (…, k, 3, 3), as in MuJoCo. A single patch or body needs no axis k.
+        (…, k, 4), or matrices by rows, (…, k, 9) or (…, k, 3, 3), as in MuJoCo. A single patch or body needs no axis k. If only one of the two arguments
+        has n sets, the other one applies to all of them.
         output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
 
         forces: requested normal forces of the pairs of patch and object, newtons, (n_patches, n_objects) or (n, n_patches, n_objects), zero or more. The
@@ -250,6 +253,7 @@ class Skin:
         """
 
     def __len__(self) -> int: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class SphereUnion:

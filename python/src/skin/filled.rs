@@ -5,28 +5,61 @@ use crate::errors::bad_input;
 use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// Writes numbers into an array of the caller, which must have the given shape.
-///
-/// # Errors
-/// If the object is not a writeable array of this shape and type in C order; the message begins with `place`.
-pub fn fill<T: Element + Copy>(
-    place: &str,
-    out: &Bound<PyAny>,
-    (shape, dtype): (&[usize], &str),
-    numbers: &[T],
-) -> PyResult<()> {
-    let allowed = || format!("a {dtype} array in C order of {}", shape_of(shape));
-    let Ok(array) = out.cast::<PyArrayDyn<T>>() else {
-        return Err(bad_input(place, out.get_type(), allowed()));
-    };
-    if array.shape() != shape || !array.is_c_contiguous() {
-        return Err(bad_input(place, shape_of(array.shape()), allowed()));
+/// Array of the caller that is filled with results. It is checked before the results are computed.
+pub struct Target<'py, T: Element> {
+    place: &'static str,
+    array: Option<Bound<'py, PyArrayDyn<T>>>,
+}
+
+impl<'py, T: Element + Copy> Target<'py, T> {
+    /// Checks an optional array of the caller. `dtype` is the name of the array's type, with its article.
+    ///
+    /// # Errors
+    /// If the object is not a writeable array of this shape and type in C order; the message begins with `place`.
+    pub fn new(
+        place: &'static str,
+        given: Option<&Bound<'py, PyAny>>,
+        (shape, dtype): (&[usize], &str),
+    ) -> PyResult<Self> {
+        let Some(given) = given else {
+            return Ok(Self { place, array: None });
+        };
+        let allowed = || format!("{dtype} array in C order of {}", shape_of(shape));
+        let Ok(array) = given.cast::<PyArrayDyn<T>>() else {
+            let given = match given.getattr("dtype") {
+                Ok(dtype) => format!("an array of {dtype}"),
+                Err(_) => given.get_type().to_string(),
+            };
+            return Err(bad_input(place, given, allowed()));
+        };
+        if array.shape() != shape {
+            return Err(bad_input(place, shape_of(array.shape()), allowed()));
+        }
+        if !array.is_c_contiguous() {
+            return Err(bad_input(place, "an array in another order", allowed()));
+        }
+        let writeable = array.try_readwrite().map(drop);
+        writeable.map_err(|error| bad_input(place, error, "a writeable array"))?;
+        Ok(Self {
+            place,
+            array: Some(array.clone()),
+        })
     }
-    let mut array = array
-        .try_readwrite()
-        .map_err(|error| bad_input(place, error, "a writeable array"))?;
-    array.as_slice_mut()?.copy_from_slice(numbers);
-    Ok(())
+
+    /// Writes the results into the array, if there is one.
+    ///
+    /// # Errors
+    /// If the array is in use elsewhere; the message begins with the place of the array.
+    pub fn fill(&self, numbers: &[T]) -> PyResult<()> {
+        let Some(array) = &self.array else {
+            return Ok(());
+        };
+        let mut array = array
+            .try_readwrite()
+            .map_err(|error| bad_input(self.place, error, "a writeable array"))?;
+        array.as_slice_mut()?.copy_from_slice(numbers);
+        Ok(())
+    }
 }
 
 /// Copies an optional array of the given shape into `values`, which is empty if the argument is `None`.

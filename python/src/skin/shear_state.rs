@@ -18,6 +18,7 @@ use pyo3::prelude::*;
 /// Between two reads, a body in contact drags the taxels sideways until they slip: the shear force is at most the friction coefficient times the normal
 /// force.
 #[pyclass(module = "bubbletouch")]
+#[derive(Clone)]
 pub struct ShearState {
     /// State of each patch at rest, in the order of the skin.
     at_rest: Vec<FrictionState>,
@@ -167,6 +168,14 @@ impl ShearState {
             }
             Ok(())
         })
+    }
+
+    fn __copy__(&self) -> Self {
+        self.clone()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<PyAny>) -> Self {
+        self.clone()
     }
 
     fn __repr__(&self) -> String {

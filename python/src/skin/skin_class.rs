@@ -1,11 +1,11 @@
 //! Class `Skin`: its arguments and results, and the loop over patches and bodies.
 
-use super::filled::{fill, read_optional};
+use super::filled::{Target, read_optional};
 use super::force_match::{WantedForce, press_pair};
 use super::parts::{Body, RigidObject, SkinPatch, take_maximum};
-use super::poses::read_poses;
+use super::poses::{PoseSets, read_poses};
 use super::shear_state::ShearState;
-use crate::arrays::{each, shape_of, view};
+use crate::arrays::{each, shape_of, view, whole_number};
 use crate::batch::Spare;
 use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
@@ -18,6 +18,7 @@ use bubbletouch::world::{Shear, Shears};
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
 /// Distance, metres, to which a body without contact is moved. The body keeps its index in the list of bodies.
@@ -45,7 +46,16 @@ pub struct Skin {
     models: Vec<Model>,
     /// Number of taxels of all patches.
     n_taxels: usize,
+    arguments: Arguments,
     spare: Spare<SkinWorkspace>,
+}
+
+/// Arguments of the constructor, from which a skin is pickled and copied.
+struct Arguments {
+    patches: Vec<Py<Patch>>,
+    bodies: Vec<Py<PyAny>>,
+    objects: Option<Vec<usize>>,
+    can_touch: Option<Py<PyAny>>,
 }
 
 /// Memory that successive calls of `read` reuse: copies of the arguments, and results.
@@ -97,13 +107,22 @@ impl Skin {
     fn new(
         patches: Vec<Bound<Patch>>,
         bodies: Vec<Bound<PyAny>>,
-        objects: Option<Vec<usize>>,
+        objects: Option<Vec<i128>>,
         can_touch: Option<&Bound<PyAny>>,
     ) -> PyResult<Self> {
         guarded(|| {
             if patches.is_empty() {
                 return Err(bad_input("patches", "none", "at least one Patch"));
             }
+            let index = |object| whole_number("objects", object);
+            let objects = objects.map(|all| all.into_iter().map(index).collect());
+            let objects: Option<Vec<usize>> = objects.transpose()?;
+            let arguments = Arguments {
+                patches: patches.iter().map(|patch| patch.clone().unbind()).collect(),
+                bodies: bodies.iter().map(|body| body.clone().unbind()).collect(),
+                objects: objects.clone(),
+                can_touch: can_touch.map(|given| given.clone().unbind()),
+            };
             let mut first = 0;
             let parts = patches.iter().map(|patch| {
                 let part = SkinPatch::new(patch.get().inner().clone(), first);
@@ -132,6 +151,7 @@ impl Skin {
                 bodies,
                 parts,
                 n_taxels: first,
+                arguments,
                 spare: Spare::new(),
             })
         })
@@ -154,7 +174,8 @@ impl Skin {
     ///
     /// patch_poses, body_poses: poses of the k patches and of the k bodies in the world, in their order. The shape is (k, 7) or (n, k, 7) of x, y, z, qw, qx,
     /// qy, qz, or (…, k, 4, 4). A pair (positions, rotations) is also allowed. Its positions are (…, k, 3). Its rotations are quaternions w, x, y, z,
-    /// (…, k, 4), or matrices by rows, (…, k, 9) or (…, k, 3, 3), as in MuJoCo. A single patch or body needs no axis k.
+    /// (…, k, 4), or matrices by rows, (…, k, 9) or (…, k, 3, 3), as in MuJoCo. A single patch or body needs no axis k. If only one of the two arguments
+    /// has n sets, the other one applies to all of them.
     /// output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
     ///
     /// forces: requested normal forces of the pairs of patch and object, newtons, (n_patches, n_objects) or (n, n_patches, n_objects), zero or more. The
@@ -208,6 +229,16 @@ impl Skin {
             let vectors = shape(&[n_patches, n_objects, 3]);
             read_optional("directions", directions, &vectors, &mut scratch.directions)?;
             check_pairs(&scratch.forces, &scratch.directions)?;
+            let float = |place, array: Option<&Bound<'py, PyAny>>, last: &[usize]| {
+                Target::<f64>::new(place, array, (&shape(last), "a float64"))
+            };
+            let out_target = float("out", out.as_ref(), &[self.n_taxels])?;
+            let wrenches = float("wrenches", wrenches, &[n_patches, 6])?;
+            let pair_forces = float("pair_forces", pair_forces, &[n_patches, n_objects])?;
+            let residuals = float("residuals", residuals, &[n_patches, n_objects])?;
+            let travels = float("travels", travels, &[n_patches, n_objects])?;
+            let counts = (&shape(&[n_patches, 2])[..], "an int64");
+            let contacts = Target::<i64>::new("contacts", contacts, counts)?;
             let mut shear = match shear {
                 None => None,
                 Some(state) => {
@@ -225,30 +256,14 @@ impl Skin {
             };
             let (read, state) = (&mut scratch, shear.as_deref_mut());
             py.detach(|| self.compute(read, n_sets.unwrap_or(1), options, state));
-            let float =
-                |place, array: Option<&Bound<'py, PyAny>>, shape: &[usize], values: &[f64]| {
-                    array.map_or(Ok(()), |array| {
-                        fill(place, array, (shape, "float64"), values)
-                    })
-                };
-            float(
-                "wrenches",
-                wrenches,
-                &shape(&[n_patches, 6]),
-                &scratch.wrenches,
-            )?;
-            float("pair_forces", pair_forces, &pairs, &scratch.pairs.forces)?;
-            float("residuals", residuals, &pairs, &scratch.pairs.residuals)?;
-            float("travels", travels, &pairs, &scratch.pairs.travels)?;
-            if let Some(contacts) = contacts {
-                let form = (&shape(&[n_patches, 2])[..], "int64");
-                fill("contacts", contacts, form, &scratch.contacts)?;
-            }
+            wrenches.fill(&scratch.wrenches)?;
+            pair_forces.fill(&scratch.pairs.forces)?;
+            residuals.fill(&scratch.pairs.residuals)?;
+            travels.fill(&scratch.pairs.travels)?;
+            contacts.fill(&scratch.contacts)?;
+            out_target.fill(&scratch.frame)?;
             let frame = match out {
-                Some(out) => {
-                    float("out", Some(&out), &shape(&[self.n_taxels]), &scratch.frame)?;
-                    out
-                }
+                Some(out) => out,
                 None => {
                     let frame = PyArray1::from_slice(py, &scratch.frame);
                     match n_sets {
@@ -296,6 +311,22 @@ impl Skin {
         self.parts.len()
     }
 
+    fn __getnewargs_ex__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let Arguments {
+            patches,
+            bodies,
+            objects,
+            can_touch,
+        } = &self.arguments;
+        let named = PyDict::new(py);
+        named.set_item("objects", objects)?;
+        named.set_item("can_touch", can_touch)?;
+        Ok(((patches, bodies).into_pyobject(py)?, named))
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "<bubbletouch.Skin: {} patches of {} taxels, {} bodies>",
@@ -322,16 +353,10 @@ impl Skin {
         )?;
         let n_bodies = self.bodies.len();
         let bodies = read_poses("body_poses", of_bodies, n_bodies, &mut scratch.body_poses)?;
-        if patches != bodies {
-            let words = |n: Option<usize>| n.map_or("one".to_owned(), |n| n.to_string());
-            let given = format!(
-                "{} patch_poses, {} body_poses",
-                words(patches),
-                words(bodies)
-            );
-            return Err(bad_input("poses", given, "equally many of both"));
-        }
-        Ok(patches)
+        PoseSets::joined(
+            (patches, &mut scratch.patch_poses),
+            (bodies, &mut scratch.body_poses),
+        )
     }
 
     /// Computes all results of `n` sets of poses into the scratch memory.
