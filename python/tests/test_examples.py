@@ -50,3 +50,11 @@ def test_the_guide_s_programs_for_simulators(monkeypatch: pytest.MonkeyPatch, ca
     first, second = capsys.readouterr().out.splitlines()
     assert re.match(r"(19|20)\.\d\d N on \d\d taxels of the left pad", first), first
     assert second == "(1024, 64) [2. 2. 2.]", second
+
+
+def test_the_guide_s_program_for_layouts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    page = PACKAGE.parent / "guide" / "scenes.md"
+    monkeypatch.chdir(tmp_path)
+    [block] = re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S)
+    exec(compile(block, str(page), "exec"), {})
+    assert capsys.readouterr().out == "(3, 3) 9\n"

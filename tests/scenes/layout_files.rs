@@ -170,8 +170,8 @@ fn points_of_paxini_take_the_normals_of_a_mesh() {
         "{error}"
     );
     refused(
-        &folder.file("m.json", r#"{"units": "m", "points": []}"#),
-        "units \"m\"; \"mm\"",
+        &folder.file("m.json", r#"{"units": "in", "points": []}"#),
+        "units \"in\"; \"mm\"",
     );
     refused(
         &folder.file("two.json", "[[0, 0]]"),
@@ -204,6 +204,155 @@ fn a_robots_file_has_arrays_taxels_or_prismatic_joints() {
     refused(
         &folder.file("none.urdf", "<robot name='r'><link name='a'/></robot>"),
         "no tactile sensor",
+    );
+}
+
+/// Spellings of one table in CSV files, as spreadsheets and other programs write them.
+#[test]
+fn spellings_of_a_csv_file_are_read_as_the_same_layout() {
+    let folder = Folder::new();
+    let header = "x_mm,y_mm,z_mm,nx,ny,nz,radius_mm";
+    let rows = "1.5,-2,30,0,0.6,0.8,0.7\n4,5e-1,6,0,0,1,0.7\n";
+    let plain = format!("{header}\n{rows}");
+    let expected = read(&folder.file("plain.csv", &plain));
+    let metres = "0.0015,-0.002,0.03,0,0.6,0.8,0.0007\n0.004,0.0005,0.006,0,0,1,0.0007\n";
+    let centimetres = "0.15,-0.2,3,0,0.6,0.8,0.07\n0.4,0.05,0.6,0,0,1,0.07\n";
+    for (name, text) in [
+        ("semicolons.csv", plain.replace(',', ";")),
+        ("tabs.tsv", plain.replace(',', "\t")),
+        (
+            "decimal_commas.csv",
+            plain.replace(',', ";").replace('.', ","),
+        ),
+        (
+            "decimal_tabs.csv",
+            plain.replace(',', "\t").replace('.', ","),
+        ),
+        (
+            "comments.csv",
+            format!("# a fingertip\n\n{header}\n# first row\n{rows}\n"),
+        ),
+        ("capitals.csv", plain.to_uppercase().replace("E-1", "e-1")),
+        (
+            "bom_crlf.csv",
+            format!("\u{feff}{}", plain.replace('\n', "\r\n")),
+        ),
+        (
+            "metres.csv",
+            format!("x_m,y_m,z_m,nx,ny,nz,radius_m\n{metres}"),
+        ),
+        (
+            "centimetres.csv",
+            format!("x (cm),y (cm),z (cm),nx,ny,nz,radius [cm]\n{centimetres}"),
+        ),
+        (
+            "brackets.csv",
+            format!("x [mm], Y (mm), z_mm, Normal_x, n_y, nz, Radius (mm)\n{rows}"),
+        ),
+    ] {
+        let again = read(&folder.file(name, &text));
+        assert_eq!(again.layout, expected.layout, "{name}");
+        assert_eq!(again.radii, expected.radii, "{name}");
+        assert!(again.notes.is_empty(), "{name}: {:?}", again.notes);
+    }
+    let named = plain
+        .replace("x_mm", "id,x_mm")
+        .replace("1.5,", "a,1.5,")
+        .replace("\n4,", "\nb,4,");
+    let named = read(&folder.file("named.csv", &named));
+    assert_eq!(named.layout, expected.layout);
+    assert!(
+        named.notes[0].ends_with("named.csv: columns that are not used: `id`"),
+        "{:?}",
+        named.notes
+    );
+    for (name, text, wanted) in [
+        (
+            "unit.csv",
+            plain.replace("x_mm", "x_in"),
+            "line 1: column `x_in`; x_mm, ",
+        ),
+        (
+            "radius.csv",
+            plain.replace("radius_mm", "radius"),
+            "column `radius`; ",
+        ),
+        (
+            "points.csv",
+            rows.to_owned(),
+            "line 1: a header of numbers; a table with the columns x_mm",
+        ),
+        (
+            "decimal.csv",
+            plain.replace(',', ";").replace("1.5", "1,5,0"),
+            "line 2, column x_mm: `1,5,0`; a finite number",
+        ),
+        (
+            "commented.csv",
+            format!("# one\n{header}\n1,2,3,0,0,1,x\n"),
+            "line 3, column radius_mm: `x`",
+        ),
+    ] {
+        refused(&folder.file(name, &text), wanted);
+    }
+    std::fs::write(folder.0.path().join("latin.csv"), b"x_mm\xe9\n").unwrap();
+    refused(
+        &folder.0.path().join("latin.csv"),
+        "latin.csv: a text that is not UTF-8; a file in UTF-8",
+    );
+}
+
+#[test]
+fn other_spellings_of_icub_paxini_and_archives_are_read_or_refused_with_the_reason() {
+    let folder = Folder::new();
+    let icub = "name palm // left\n[ Calibration ]\n// x y z\n(0.001 0.002 0.003 0 0 1)\n0 0 0 0 0 0\n0.004 0.005 0.006 0 0.6 0.8\n";
+    let taxels = read(&folder.file("p.txt", icub));
+    near(taxels.layout.centers()[1], DVec3::new(4e-3, 5e-3, 6e-3));
+    refused(
+        &folder.file("z.txt", "[calibration]\n0 0 0 0 0 0\n0 0 0 0 0 0\n"),
+        "z.txt: no taxel, but 2 rows of zeros",
+    );
+    let rows = "[[1, 2, 3], [4, 5, 6]]";
+    let normals = "\"normals\": [[0, 0, 1], [0, 0.6, 0.8]]";
+    for (unit, factor) in [("mm", 1e-3), ("MM", 1e-3), ("cm", 1e-2), ("m", 1.0)] {
+        let text = format!("\u{feff}{{\"units\": \"{unit}\", \"points\": {rows}, {normals}}}");
+        let read = read(&folder.file("p.json", &text));
+        near(read.layout.centers()[1], factor * DVec3::new(4.0, 5.0, 6.0));
+        near(read.layout.axes()[1], DVec3::new(0.0, 0.6, 0.8));
+    }
+    for (text, wanted) in [
+        (
+            format!("{{\"units\": \"m\", \"taxels_mm\": {rows}, {normals}}}"),
+            "units \"m\"; \"mm\"",
+        ),
+        (
+            format!("{{\"units\": \"in\", \"points\": {rows}, {normals}}}"),
+            "units \"in\"",
+        ),
+        (
+            format!("{{\"points\": {rows}, \"normals\": [[0, 0, 1]]}}"),
+            "normals: 1 normals for 2 taxels",
+        ),
+        (
+            format!("{{\"points\": {rows}, \"normals\": [[0, 0, 1], [0, 1]]}}"),
+            "normals, row 2: `[0,1]`",
+        ),
+        (
+            format!("{{\"points\": {rows}, \"normals\": [[0, 0, 1], [0, 0, 0]]}}"),
+            "row 2: normal",
+        ),
+        ("{\"points\": []}".to_owned(), "no taxel"),
+    ] {
+        refused(&folder.file("w.json", &text), wanted);
+    }
+    // An archive with a single array: the positions are not taken for the normals.
+    let path = folder.npz("p.npz", |npz| {
+        npz.add_array("positions", &Array2::<f64>::ones((2, 3)))
+            .unwrap()
+    });
+    refused(
+        &path,
+        "no array normals (the arrays positions); positions and normals, or poses",
     );
 }
 

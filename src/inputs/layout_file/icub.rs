@@ -15,9 +15,12 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
     let mut n_represented = None;
     let mut is_row = false;
     for (index, line) in text.lines().enumerate() {
-        let line = line.split('#').next().unwrap_or_default().trim();
-        if line.starts_with('[') {
-            is_row = line.eq_ignore_ascii_case("[calibration]");
+        // YARP's comments begin with `#` or `//`.
+        let line = line.split('#').next().unwrap_or_default();
+        let line = line.split("//").next().unwrap_or_default().trim();
+        if let Some(section) = line.strip_prefix('[') {
+            let section = section.trim_end_matches(']').trim();
+            is_row = section.eq_ignore_ascii_case("calibration");
             continue;
         }
         if let Some(numbers) = line.strip_prefix("taxel2Repr") {
@@ -28,7 +31,10 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
             continue;
         }
         let at = || format!("{place}, row {}", index + 1);
-        let numbers = line.split_whitespace().map(str::parse::<f64>);
+        // A row may be a list in parentheses.
+        let listed = line.strip_prefix('(').and_then(|row| row.strip_suffix(')'));
+        let numbers = listed.unwrap_or(line).split_whitespace();
+        let numbers = numbers.map(str::parse::<f64>);
         let numbers: Vec<f64> = numbers
             .collect::<std::result::Result<_, _>>()
             .map_err(|_| Error::input(at(), format!("`{line}`"), "six numbers: x y z nx ny nz"))?;
@@ -44,9 +50,13 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
             }
         }
     }
-    if rows.is_empty() && n_unused == 0 {
+    if rows.is_empty() {
         let allowed = "a section [calibration] with rows x y z nx ny nz";
-        return Err(Error::input(place, "no taxel", allowed));
+        let given = match n_unused {
+            0 => "no taxel".to_owned(),
+            n => format!("no taxel, but {n} rows of zeros"),
+        };
+        return Err(Error::input(place, given, allowed));
     }
     let has_normals = taxels.iter().any(|(_, normal)| *normal != DVec3::ZERO);
     let mut read = match (mesh, has_normals) {
@@ -62,10 +72,7 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
             return Err(Error::input(place, "a mesh for normals", allowed));
         }
         (None, false) => {
-            let place = match rows.first() {
-                Some(row) => format!("{place}, row {row}"),
-                None => place.to_owned(),
-            };
+            let place = format!("{place}, row {}", rows[0]);
             let allowed =
                 "rows with normals, or a mesh beside them, whose surface gives the normals";
             return Err(Error::input(place, "positions without normals", allowed));

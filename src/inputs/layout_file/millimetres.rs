@@ -3,12 +3,17 @@
 
 /// Converts a decimal number of millimetres to metres; returns `None` if the text is no finite number.
 pub(super) fn metres(mm: &str) -> Option<f64> {
-    let (digits, exponent) = match mm.find(['e', 'E']) {
-        Some(at) => (&mm[..at], mm[at + 1..].parse::<i64>().ok()?),
-        None => (mm, 0),
+    scaled(mm, -3)
+}
+
+/// Returns the number in the text, multiplied by a power of ten and rounded once; returns `None` if the text is no finite number.
+pub(super) fn scaled(text: &str, power: i64) -> Option<f64> {
+    let (digits, exponent) = match text.find(['e', 'E']) {
+        Some(at) => (&text[..at], text[at + 1..].parse::<i64>().ok()?),
+        None => (text, 0),
     };
-    let metres = format!("{digits}e{}", exponent.checked_sub(3)?).parse::<f64>();
-    metres.ok().filter(|metres| metres.is_finite())
+    let number = format!("{digits}e{}", exponent.checked_add(power)?).parse::<f64>();
+    number.ok().filter(|number| number.is_finite())
 }
 
 /// Returns the decimal number of millimetres, with as few digits as possible, that [`metres`] converts to the given number.

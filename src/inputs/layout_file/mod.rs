@@ -2,7 +2,7 @@
 //!
 //! | file | format | content |
 //! |---|---|---|
-//! | `.csv` | [`csv`] | `x_mm, y_mm, z_mm, nx, ny, nz[, radius_mm][, row, column]`, one row for each taxel |
+//! | `.csv`, `.tsv` | [`csv`] | `x_mm, y_mm, z_mm, nx, ny, nz[, radius_mm][, row, column]`, one row for each taxel |
 //! | `.npz` | [`npz`] | `positions` and `normals`, each n × 3, metres; or `poses`, n × 3 × 4, and `taxel2pixel`, n × 2, as for Analog Devices' DEX-01 |
 //! | `.txt`, `.ini` | [`icub`] | position files of iCub's skin: position (metres) and normal of each taxel |
 //! | `.json` | [`paxini`] | taxel positions of PaXini's sensors, mm, with or without normals |
@@ -69,10 +69,16 @@ impl LayoutFile {
         if options.sensor.is_some() && !matches!(&ending[..], "urdf" | "xml") {
             return refuse("a sensor's name", "only robots' files have several sensors");
         }
-        let text =
-            || crate::files::read_to_string(path).map_err(|e| Error::unreadable(path, FORMATS, e));
+        let text = || match crate::files::read_to_string(path) {
+            Err(error) if error.kind() == std::io::ErrorKind::InvalidData => Err(Error::input(
+                &place,
+                "a text that is not UTF-8",
+                "a file in UTF-8",
+            )),
+            read => read.map_err(|error| Error::unreadable(path, FORMATS, error)),
+        };
         let file = match &ending[..] {
-            "csv" => csv::read(&place, &text()?)?,
+            "csv" | "tsv" => csv::read(&place, &text()?)?,
             "npz" => npz::read(path)?,
             "txt" | "ini" => icub::read(&place, &text()?, options.mesh)?,
             "json" => paxini::read(&place, &text()?, options.mesh)?,

@@ -18,6 +18,14 @@ pub(super) fn read(path: &Path) -> Result<LayoutFile> {
     let names = crate::inputs::arrays::member_names(path)?;
     let has = |name: &str| names.iter().any(|known| known == name);
     let read = |name: &str, shape: &[Option<usize>]| -> Result<ArrayD<f64>> {
+        if !has(name) {
+            let given = format!("no array {name} (the arrays {})", names.join(", "));
+            return Err(Error::input(
+                &place,
+                given,
+                "positions and normals, or poses",
+            ));
+        }
         let array = FileArray::read(path, name)?.into_numbers()?;
         let fits = |(length, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|w| w == *length);
         if array.ndim() == shape.len() && array.shape().iter().zip(shape).all(fits) {

@@ -1,8 +1,9 @@
 //! Taxel positions of PaXini's tactile sensors as JSON, mm: `{"units": "mm", "taxels_mm": [[x, y, z], …]}`, or a list of positions. With `rotation`, a list of
-//! rotation matrices by columns, the third column is the normal of a taxel. Without it, the normals are taken from a mesh.
+//! rotation matrices by columns, the third column is the normal of a taxel. The normals may also be a list `normals`. Without both, the normals are taken from a
+//! mesh. The units of `taxels` and `points` may be mm, cm or m.
 
 use super::LayoutFile;
-use super::millimetres::metres;
+use super::millimetres::scaled;
 use crate::error::{Error, Result};
 use crate::geometry::written_rotation_matrix;
 use crate::mesh::TriangleMesh;
@@ -13,12 +14,20 @@ const ALLOWED: &str = "points [x, y, z] in mm: a list, or the member taxels_mm, 
 
 /// Reads a layout of taxels from the text of a PaXini JSON file. If the file has no normals, they are computed from the mesh.
 pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
-    let json: Value = serde_json::from_str(text).map_err(|e| Error::input(place, e, ALLOWED))?;
-    if let Some(units) = json.get("units").or_else(|| json.get("unit"))
-        && units != "mm"
-    {
-        return Err(Error::input(place, format!("units {units}"), "\"mm\""));
-    }
+    let json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
+        .map_err(|e| Error::input(place, e, ALLOWED))?;
+    let units = json.get("units").or_else(|| json.get("unit"));
+    let exponent = match units.map(|units| units.as_str().unwrap_or_default().to_lowercase()) {
+        None => -3,
+        Some(unit) if unit == "mm" => -3,
+        Some(unit) if unit == "cm" && json.get("taxels_mm").is_none() => -2,
+        Some(unit) if unit == "m" && json.get("taxels_mm").is_none() => 0,
+        Some(_) => {
+            let given = format!("units {}", units.unwrap_or(&Value::Null));
+            let allowed = "\"mm\"; \"cm\" or \"m\" for the members taxels and points";
+            return Err(Error::input(place, given, allowed));
+        }
+    };
     let members = ["taxels_mm", "taxels", "points"];
     let points = members.iter().find_map(|name| json.get(name));
     let points = points.unwrap_or(&json).as_array();
@@ -38,7 +47,7 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
         match row_numbers("", row, point, ALLOWED)?[..] {
             [x, y, z] => {
                 // The decimal number in the file, not its binary rounding, is converted to metres.
-                let exact = |mm: f64| metres(&mm.to_string()).unwrap_or(mm * 1e-3);
+                let exact = |number: f64| scaled(&number.to_string(), exponent).unwrap_or(number);
                 Ok(DVec3::new(exact(x), exact(y), exact(z)))
             }
             _ => {
@@ -49,6 +58,32 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
     };
     let points = points.iter().enumerate().map(point);
     let points = points.collect::<Result<Vec<_>>>()?;
+    if points.is_empty() {
+        return Err(Error::input(place, "no taxel", "at least one taxel"));
+    }
+    let listed_normals = || {
+        let Some(normals) = json.get("normals") else {
+            return Ok(None);
+        };
+        let normals = normals.as_array().map_or(&[][..], Vec::as_slice);
+        if normals.len() != points.len() {
+            let given = format!("{} normals for {} taxels", normals.len(), points.len());
+            let place = format!("{place}, normals");
+            return Err(Error::input(place, given, "one normal a taxel"));
+        }
+        let normal = |(row, normal): (usize, &Value)| {
+            const ALLOWED: &str = "three numbers: nx, ny, nz";
+            match row_numbers("normals, ", row, normal, ALLOWED)?[..] {
+                [x, y, z] => Ok(DVec3::new(x, y, z)),
+                _ => {
+                    let place = format!("{place}, normals, row {}", row + 1);
+                    Err(Error::input(place, format!("`{normal}`"), ALLOWED))
+                }
+            }
+        };
+        let normals = normals.iter().enumerate().map(normal);
+        normals.collect::<Result<Vec<_>>>().map(Some)
+    };
     let normals = match json.get("rotation") {
         Some(rotations) => {
             let rotations = rotations.as_array().map_or(&[][..], Vec::as_slice);
@@ -78,7 +113,7 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
             let normals = rotations.iter().enumerate().map(normal);
             Some(normals.collect::<Result<Vec<_>>>()?)
         }
-        None => None,
+        None => listed_normals()?,
     };
     match (normals, mesh) {
         (Some(normals), None) => LayoutFile::from_points(place, points, normals),
