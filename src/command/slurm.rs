@@ -4,7 +4,7 @@ mod jobs;
 
 use crate::command::options::study_run::ResultsArgs;
 use crate::command::terminal::output::output_folder;
-use crate::command::terminal::streams::say;
+use crate::command::terminal::streams::{note, say};
 use bubbletouch::kinds::{self, AnyStudy};
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
@@ -58,7 +58,9 @@ pub fn slurm(args: &Args) -> Result<()> {
     if folder.exists() {
         finished.take_from_shards(study.identity(), [folder.as_path()])?;
     }
-    study.check(Part::All, &finished)?;
+    for error in study.check_elsewhere(Part::All, &finished)? {
+        note(format_args!("note: the nodes have to have it: {error}"));
+    }
     output_folder(&folder)?;
     let queued = queued_shards(&args.name("shards")?)?;
     let mut missing = Vec::new();

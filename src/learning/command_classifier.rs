@@ -57,6 +57,11 @@ impl ForeignClassifier for CommandClassifier {
         ))
     }
 
+    /// A program that is found by PATH may be installed elsewhere. The content of a program at a path is part of the version of the classifier.
+    fn may_be_elsewhere(&self) -> bool {
+        !has_path(&self.command[0])
+    }
+
     fn fit(&self, rows: &Dataset, seed: u32) -> Result<Box<dyn ForeignModel>> {
         Ok(Box::new(CommandModel {
             classifier: self.clone(),
@@ -114,9 +119,14 @@ impl CommandClassifier {
     }
 }
 
+/// Returns whether the name of a program contains a folder, so that it is not searched in the folders of PATH.
+fn has_path(program: &str) -> bool {
+    Path::new(program).components().count() != 1 || program.starts_with('.')
+}
+
 /// Returns whether a program exists: at its path, or in a folder of PATH if its name contains no folder.
 fn is_program(program: &str) -> bool {
-    if Path::new(program).components().count() != 1 || program.starts_with('.') {
+    if has_path(program) {
         return Path::new(program).is_file();
     }
     let names = [program.to_owned(), format!("{program}{EXE_SUFFIX}")];

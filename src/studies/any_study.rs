@@ -5,7 +5,7 @@ use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::Progress;
 use crate::engine::provenance::Manifest;
 use crate::engine::work_items::run_options::{Part, RunOptions};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::report::chart_format::ChartFormat;
 use crate::report::page::StudyAbout;
 use crate::table::Table;
@@ -36,7 +36,17 @@ pub trait AnyStudy: Send {
     ///
     /// # Errors
     /// If the running program cannot compute one of these work items, for example because it does not provide a classifier.
-    fn check(&self, part: Part, journal: &Journal) -> Result<()>;
+    fn check(&self, part: Part, journal: &Journal) -> Result<()> {
+        let missing = self.check_elsewhere(part, journal)?;
+        missing.into_iter().next().map_or(Ok(()), Err)
+    }
+
+    /// Checks what these work items need if they are computed on other machines. Returns an error for each program that this machine lacks and the other
+    /// machines may have.
+    ///
+    /// # Errors
+    /// If the running program cannot compute one of these work items on any machine.
+    fn check_elsewhere(&self, part: Part, journal: &Journal) -> Result<Vec<Error>>;
 
     /// Runs the work items that have no result in the journal.
     ///

@@ -8,7 +8,7 @@ use crate::engine::provenance::{Manifest, REPORT};
 use crate::engine::work_items::run_options::{Part, RunOptions};
 use crate::engine::work_items::study_run::{ItemFailure, StudyRun};
 use crate::engine::work_items::work_item::WorkItem;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::files::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN};
 use crate::inputs::content_hash::sha256;
 use crate::random::Seed;
@@ -137,7 +137,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
         self.run_of(part, journal, true).pending().n()
     }
 
-    fn check(&self, part: Part, journal: &Journal) -> Result<()> {
+    fn check_elsewhere(&self, part: Part, journal: &Journal) -> Result<Vec<Error>> {
         self.kind.check(self.run_of(part, journal, true).pending())
     }
 

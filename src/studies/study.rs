@@ -4,7 +4,7 @@ use crate::engine::progress::Progress;
 use crate::engine::work_items::{
     ItemFailure, ItemRows, PendingItems, RunOptions, Scale, StudyRun, WorkItem,
 };
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::inputs::keys::KeyAbout;
 use crate::report::study_content::Beyond;
 use crate::studies::source::Source;
@@ -210,11 +210,12 @@ pub trait Study: Send + Sized + Sync + 'static {
     fn work_items(&self) -> Vec<WorkItem>;
 
     /// Checks what the pending work items need of the running program, such as the code of a classifier. Nothing has been written when this function is called.
+    /// Returns an error for each program that this machine lacks and another machine may have.
     ///
     /// # Errors
-    /// If the running program cannot compute a pending work item.
-    fn check(&self, _pending: &PendingItems<Self::Rows>) -> Result<()> {
-        Ok(())
+    /// If the running program cannot compute a pending work item on any machine.
+    fn check(&self, _pending: &PendingItems<Self::Rows>) -> Result<Vec<Error>> {
+        Ok(Vec::new())
     }
 
     /// Computes the pending work items, in any order and on any threads. Data that several items share are computed only if one of these items is pending.

@@ -5,6 +5,7 @@ use crate::bad_input::refused;
 use crate::command::Case;
 use bubbletouch::study::write_integers;
 use std::fs;
+use std::os::unix::fs::PermissionsExt;
 
 /// Returns a study with these values of `recognition.classifier`.
 fn study(classifiers: &str) -> String {
@@ -232,6 +233,10 @@ fn a_classifier_that_cannot_be_trained_is_refused_before_a_file_is_written() {
             &["run", "--shard", "1/2"],
             &["slurm", "--array", "2"],
         ] {
+            // A program in a folder of PATH may be installed on the nodes of the cluster alone.
+            if command[0] == "slurm" && words[0].contains("no_such_program") {
+                continue;
+            }
             let arguments = [command, &["study.toml", "--out", "new"]].concat();
             refused(&case.run(&arguments), 2, &words);
             assert_eq!(case.names(), before, "{command:?}");
@@ -253,6 +258,32 @@ fn a_classifier_that_cannot_be_trained_is_refused_before_a_file_is_written() {
     }
     assert_eq!(case.names(), before);
     assert_eq!(fs::read(case.path("old/journal.jsonl")).unwrap(), journal);
+}
+
+#[test]
+fn a_program_that_only_the_nodes_have_is_a_note_of_slurm() {
+    let case = Case::new();
+    let two = "[\"linear_svm\", { command = [\"no_such_program\"] }, { command = [\"no_such_program\", \"2\"], name = \"other\" }]";
+    case.file("study.toml", study(two));
+    case.file("squeue", "#!/bin/sh\n");
+    case.file("sbatch", "#!/bin/sh\necho 7\n");
+    for name in ["squeue", "sbatch"] {
+        fs::set_permissions(case.path(name), fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    let mut command = case.command(&["slurm", "study.toml", "--out", "new", "--array", "2"]);
+    let path = std::env::var("PATH").unwrap();
+    let output = command.env("PATH", format!("{}:{path}", case.folder().display()));
+    let output = output.output().unwrap();
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{error}");
+    for name in ["no_such_program", "other"] {
+        let line = format!(
+            "note: the nodes have to have it: classifier {name}: no_such_program cannot be run: no such program;"
+        );
+        assert_eq!(error.matches(&line).count(), 1, "{error}");
+    }
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("submitted 2 of 2 shards as job 7"), "{said}");
 }
 
 #[test]

@@ -38,6 +38,11 @@ pub trait ForeignClassifier: Send + Sync {
     fn check(&self) -> Result<()> {
         Ok(())
     }
+
+    /// Returns whether another machine may have what [`check`](Self::check) misses on this machine.
+    fn may_be_elsewhere(&self) -> bool {
+        false
+    }
 }
 
 /// Trained model of a [`ForeignClassifier`].
@@ -180,6 +185,11 @@ impl Foreign {
     /// If no program provides the code, or [`ForeignClassifier::check`] fails.
     pub fn check_provided(self) -> Result<()> {
         self.code()?.check()
+    }
+
+    /// Returns whether the code of this classifier is provided, and another machine may have what its check misses on this machine.
+    pub fn may_be_elsewhere(self) -> bool {
+        self.code().is_ok_and(|code| code.may_be_elsewhere())
     }
 
     fn code(self) -> Result<Arc<dyn ForeignClassifier>> {

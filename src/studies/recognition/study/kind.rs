@@ -1,7 +1,7 @@
 //! Recognition study as a kind of study.
 
 use crate::engine::work_items::{PendingItems, Scale, WorkItem};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::inputs::keys::KeyAbout;
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::{Snapshots, snapshots};
@@ -149,7 +149,7 @@ impl Study for RecognitionStudy {
         items
     }
 
-    fn check(&self, pending: &PendingItems<RecognitionRows>) -> Result<()> {
+    fn check(&self, pending: &PendingItems<RecognitionRows>) -> Result<Vec<Error>> {
         self.check_all_provided(pending)
     }
 

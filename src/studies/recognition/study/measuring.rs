@@ -2,7 +2,7 @@
 
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::work_items::pending::PendingItems;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::learning::classifiers::ClassifierKind;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::Measurements;
@@ -26,16 +26,29 @@ pub(crate) struct Job<'a> {
 }
 
 impl RecognitionStudy {
-    /// Returns an error if a pending work item needs a classifier or features that the running program does not provide.
-    pub(crate) fn check_all_provided(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
+    /// Returns an error if a pending work item needs a classifier or features that the running program does not provide. Errors about programs that other
+    /// machines may have are returned as a list.
+    pub(crate) fn check_all_provided(
+        &self,
+        left: &PendingItems<RecognitionRows>,
+    ) -> Result<Vec<Error>> {
+        let mut missing = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
             let is_left = |trial| left.has(self.family_item(trial, number));
             if (0..self.n_trials()).any(is_left) {
                 let configurations = &self.group(family.group).1.configurations;
-                check_provided(&configurations[family.configurations.start])?;
+                let configuration = &configurations[family.configurations.start];
+                match (check_provided(configuration), configuration.classifier) {
+                    (Err(error), ClassifierKind::Foreign(foreign))
+                        if foreign.may_be_elsewhere() =>
+                    {
+                        missing.insert(foreign, error);
+                    }
+                    (checked, _) => checked?,
+                }
             }
         }
-        Ok(())
+        Ok(missing.into_values().collect())
     }
 
     pub(crate) fn measure_all(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
