@@ -381,3 +381,36 @@ def test_a_missing_package_is_named(file, package, tmp_path, monkeypatch):
         monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(ImportError, match=rf"{file}: needs the package {package}; pip install {package}"):
         bt.read_recorded(tmp_path / file)
+
+
+def test_several_values_per_taxel_are_channels():
+    rng = np.random.default_rng(7)
+    labels = np.repeat([0, 1, 2], 20)
+    frames = rng.normal(labels[:, None, None, None, None], 1.0, (N, 2, 4, 5, 3))
+    seen = {"features": [], "rows": []}
+
+    def channels(given):
+        seen["features"].append(np.array(given).reshape(-1, 3, 4, 5))
+        return given.reshape(len(given), -1)
+
+    class Network:
+        """Nearest class mean of the rows, which have the axes frame, channel, row and column."""
+
+        def fit(self, rows, labels):
+            seen["rows"].append((rows.reshape(-1, 2, 3, 4, 5), labels))
+            self.means = np.array([rows[labels == k].mean(0) for k in range(3)])
+
+        def predict(self, rows):
+            return ((rows[:, None] - self.means) ** 2).sum(-1).argmin(1)
+
+    study = {**STUDY, "signal": {"steps": []}, "sensing": {"ensemble": "identity"}, "recognition": {"classifier": "mine", "features": ["channels", "raw"], "scaling": "none"}}
+    recorded = {"frames": frames, "labels": labels, "order": "n t y x c", "full_scale": 5.0}
+    bt.run(study, recorded=recorded, classifiers={"mine": (Network(), "1")}, features={"channels": (channels, "1")})
+    # Deflections are fractions of the full scale times the stroke; frames are stored as float32.
+    expected = (frames.transpose(0, 1, 4, 2, 3) / 5.0 * 5e-3).astype(np.float32)
+    known = {frame.tobytes() for frame in expected.reshape(-1, 3, 4, 5)}
+    assert {frame.astype(np.float32).tobytes() for frame in np.concatenate(seen["features"]) if frame.any()} == known
+    known = {touch.tobytes(): label for touch, label in zip(expected, labels, strict=True)}
+    assert seen["rows"]
+    for rows, of in seen["rows"]:
+        assert all(known[row.astype(np.float32).tobytes()] == label for row, label in zip(rows, of, strict=True))

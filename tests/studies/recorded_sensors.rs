@@ -55,7 +55,7 @@ fn layout(places: impl Iterator<Item = (f64, f64)>) -> String {
 pub const SKIN: &str = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n";
 pub const NOISE: &str =
     "[signal]\nsteps = [\"gain\", \"noise\"]\ngain_std = 0.1\nnoise_std_full_scale = 0.05\n";
-const COUPLED: &str = "[signal]\nsteps = [\"crosstalk\", \"noise\", \"smoothing\"]\ncrosstalk = 0.2\nnoise_std_full_scale = 0.05\nsmoothing_mm = 3.0\n";
+pub const COUPLED: &str = "[signal]\nsteps = [\"crosstalk\", \"noise\", \"smoothing\"]\ncrosstalk = 0.2\nnoise_std_full_scale = 0.05\nsmoothing_mm = 3.0\n";
 pub const RAW: &str = "[sensing]\nmeasurements = 8\n[recognition]\nclassifier = \"linear_svm\"\n";
 pub const IMAGES: &str = "[sensing]\nensemble = \"identity\"\n[recognition]\nclassifier = \"linear_svm\"\nfeatures = [\"fourier_magnitude\", \"descriptors\"]\n";
 

@@ -1,7 +1,7 @@
 //! Axis order of recorded frames: touches, time, and positions on the skin.
 //!
 //! An order is a string with one letter per axis of the file: `n` touches, `t` frames of a touch, `y` rows, and `x` columns. If the order
-//! contains `y` and `x`, `c` is the axis of a taxel's values. Otherwise `c` is the axis of the taxels of a skin without rows and columns. Several axes `c`
+//! contains `y` and `x`, `c` is the axis of a taxel's values: each kind of value has rows and columns of its own. Otherwise `c` is the axis of the taxels of a skin without rows and columns. Several axes `c`
 //! without `y` and `x` are combined to one axis of taxels.
 
 use crate::error::{Error, Result};
@@ -38,8 +38,10 @@ pub struct FrameShape {
     pub rows: usize,
     /// Number of columns of the taxel grid; if the taxels form no grid, the number of taxels.
     pub columns: usize,
-    /// Whether the taxels form a grid with rows and columns.
+    /// Whether the taxels form a grid with rows and columns, with one kind of values.
     pub has_grid: bool,
+    /// Numbers of rows and columns of the positions on the skin; `None` if the positions form no grid.
+    pub sides: Option<[usize; 2]>,
     /// Number of recorded values per taxel.
     n_values: usize,
     /// Number of positions on the skin. Several values may be recorded at each position, such as events of two signs; they count as taxels.
@@ -69,7 +71,8 @@ impl FrameShape {
         }
         let is_of_places =
             |axis: &usize| self.order.as_bytes()[*axis] == b'c' && shape[*axis] == n_places;
-        if let Some(found) = self.axes.iter().position(is_of_places) {
+        let found = self.axes.iter().position(is_of_places);
+        if let (Some(found), None) = (found, self.sides) {
             // The axes c are the last ones of a skin without rows and columns.
             let axis = self.axes.remove(found);
             self.axes.push(axis);
@@ -106,7 +109,8 @@ impl FrameShape {
     ) -> std::result::Result<Vec<f64>, Vec<usize>> {
         let n_taxels = self.rows * self.columns;
         // If the order contains y, one axis c of the file counts the values of a taxel.
-        let of_values = match self.order.contains('y') {
+        let is_value = self.sides.is_none() || self.has_grid;
+        let of_values = match self.order.contains('y') && is_value {
             true => self
                 .order
                 .match_indices('c')
@@ -213,17 +217,25 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
         false if axes.n_values == 1 => 1,
         false => axes_of('c').next().map_or(1, |axis| shape[axis]),
     };
-    if of_values != axes.n_values {
+    // Several values of a taxel that reads no shear are kinds, each with rows and columns of its own.
+    let has_kinds = has_rows && axes.n_values == 1 && of_values > 1;
+    if of_values != axes.n_values && !has_kinds {
         let given = format!("{given} with {of_values} values a taxel");
-        let allowed = match axes.n_values {
-            1 => "1 (three with skin.sensed = \"shear\")".to_owned(),
-            n => format!("{n}, as skin.sensed says"),
-        };
+        let allowed = format!("{}, as skin.sensed says", axes.n_values);
         return Err(Error::input(place, given, allowed));
     }
-    let n_taxels = length('c') / if has_rows { 1 } else { of_values };
+    let n_taxels = match has_rows {
+        true => length('c') * length('y') * length('x') / axes.n_values,
+        false => length('c') / of_values,
+    };
+    let several = axes_of('c').count() > 1 && axes.n_values == 1;
+    let is_of_positions = |n| several && axes_of('c').any(|axis| Some(shape[axis]) == n);
     let (rows, columns) = match (has_rows, axes.grid) {
+        (true, None) if has_kinds => (1, n_taxels),
         (true, None) => (length('y'), length('x')),
+        (false, Some([rows, columns])) if is_of_positions(rows.checked_mul(columns)) => {
+            (1, n_taxels)
+        }
         (false, None) => (1, n_taxels),
         (false, Some([rows, columns])) if rows.checked_mul(columns) == Some(n_taxels) => {
             (rows, columns)
@@ -238,22 +250,36 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
             return Err(Error::input(key, given, allowed));
         }
     };
+    let sides = match has_rows {
+        true => Some([length('y'), length('x')]),
+        false => axes.grid,
+    };
     let found = FrameShape {
         n_touches: length('n'),
         n_frames: length('t'),
         rows,
         columns,
-        has_grid: has_rows || axes.grid.is_some(),
+        has_grid: sides == Some([rows, columns]),
+        sides: None,
         n_values: axes.n_values,
         n_places: rows * columns,
         axes: "ntcyx".chars().flat_map(axes_of).collect(),
         order: order.clone(),
     };
+    // One of several axes c counts the positions of the grid.
+    let n_places = sides.map_or(found.n_places, |[rows, columns]| rows * columns);
+    let found = FrameShape {
+        sides,
+        n_places,
+        ..found.with_places(shape, n_places)
+    };
     let is_side = |side| (1..=MAX_SIDE).contains(&side);
     let is_allowed = found.n_touches > 0
         && (1..=MAX_FRAMES).contains(&found.n_frames)
-        && is_side(found.rows)
-        && (is_side(found.columns) || (!found.has_grid && found.columns <= MAX_SIDE * MAX_SIDE));
+        && found
+            .sides
+            .is_none_or(|sides| sides.into_iter().all(is_side))
+        && found.rows * found.columns <= MAX_SIDE * MAX_SIDE;
     match is_allowed && found.columns > 0 {
         true => Ok(found),
         false => {

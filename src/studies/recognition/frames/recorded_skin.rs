@@ -107,8 +107,11 @@ impl RecordedSkinFiles {
         let spec = RecordedSpec::of_frames(path, self.order.as_deref(), self.grid);
         let shape = spec.shape_of("frames")?;
         if !shape.has_grid {
-            let given = format!("{} taxels without rows and columns", shape.columns);
-            let allowed = "frames of a grid of taxels (--grid ROWS,COLUMNS or --order names them)";
+            let given = match shape.sides {
+                Some(_) => format!("{} values a taxel", shape.columns / shape.n_places),
+                None => format!("{} taxels without rows and columns", shape.columns),
+            };
+            let allowed = "frames of a grid of taxels with one value each (--grid ROWS,COLUMNS or --order names them)";
             return Err(Error::input(path.display(), given, allowed));
         }
         let readings = FileArray::read(path, "frames")?.into_numbers()?;

@@ -58,11 +58,22 @@ impl SensorFrames {
             None => None,
         };
         if let Some(test) = &test {
-            let axes = |shape: &FrameShape| [shape.n_frames, shape.rows, shape.columns];
+            let axes = |shape: &FrameShape| {
+                let sides = shape.sides.unwrap_or([1, shape.n_places]);
+                (
+                    shape.n_frames,
+                    sides,
+                    shape.rows * shape.columns / shape.n_places,
+                )
+            };
             if axes(&test.shape) != axes(&train.shape) {
                 let [given, allowed] = [&test.shape, &train.shape].map(|shape| {
-                    let [n_frames, rows, columns] = axes(shape);
-                    format!("touches of {n_frames} frames of {rows} × {columns} taxels")
+                    let (n_frames, [rows, columns], n_values) = axes(shape);
+                    let values = match n_values {
+                        1 => String::new(),
+                        n => format!(" of {n} values"),
+                    };
+                    format!("touches of {n_frames} frames of {rows} × {columns} taxels{values}")
                 });
                 let allowed = format!("{allowed}, as {} has", train.place);
                 return Err(Error::input(&test.place, given, allowed));

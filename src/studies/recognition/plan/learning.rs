@@ -59,7 +59,12 @@ impl Check<'_> {
         let no_rows = arrays.iter().find(|array| array.sides().is_none());
         if let (Some(ensemble), Some(array)) = (of_rows, no_rows) {
             let given = format!("{} of {}", ensemble.about().words, array.layout_words());
-            let allowed = "ensembles that need no rows and columns";
+            let allowed = match array.image_shapes().len() {
+                1 => "ensembles that need no rows and columns",
+                _ => {
+                    "ensembles that need no rows and columns, or one sensor with one value a taxel"
+                }
+            };
             return Err(self.error("sensing.ensemble", given, allowed));
         }
         Ok(())

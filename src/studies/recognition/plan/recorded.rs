@@ -245,14 +245,22 @@ impl Check<'_> {
 }
 
 impl RecordedSpec {
-    /// Returns the sensor with the positions of its taxels: those of the layout file, or a grid. If several values are recorded at each position, the values of
+    /// Returns the sensor with the positions of its taxels: those of the layout file, or those of a grid. If several values are recorded at each position, the values of
     /// each kind form a sensor. Returns `None` if the positions are unknown. `pitch` is the side of the square area per taxel, metres.
     fn placed(&self, name: &str, pitch: f64) -> Result<Option<Vec<PlacedSensor>>> {
         let shape = self.shape_of("frames")?;
-        let sides = shape.has_grid.then_some([shape.rows, shape.columns]);
+        let sides = shape.sides;
+        let n_values = shape.rows * shape.columns / shape.n_places;
+        let of_values = |sensor: PlacedSensor| -> Vec<PlacedSensor> {
+            let of_value = |value: usize| match n_values {
+                1 => sensor.clone(),
+                _ => sensor.renamed(format!("{name}, value {}", value + 1)),
+            };
+            (0..n_values).map(of_value).collect()
+        };
         let Some(path) = &self.layout else {
             let sensor = |[ny, nx]: [usize; 2]| PlacedSensor::grid(name, &Grid { nx, ny, pitch });
-            return Ok(sides.map(sensor).transpose()?.map(|sensor| vec![sensor]));
+            return Ok(sides.map(sensor).transpose()?.map(of_values));
         };
         let layout = LayoutFile::read(path, LayoutOptions::default())?.layout;
         let place = path.display().to_string();
@@ -262,11 +270,6 @@ impl RecordedSpec {
             return Err(Error::input(place, given, allowed));
         }
         let sensor = PlacedSensor::new(name, (&place, layout), pitch, sides)?;
-        let n_values = shape.rows * shape.columns / shape.n_places;
-        let of_value = |value: usize| match n_values {
-            1 => sensor.clone(),
-            _ => sensor.renamed(format!("{name}, value {}", value + 1)),
-        };
-        Ok(Some((0..n_values).map(of_value).collect()))
+        Ok(Some(of_values(sensor)))
     }
 }

@@ -24,7 +24,7 @@ macro_rules! sensor_spec {
             )]
             pub frames_test: Option<PathBuf>,
             /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels. The axis
-            /// `c` contains the values of a taxel if the frames have rows and columns, otherwise the taxels. Default: `n y x`, `n t y x` or `n c`.
+            /// `c` contains the values of a taxel (each with an image of its own) if the frames have rows and columns, otherwise the taxels. Default: `n y x`, `n t y x` or `n c`.
             #[serde(skip_serializing_if = "Option::is_none")]
             pub order: Option<String>,
             /// Numbers of rows and columns of the sensor, if the axis `c` of the frames lists its taxels row by row.
