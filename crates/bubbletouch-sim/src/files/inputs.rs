@@ -62,6 +62,20 @@ pub fn read_to_string(path: &Path) -> io::Result<String> {
     Ok(text)
 }
 
+/// Returns an error if a file has been downloaded as a pointer of Git LFS instead of its content; `place` is the name of the file, and `bytes` its beginning.
+///
+/// # Errors
+/// If the bytes are a pointer of Git LFS.
+pub fn check_content(place: impl std::fmt::Display, bytes: &[u8]) -> Result<()> {
+    match bytes.starts_with(b"version https://git-lfs") {
+        true => {
+            let given = "a pointer of Git LFS without the content of the file";
+            Err(Error::input(place, given, "the file itself (git lfs pull)"))
+        }
+        false => Ok(()),
+    }
+}
+
 /// Returns an error if writing the file at `path` would destroy an input of this process.
 ///
 /// # Errors

@@ -18,6 +18,8 @@ pub use csv_file::{CsvFile, table_error};
 pub use file_path::{
     FilePath, SetName, file_path, optional_file_path, with_absolute_paths, with_folder,
 };
-pub use inputs::{check_output, input_within, open, protect_inputs, read, read_to_string};
+pub use inputs::{
+    check_content, check_output, input_within, open, protect_inputs, read, read_to_string,
+};
 pub use owned::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN, check_single_output};
 pub use whole_file::{WholeFile, write_bytes, write_whole};

@@ -6,6 +6,7 @@ use super::obj::read_obj;
 use super::ply::read_ply;
 use super::stl::read_stl;
 use crate::error::{Error, Result};
+use crate::files::check_content;
 use crate::mesh::MeshFile;
 use serde::{Deserialize, Serialize};
 use std::io::BufRead;
@@ -77,8 +78,10 @@ impl MeshFormat {
         self,
         place: &str,
         unit: Option<LengthUnit>,
-        source: impl BufRead,
+        mut source: impl BufRead,
     ) -> Result<MeshFile> {
+        // A file whose beginning cannot be read fails in its reader, with the error of the format.
+        check_content(place, source.fill_buf().unwrap_or_default())?;
         let (file, own_unit) = match self {
             Self::Ply => (read_ply(place, source)?, 1.0),
             Self::Obj => (read_obj(place, source)?, 1.0),

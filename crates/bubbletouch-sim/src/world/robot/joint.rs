@@ -44,7 +44,7 @@ pub enum JointKind {
     Floating,
     /// Motion in the plane perpendicular to the axis: three coordinates.
     Planar,
-    /// Rotation about a point: three coordinates (MJCF).
+    /// Rotation about a point: three coordinates (MJCF, and `spherical` in URDF).
     Ball,
 }
 
@@ -74,13 +74,15 @@ pub struct Mimic {
 
 impl JointKind {
     /// Names of the joint kinds in URDF.
-    pub(super) const ALL: [(&'static str, Self); 6] = [
+    pub(super) const ALL: [(&'static str, Self); 7] = [
         ("revolute", Self::Revolute),
         ("continuous", Self::Continuous),
         ("prismatic", Self::Prismatic),
         ("fixed", Self::Fixed),
         ("floating", Self::Floating),
         ("planar", Self::Planar),
+        // Of Bullet, which MuJoCo reads, too.
+        ("spherical", Self::Ball),
     ];
 
     /// Returns the suffix and the dimension of each coordinate of this joint kind; the suffix is appended to the joint's name.

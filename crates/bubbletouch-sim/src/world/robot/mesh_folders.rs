@@ -59,22 +59,62 @@ impl MeshFolders {
     /// Returns the paths at which a mesh file is searched, in this order.
     fn candidates(&self, file: &str) -> Vec<PathBuf> {
         let Some((name, inside)) = package_of(file) else {
-            let path = file.strip_prefix("file://").unwrap_or(file);
-            let mut paths = vec![self.folder.join(path)];
-            if path.contains('\\') {
-                paths.push(self.folder.join(path.replace('\\', "/")));
-            }
-            return paths;
+            let address = ["file://", "file:"];
+            let path = address.iter().find_map(|scheme| file.strip_prefix(scheme));
+            return spellings(path.unwrap_or(file))
+                .into_iter()
+                .map(|path| self.folder.join(path))
+                .collect();
         };
+        let inside = spellings(inside);
         if let Some(folder) = self.packages.get(name) {
-            return vec![folder.join(inside)];
+            return inside.iter().map(|inside| folder.join(inside)).collect();
         }
         let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
         let above = folder.ancestors();
         above
-            .flat_map(|above| [above.join(name).join(inside), above.join(inside)])
+            .flat_map(|above| {
+                let of = |inside: &String| [above.join(name).join(inside), above.join(inside)];
+                inside.iter().flat_map(of).collect::<Vec<_>>()
+            })
             .collect()
     }
+}
+
+/// Returns the spellings under which a file is searched: as written, with `/` for the separator `\` of Windows, and with the decoded `%20` of an address.
+pub(super) fn spellings(path: &str) -> Vec<String> {
+    let mut all = vec![path.to_owned()];
+    if path.contains('\\') {
+        all.push(path.replace('\\', "/"));
+    }
+    if let Some(decoded) = percent_decoded(path) {
+        all.push(decoded);
+    }
+    all
+}
+
+/// Returns a path with decoded bytes such as `%20`; `None` if it contains none, or if the result is not UTF-8.
+fn percent_decoded(path: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(path.len());
+    let mut rest = path.as_bytes();
+    while let Some((&first, after)) = rest.split_first() {
+        let code = after.get(..2).filter(|_| first == b'%');
+        let code = code.and_then(|code| std::str::from_utf8(code).ok());
+        let code = code.filter(|code| code.bytes().all(|byte| byte.is_ascii_hexdigit()));
+        match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &after[2..];
+            }
+            None => {
+                bytes.push(first);
+                rest = after;
+            }
+        }
+    }
+    String::from_utf8(bytes)
+        .ok()
+        .filter(|decoded| decoded != path)
 }
 
 /// Returns the name of the package and the path inside the package, if the name of a mesh file is the address of a package.

@@ -5,6 +5,7 @@ use super::mjcf::read_mjcf;
 use super::text::{decoded, root_name};
 use super::urdf::{check_sensors, read_urdf};
 use crate::error::{Error, Result};
+use crate::files::check_content;
 use std::path::Path;
 
 impl Robot {
@@ -55,6 +56,7 @@ impl Robot {
     /// # Errors
     /// If the bytes cannot be decoded or the text is invalid.
     pub fn from_bytes(place: &str, bytes: &[u8]) -> Result<Self> {
+        check_content(place, bytes)?;
         let (text, note) = decoded(place, bytes);
         let mut robot = match root_name(&text).as_deref() {
             Some("mujoco") => read_mjcf(place, &text)?,

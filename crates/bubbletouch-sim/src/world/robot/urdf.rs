@@ -228,8 +228,8 @@ fn read_joint(
         "safety_controller",
     ])?;
     let (kind, axis) = match element.or_note(read_kind(&element, name), JointKind::Fixed, FIXED) {
-        // Fixed and floating joints have no axis; an `<axis>` in the file is ignored.
-        kind @ (JointKind::Fixed | JointKind::Floating) => (kind, DVec3::X),
+        // Fixed, floating and spherical joints have no axis; an `<axis>` in the file is ignored.
+        kind @ (JointKind::Fixed | JointKind::Floating | JointKind::Ball) => (kind, DVec3::X),
         kind => {
             let read = read_axis(element, name).map(|axis| (kind, axis));
             element.or_note(read, (JointKind::Fixed, DVec3::X), FIXED)

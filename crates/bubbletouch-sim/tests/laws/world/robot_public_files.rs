@@ -1,8 +1,10 @@
 //! Public URDF files that a strict reader rejects. Each file is read, omitted parts have a note, and the poses of links equal the poses in the file.
 
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::world::{JointKind, LinkGeometry, Robot};
+use bubbletouch_sim::mesh::MeshFormat;
+use bubbletouch_sim::world::{JointKind, LinkGeometry, MeshFolders, Robot};
 use glam::DVec3;
+use std::path::Path;
 
 fn read(text: &str) -> Robot {
     Robot::from_urdf("r.urdf", text).expect(text)
@@ -74,7 +76,7 @@ fn a_joint_whose_axis_or_type_cannot_be_read_is_fixed_with_a_note() {
             r#"<axis xzy="0 0 1"/>"#,
             "`xzy` in <axis>; perhaps `xyz`: the joint is fixed",
         ),
-        ("spherical", "", "joint `j` of type `spherical`"),
+        ("universal", "", "joint `j` of type `universal`"),
         (
             "continous",
             "",
@@ -250,6 +252,67 @@ fn a_shape_that_cannot_be_read_is_left_out_and_one_of_size_zero_is_kept() {
     assert!(
         matches!(&robot.links()[0].shapes[0].geometry, LinkGeometry::Mesh { file, .. } if file == nowhere)
     );
+}
+
+#[test]
+fn a_spherical_joint_has_three_angles() {
+    let robot = jointed("spherical", r#"<axis xyz="0 0 0"/>"#);
+    assert!(robot.notes().is_empty(), "{:?}", robot.notes());
+    assert_eq!(robot.joints()[0].kind, JointKind::Ball);
+    let links = robot.forward(&Pose::IDENTITY, &[0.0, 0.0, std::f64::consts::FRAC_PI_2]);
+    let pose = links.unwrap()[1];
+    assert!((pose.rotation * DVec3::X - DVec3::Y).length() < 1e-15);
+    assert_eq!(pose.translation, DVec3::new(0.0, 0.0, 0.1));
+}
+
+#[test]
+fn files_with_the_separators_of_windows_and_coded_addresses_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::create_dir_all(path("pkg/a b")).unwrap();
+    std::fs::write(
+        path("pkg/a b/arm.xml"),
+        "<mujoco><worldbody><body name='arm'/></worldbody></mujoco>",
+    )
+    .unwrap();
+    std::fs::write(path("pkg/a b/cube.obj"), "").unwrap();
+    let main = path("pkg/main.xml");
+    std::fs::write(&main, "<mujoco><include file='a b\\arm.xml'/></mujoco>").unwrap();
+    let robot = Robot::read(&main).unwrap();
+    assert_eq!(robot.links()[1].name, "arm");
+    let folders = MeshFolders::beside(&main, Default::default());
+    let file = format!("file://{}", path("pkg/a%20b/cube.obj").display());
+    for name in [
+        "a b\\cube.obj",
+        "a%20b/cube.obj",
+        "package://pkg/a%20b/cube.obj",
+        "package://other/a b\\cube.obj",
+        &file,
+    ] {
+        assert_eq!(
+            folders.find(name).unwrap().canonicalize().unwrap(),
+            path("pkg/a b/cube.obj").canonicalize().unwrap(),
+            "{name}"
+        );
+    }
+    assert!(folders.find("50%zz/cube.obj").is_err());
+}
+
+#[test]
+fn a_pointer_of_git_lfs_is_named_as_such() {
+    let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n";
+    let expected = "r.urdf: a pointer of Git LFS without the content of the file; the file itself (git lfs pull)";
+    let error = Robot::from_bytes("r.urdf", pointer.as_bytes()).unwrap_err();
+    assert_eq!(error.to_string(), expected);
+    for (_, format) in ["ply", "obj", "stl", "dae", "glb"].map(|ending| {
+        (
+            ending,
+            MeshFormat::from_path(Path::new(&format!("a.{ending}"))).unwrap(),
+        )
+    }) {
+        let error = format.read("r.urdf", None, pointer.as_bytes()).unwrap_err();
+        assert_eq!(error.to_string(), expected, "{format:?}");
+    }
 }
 
 #[test]

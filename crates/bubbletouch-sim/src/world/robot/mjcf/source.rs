@@ -1,6 +1,7 @@
 //! Text of an MJCF model: the main file with the text of each included file in place of its `<include>`.
 
 use crate::error::{Error, Result};
+use crate::world::robot::mesh_folders::spellings;
 use crate::world::robot::text::{decoded, parsed, repaired, unreadable};
 use crate::world::robot::xml::{Element, Lines};
 use std::collections::HashSet;
@@ -65,9 +66,12 @@ impl Source {
     /// Adds the children of the root of an included file. The file is searched in the folder of the model, then in the folder of the including file.
     fn include(&mut self, element: Element, model_folder: &Path, own_folder: &Path) -> Result<()> {
         let name = element.text("file")?;
-        let mut tried = vec![model_folder.join(name)];
-        if own_folder != model_folder {
-            tried.push(own_folder.join(name));
+        let mut tried = Vec::new();
+        for name in spellings(name) {
+            tried.push(model_folder.join(&name));
+            if own_folder != model_folder {
+                tried.push(own_folder.join(&name));
+            }
         }
         let Some(path) = tried.iter().find(|path| path.is_file()) else {
             let list: Vec<String> = tried
