@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Sequence
+import glob
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,10 @@ import numpy as np
 
 from bubbletouch._arrays import Array
 
-_SUFFIXES = {".npz": "NumPy", ".h5": "HDF5", ".hdf5": "HDF5", ".zarr": "Zarr", ".parquet": "Parquet", ".csv": "CSV"}
-FORMATS = "a .zarr folder, an .h5, .hdf5, .parquet, .csv or .npz file, a folder of such files, or a LeRobot folder"
+_SUFFIXES = {
+    ".npz": "NumPy", ".npy": "NumPy", ".h5": "HDF5", ".hdf5": "HDF5", ".zarr": "Zarr", ".parquet": "Parquet", ".csv": "CSV", ".tsv": "CSV",
+}
+FORMATS = "a .zarr folder, an .h5, .hdf5, .parquet, .csv, .tsv, .npz or .npy file, a folder of such files, or a LeRobot folder"
 
 
 @dataclass
@@ -25,7 +28,7 @@ class Source:
     place: str
     names: list[str]
     read: Callable[[str], Array]
-    attribute: Callable[[str, str], Any] | None = None
+    attributes: Callable[[str], Mapping[str, Any]] | None = None
     close: Callable[[], object] = lambda: None
 
     def array(self, name: str) -> Array:
@@ -35,16 +38,14 @@ class Source:
         try:
             return np.asarray(self.read(name))
         except (OSError, ValueError, RuntimeError) as error:
+            if "allow_pickle" in str(error):
+                trusted = f'numpy.load("{self.place}", allow_pickle=True) for a file that you trust, and run(recorded={{"frames": list(...), ...}})'
+                raise ValueError(f"{self.place}, array `{name}`: pickled objects, which may run code; numbers, or {trusted}") from None
             raise ValueError(f"{self.place}, array `{name}`: cannot be read ({error}); a complete file") from None
 
     def matches(self, pattern: str) -> list[str]:
         """Returns the names of the arrays that match a pattern; `*` stands for one part of a path. Numbers in names are ordered by value."""
-        parts = pattern.split("/")
-        found = []
-        for name in self.names:
-            own = name.split("/")
-            if len(own) == len(parts) and all(fnmatchcase(a, b) for a, b in zip(own, parts, strict=True)):
-                found.append(name)
+        found = [name for name in self.names if matched(pattern, name) is not None]
         if not found:
             raise ValueError(f"{self.place}: no array `{pattern}`; {_listed(self.names)}")
         return sorted(found, key=natural)
@@ -53,19 +54,37 @@ class Source:
         """Returns a scalar, or an attribute that is written as `path@name`."""
         if "@" in name:
             owner, key = name.rsplit("@", 1)
-            if self.attribute is None:
+            if self.attributes is None:
                 raise ValueError(f"{self.place}: attribute `{name}`; the name of an array, because this format has no attributes")
             try:
-                return self.attribute(owner, key)
+                attributes = self.attributes(owner)
             except KeyError:
-                raise ValueError(f"{self.place}: no attribute `{name}`; an attribute of the file") from None
-        value = self.array(name)
-        if value.size != 1:
-            raise ValueError(f"{self.place}, array `{name}`: shape {value.shape}; one value for each touch")
-        return value.reshape(-1)[0]
+                raise ValueError(f"{self.place}: no `{owner}`; {_listed(self.names)}") from None
+            if key not in attributes:
+                raise ValueError(f"{self.place}: no attribute `{name}`; {_listed(sorted(attributes)) if attributes else 'an attribute of the file'}")
+            return attributes[key]
+        # An array with a value for each frame of the touch has equal values.
+        values = self.array(name).reshape(-1)
+        if len(values) == 0 or any(value != values[0] for value in values.tolist()):
+            given = ", ".join(map(str, dict.fromkeys(values.tolist()[:1000])))[:60] or "no value"
+            raise ValueError(f"{self.place}, array `{name}`: {given}; one value for each touch")
+        return values[0]
+
+
+def matched(pattern: str, name: str) -> dict[str, str] | None:
+    """Returns the texts that stand for `{label}` and `{group}` in a pattern; None if the name does not match. `*` stands for any text within one part of a
+    path.
+    """
+    parts = re.split(r"(\*|\{label\}|\{group\})", pattern)
+    wild = {"*": "[^/]*", "{label}": "(?P<label>[^/]+)", "{group}": "(?P<group>[^/]+)"}
+    found = re.fullmatch("".join(wild.get(part, re.escape(part)) for part in parts), name)
+    return None if found is None else found.groupdict()
 
 
 def _listed(names: Sequence[str]) -> str:
+    if len(names) > 20:
+        # Names that differ in numbers are listed as one pattern.
+        names = list(dict.fromkeys(re.sub(r"\d+", "*", name) for name in names))
     shown = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
     return f"one of {shown}" if names else "a file with arrays"
 
@@ -96,6 +115,8 @@ def _is_zarr(path: Path) -> bool:
 
 def files_of(place: Path) -> list[Path]:
     """Returns the files of a recording: the path itself, or all files of a folder and its subfolders in natural order."""
+    if not place.exists():
+        return _matching(place)
     if place.is_file() or _is_zarr(place):
         if place.is_file() and place.suffix.lower() not in _SUFFIXES:
             raise ValueError(f"{place}: another file; {FORMATS}")
@@ -104,6 +125,16 @@ def files_of(place: Path) -> list[Path]:
     if not found:
         raise ValueError(f"{place}: a folder without recordings; {FORMATS}")
     return sorted(found, key=lambda file: natural(file.relative_to(place).as_posix()))
+
+
+def _matching(pattern: Path) -> list[Path]:
+    """Returns the files whose paths match a pattern, in natural order."""
+    text = str(pattern)
+    found = [Path(file) for file in glob.glob(re.sub(r"\{label\}|\{group\}", "*", text)) if Path(file).suffix.lower() in _SUFFIXES]
+    found = [file for file in found if matched(text, str(file)) is not None]
+    if not found:
+        raise FileNotFoundError(f"{pattern}: no such file or folder; {FORMATS}, or a pattern with *, {{label}} or {{group}} of such files")
+    return sorted(found, key=lambda file: natural(file.as_posix()))
 
 
 def open_file(file: Path) -> Source:
@@ -118,6 +149,8 @@ def open_file(file: Path) -> Source:
 
 
 def _open_npz(file: Path) -> Source:
+    if file.suffix.lower() == ".npy":
+        return Source(str(file), ["frames"], lambda name: np.load(file, allow_pickle=False))
     archive = np.load(file, allow_pickle=False)
     return Source(str(file), list(archive.files), lambda name: archive[name], close=archive.close)
 
@@ -129,14 +162,21 @@ def _open_hdf5(file: Path) -> Source:
 
     def visit(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset):
-            names.append(name)
+            # A table has an array for each of its columns.
+            names.extend([f"{name}/{column}" for column in item.dtype.names or ()] or [name])
 
     opened.visititems(visit)
 
-    def attribute(owner: str, key: str) -> Any:
-        return (opened[owner] if owner else opened).attrs[key]
+    def read(name: str) -> Array:
+        table, _, column = name.rpartition("/")
+        values: Array = opened[table].fields(column)[()] if table and isinstance(opened[table], h5py.Dataset) else opened[name][()]
+        return values
 
-    return Source(str(file), names, lambda name: opened[name][()], attribute, opened.close)
+    def attributes(owner: str) -> Mapping[str, Any]:
+        found: Mapping[str, Any] = (opened[owner] if owner else opened).attrs
+        return found
+
+    return Source(str(file), names, read, attributes, opened.close)
 
 
 def _open_zarr(file: Path) -> Source:
@@ -156,10 +196,11 @@ def _open_zarr(file: Path) -> Source:
 
     visit(opened, "")
 
-    def attribute(owner: str, key: str) -> Any:
-        return (opened[owner] if owner else opened).attrs[key]
+    def attributes(owner: str) -> Mapping[str, Any]:
+        found: Mapping[str, Any] = (opened[owner] if owner else opened).attrs
+        return found
 
-    return Source(str(file), sorted(names, key=natural), lambda name: opened[name][...], attribute)
+    return Source(str(file), sorted(names, key=natural), lambda name: opened[name][...], attributes)
 
 
 def _open_parquet(file: Path) -> Source:
@@ -175,16 +216,21 @@ def _open_parquet(file: Path) -> Source:
 
 def _open_csv(file: Path) -> Source:
     with file.open(encoding="utf-8-sig", newline="") as opened:
-        lines = csv.reader(opened)
+        first = opened.readline()
+        opened.seek(0)
+        lines = csv.reader(opened, delimiter=max(",;\t", key=first.count))
         names = [name.strip() for name in next(lines, [])]
         rows = [line for line in lines if line]
+    if names and all(map(_is_number, names)):
+        # Without names of columns, all columns are readings.
+        rows.insert(0, names)
+        whole = np.array([[float(cell or "nan") for cell in row] for row in _even(rows, len(names), 1)])
+        return Source(str(file), ["frames"], lambda name: whole)
     twice = [name for name in names if names.count(name) > 1]
     if not names or twice:
         given = f"column `{twice[0]}` twice" if twice else "an empty file"
         raise ValueError(f"{given}; a first line with the name of each column")
-    for number, row in enumerate(rows, start=2):
-        if len(row) != len(names):
-            raise ValueError(f"row {number} has {len(row)} of {len(names)} columns")
+    rows = _even(rows, len(names), 2)
 
     def read(name: str) -> Array:
         column = names.index(name)
@@ -198,6 +244,22 @@ def _open_csv(file: Path) -> Source:
         return np.array(texts)
 
     return Source(str(file), names, read)
+
+
+def _even(rows: list[list[str]], n: int, first: int) -> list[list[str]]:
+    """Returns rows of n cells each; `first` is the number of the first row in the file."""
+    for number, row in enumerate(rows, start=first):
+        if len(row) != n:
+            raise ValueError(f"row {number} has {len(row)} of {n} columns")
+    return rows
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def of_column(column: Any) -> Array:

@@ -11,8 +11,35 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[Any]
 
 
+def as_array(place: str, values: Any) -> Array:
+    """Returns an array of values in memory. Masked values become NaN; a tensor of PyTorch is copied from its device."""
+    if isinstance(values, np.ma.MaskedArray) and values.dtype.kind in "fiub":
+        missing = np.ma.getmaskarray(values)
+        return np.where(missing, np.nan, values.data.astype(np.result_type(values.dtype, np.float32)))
+    try:
+        if hasattr(values, "detach"):
+            values = values.detach().cpu()
+            # NumPy has no type bfloat16.
+            values = values.float() if "bfloat16" in str(values.dtype) else values
+        array = np.asarray(values)
+    except (TypeError, ValueError, RuntimeError) as error:
+        raise ValueError(f"{place}: {type(values).__name__} that cannot be converted to an array ({error}); an array") from None
+    if array.ndim == 0:
+        raise ValueError(f"{place}: {type(values).__name__}; an array, or the path of a file")
+    return array
+
+
 def as_numbers(place: str, values: Array) -> Array:
     """Returns readings as numbers. Raises ValueError for texts and objects."""
+    if values.dtype.names:
+        raise ValueError(f"{place}: fields {', '.join(values.dtype.names)}; an array of numbers, such as one field")
+    if values.dtype.kind == "O":
+        try:
+            return values.astype(np.float64)
+        except (TypeError, ValueError):
+            pass
+        kind = type(next(value for value in values.ravel().tolist() if not isinstance(value, float))).__name__
+        raise ValueError(f"{place}: elements of type {kind}; numbers, in an array for each touch or in touches that are padded with NaN")
     if values.dtype.kind not in "fiub":
         raise ValueError(f"{place}: elements of type {values.dtype}; numbers")
     if values.size == 0:
@@ -22,12 +49,17 @@ def as_numbers(place: str, values: Array) -> Array:
 
 def as_keys(place: str, values: ArrayLike, n: int | None = None) -> Array:
     """Returns labels or groups as integers or texts, one for each touch."""
-    array = np.asarray(values)
+    array = as_array(place, values)
+    if array.dtype.kind == "T":
+        # Texts of any length, as Zarr stores them.
+        array = np.asarray(array.tolist(), dtype=str)
     if array.dtype.kind in "SO":
         decoded = [value.decode() if isinstance(value, bytes) else value for value in array.ravel().tolist()]
         if not all(isinstance(value, str | int) for value in decoded):
-            missing = next(value for value in decoded if not isinstance(value, str | int))
-            raise ValueError(f"{place}: {missing!r}; integers or texts")
+            at, missing = next((at, value) for at, value in enumerate(decoded) if not isinstance(value, str | int))
+            raise ValueError(f"{place}, position {at}: {missing!r}; integers or texts")
+        if len({isinstance(value, str) for value in decoded}) > 1:
+            raise ValueError(f"{place}: texts and integers; one kind")
         array = np.asarray(decoded).reshape(array.shape)
     if array.ndim == 2 and array.shape[1] == 1:
         array = array[:, 0]
@@ -44,9 +76,17 @@ def as_keys(place: str, values: ArrayLike, n: int | None = None) -> Array:
     return array
 
 
-def padded(touches: Sequence[ArrayLike]) -> tuple[Array, Array | None]:
+def padded(place: str, touches: Sequence[ArrayLike]) -> tuple[Array, Array | None]:
     """Returns touches of unequal length, each with frames along the first axis, as one array padded with NaN; and their lengths if they differ."""
-    arrays = [np.asarray(touch) for touch in touches]
+    if len(touches) == 0:
+        raise ValueError(f"{place}: no touches; at least one")
+    arrays = [as_numbers(f"{place}, touch {number}", as_array(f"{place}, touch {number}", touch)) for number, touch in enumerate(touches)]
+    # A touch is its frames, or a single frame.
+    own = 0 if arrays[0].ndim == 1 else 1
+    for number, array in enumerate(arrays):
+        if array.ndim != arrays[0].ndim or array.shape[own:] != arrays[0].shape[own:]:
+            given = f"shape {array.shape}; {('n_frames', *arrays[0].shape[1:]) if own else arrays[0].shape}, as touch 0 has"
+            raise ValueError(f"{place}, touch {number}: {given}".replace("'", ""))
     lengths = np.array([len(touch) for touch in arrays])
     if len(set(lengths.tolist())) == 1:
         return np.stack(arrays), None

@@ -15,7 +15,7 @@ from typing import Any
 
 from bubbletouch import _core
 from bubbletouch._foreign import Given, Host, hosted, identified, pickler
-from bubbletouch.recorded import Recorded, with_paths
+from bubbletouch.recorded import Recorded, named, with_paths
 from bubbletouch.study import Study, StudySource
 
 __all__ = ["RayExecutor", "run"]
@@ -140,7 +140,10 @@ def bubbletouch_shard(source: StudySource, files: Mapping[str, bytes], code: byt
         for path, content in files.items():
             Path(paths[path]).write_bytes(content)
         call = replace(source, recorded=with_paths(source.recorded, paths)).call()
-        _core.run_study(out=out, callback=None, **call, **_hosted(given), shard=shard, threads=threads)
+        try:
+            _core.run_study(out=out, callback=None, **call, **_hosted(given), shard=shard, threads=threads)
+        except ValueError as error:
+            raise named(error, {paths[path]: key for path, key in source.files.items()}) from error.__cause__
         return (out / file).read_bytes()
 
 

@@ -11,15 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from bubbletouch._arrays import Array, as_keys, padded
+from bubbletouch._arrays import Array, as_array, as_keys, as_numbers, padded
 from bubbletouch._core import Patch
 
 __all__ = ["Recorded"]
 
 # Keys of [recorded] that may be arrays in memory.
 _FRAMES = ("frames", "frames_test", "shear", "shear_test")
-_OF_TOUCHES = ("labels", "groups", "labels_test", "groups_test", "lengths", "lengths_test", "depths")
-_ARRAYS = (*_FRAMES, *_OF_TOUCHES, "zero")
+# Keys that may be texts.
+_KEYS = ("labels", "groups", "labels_test", "groups_test")
+_ARRAYS = (*_FRAMES, *_KEYS, "lengths", "lengths_test", "depths", "zero")
 
 
 class Recorded:
@@ -75,29 +76,31 @@ class Recorded:
         return {"sensors": sensors} | {name: value for name, value in {**shared, **others}.items() if value is not None}
 
 
-def with_files(table: Mapping[str, Any], folder: Path, files: list[str]) -> dict[str, Any]:
+def with_files(table: Mapping[str, Any], folder: Path, files: dict[str, str], place: str = "recorded") -> dict[str, Any]:
     """Returns a table `[recorded]` with files in place of arrays. Each file is named after its content and is written into the folder; its path is added to
-    `files`.
+    `files` with the key of the array.
     """
     written: dict[str, Any] = {}
 
-    def stored(key: str, values: Array) -> str:
-        files.append(_file(folder, key, values))
-        return files[-1]
+    def stored(key: str, values: Array) -> None:
+        written[key] = _file(folder, f"{place}.{key}", values)
+        files[written[key]] = f"{place}.{key}"
 
     for key, value in table.items():
         if key == "sensors":
-            written[key] = [with_files(sensor, folder, files) for sensor in value]
-        elif key in _FRAMES and isinstance(value, list | tuple):
-            frames, lengths = padded(value)
-            written[key] = stored(key, frames)
+            if isinstance(value, str) or not all(isinstance(sensor, Mapping) for sensor in value):
+                raise ValueError(f"{place}.sensors: {type(value).__name__}; a list of dicts, each with name and frames")
+            written[key] = [with_files(sensor, folder, files, f"{place}.sensors[{number}]") for number, sensor in enumerate(value, 1)]
+        elif key in _FRAMES and (isinstance(value, list | tuple) or getattr(value, "dtype", None) == object):
+            frames, lengths = padded(f"{place}.{key}", list(value))
+            stored(key, frames)
             if lengths is not None:
-                written[key.replace("frames", "lengths")] = stored("lengths", lengths)
-        elif key in _ARRAYS and not isinstance(value, str | PathLike | float | int | np.generic):
-            written[key] = stored(key, np.asarray(value))
-        elif key == "layout" and not isinstance(value, str | PathLike):
-            files.append(_layout(folder, value))
-            written[key] = files[-1]
+                stored(key.replace("frames", "lengths"), lengths)
+        elif key in _ARRAYS and value is not None and not isinstance(value, str | PathLike) and (key != "zero" or np.ndim(value) > 0):
+            stored(key, as_array(f"{place}.{key}", value))
+        elif key == "layout" and value is not None and not isinstance(value, str | PathLike):
+            written[key] = _layout(folder, value)
+            files[written[key]] = f"{place}.layout"
         elif value is not None:
             written[key] = value
     return written
@@ -126,12 +129,25 @@ def _layout(folder: Path, value: Any) -> str:
     return _written(folder, "layout", ".npz", content.getvalue())
 
 
-def _file(folder: Path, name: str, values: Array) -> str:
+def named(error: ValueError, files: Mapping[str, str]) -> ValueError:
+    """Returns an error with the keys of arrays in memory in place of the paths of their files."""
+    text = str(error)
+    for path, key in files.items():
+        text = text.replace(path, key)
+    found = ValueError(text)
+    found.__cause__ = error.__cause__
+    return found
+
+
+def _file(folder: Path, key: str, values: Array) -> str:
     """Writes an array into the folder, and returns its path."""
-    if values.dtype.kind == "O" or values.dtype.kind == "S":
-        values = as_keys(f"recorded.{name}", values)
+    name = key.rpartition(".")[2]
+    if name in _KEYS and values.dtype.kind in "OST":
+        values = as_keys(key, values)
+    elif name not in _KEYS:
+        values = as_numbers(key, values)
     if values.dtype.kind not in "fiubU":
-        raise ValueError(f"recorded.{name}: elements of type {values.dtype}; numbers, or texts of labels and groups")
+        raise ValueError(f"{key}: elements of type {values.dtype}; integers or texts")
     content = io.BytesIO()
     np.save(content, values, allow_pickle=False)
     return _written(folder, name, ".npy", content.getvalue())

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from bubbletouch import _core
 from bubbletouch._core import Mesh, Simulation, SphereUnion
 from bubbletouch._foreign import Host, hosted, identified
-from bubbletouch.recorded import Recorded, with_files
+from bubbletouch.recorded import Recorded, named, with_files
 
 Callback = Callable[[str, int, int], object]
 
@@ -161,6 +161,8 @@ def run(
     given = hosted(host, identified(classifiers, features))
     try:
         tables = _core.run_study(**source.call(), out=source.results, callback=callback, classifiers=given[0], features=given[1])
+    except ValueError as error:
+        raise named(error, source.files) from error.__cause__
     finally:
         host.close()
     return Study(source.results, tables, kept)
@@ -174,7 +176,7 @@ class StudySource:
     seed: replaces the seed of the study; None keeps it.
     results: result folder.
     recorded: keys that replace keys of `[recorded]`.
-    files: paths of the arrays in memory, which are stored in the result folder.
+    files: keys of the arrays in memory, by the paths of their files in the result folder.
     """
 
     text: str
@@ -184,7 +186,7 @@ class StudySource:
     seed: int | None
     results: Path
     recorded: dict[str, Any]
-    files: list[str]
+    files: dict[str, str]
 
     @classmethod
     def of(
@@ -203,7 +205,7 @@ class StudySource:
             study = {key: value for key, value in study.items() if key != "recorded"}
         text, place, name, folder = _text(study)
         results = Path(kept.name) / name if kept is not None else Path(out or "")
-        files: list[str] = []
+        files: dict[str, str] = {}
         table = with_files(table, results / "recorded", files)
         return cls(text, place, name, folder, seed, results, table, files), kept
 
