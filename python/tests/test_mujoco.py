@@ -251,8 +251,21 @@ def test_names_that_are_not_there_are_refused(model) -> None:
         Skin(model, patches(), geoms=["cup"])
     with pytest.raises(ValueError, match="geom: 'foot'; one of floor"):
         Skin(model, {"geom:foot": patches()["palm"]})
-    with pytest.raises(ValueError, match="geoms: none that can touch the skin"):
+    with pytest.raises(ValueError, match="geoms: none on another body than the patches; at least one that can touch the skin$"):
         Skin(model, {"palm": patches()["palm"]}, geoms=["plate"])
+    with pytest.raises(ValueError, match="layout: no patch; at least one"):
+        Skin(model, {})
+    for layout, words in (({"palm": 3}, "layout: 'palm' with int; a name with a Patch"), ({3: patches()["palm"]}, "layout: 3 with Patch; a name")):
+        with pytest.raises(TypeError, match=words):
+            Skin(model, layout)
+    ghost = mujoco.MjModel.from_xml_string("""
+    <mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" conaffinity="0"/>
+      <body><freejoint/><geom size="0.1" contype="0"/><site name="palm"/></body></worldbody></mujoco>""")
+    Skin(ghost, {"palm": patches()["palm"]})
+    ghost.geom_contype[0] = 0
+    with pytest.raises(ValueError, match=r"geoms: MuJoCo's collision filter leaves none; .*contype.*; names of geoms press without the filter"):
+        Skin(ghost, {"palm": patches()["palm"]})
+    assert Skin(ghost, {"palm": patches()["palm"]}, geoms=["floor"]).geoms == ["floor"]
 
 
 def test_a_floor_presses_a_foot_from_below_alone() -> None:

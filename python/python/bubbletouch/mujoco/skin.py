@@ -46,6 +46,11 @@ class Skin:
     ) -> None:
         self._model = model
         self._patches = dict(layout)
+        if not self._patches:
+            raise ValueError("layout: no patch; at least one, by the name of a site, body or geom")
+        for name, patch in self._patches.items():
+            if not isinstance(name, str) or not isinstance(patch, _core.Patch):
+                raise TypeError(f"layout: {name!r} with {type(patch).__name__}; a name with a Patch")
         self._frames = _Frames(model, list(self._patches))
         carriers = carrying_bodies(model, self._frames.bodies)
         if isinstance(geoms, str):
@@ -57,7 +62,9 @@ class Skin:
             can_touch = geoms_of_others(model, carriers)
             found = [_identity(model, mujoco.mjtObj.mjOBJ_GEOM, name) for name in geoms]
         if not can_touch[:, found].any():
-            raise ValueError("geoms: none that can touch the skin; at least one")
+            advice = ' (contype, conaffinity, <pair>, <exclude>, parent and child); names of geoms press without the filter' if geoms == "all" else ""
+            given = "MuJoCo's collision filter leaves none" if geoms == "all" else "none on another body than the patches"
+            raise ValueError(f"geoms: {given}; at least one that can touch the skin{advice}")
         self._geoms = np.array(found, dtype=np.intp)
         bodies = [geom_surface(model, geom, tolerance) for geom in found]
         # The geoms of one body press a patch together.
