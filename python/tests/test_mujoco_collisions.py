@@ -166,3 +166,33 @@ def test_a_height_field_presses_as_deep_as_rays_and_contacts_of_mujoco_say() -> 
     heights = 0.02 * model.hfield_data.reshape(9, 7).astype(float)
     means = (2 * (heights[:-1, :-1] + heights[1:, 1:]) + heights[1:, :-1] + heights[:-1, 1:]) / 6
     assert abs(surface.volume - (means + 0.01).sum() * 0.02 * 0.02) < 1e-12
+
+
+def test_a_concave_mesh_presses_with_its_surface_or_with_the_hull_of_the_engine() -> None:
+    # A block of 40 mm with a notch of 20 mm in its lower side.
+    profile = [(-20, 0), (-10, 0), (-10, 20), (10, 20), (10, 0), (20, 0), (20, 40), (-20, 40)]
+    corners = [f"{1e-3 * x} {y} {1e-3 * z}" for y in (-0.02, 0.02) for x, z in profile]
+    sides = [(k, (k + 1) % 8) for k in range(8)]
+    faces = [(a, b, b + 8) for a, b in sides] + [(a, b + 8, a + 8) for a, b in sides]
+    front = [(0, 2, 1), (0, 7, 2), (7, 3, 2), (7, 6, 3), (6, 5, 3), (5, 4, 3)]
+    faces = [(b, a, c) for a, b, c in faces] + [(a + 8, b + 8, c + 8) for a, b, c in front] + [(a, c, b) for a, b, c in front]
+    block = f'<mesh name="block" vertex="{" ".join(corners)}" face="{" ".join(map(str, sum(faces, ())))}"/>'
+    model = mujoco.MjModel.from_xml_string(f"""
+    <mujoco><asset>{block}</asset><worldbody>
+      <geom name="ball" type="sphere" size="0.008" pos="0 0 -0.008"/><site name="top" pos="0 0 0"/>
+      <body name="block"><freejoint/><geom name="block" type="mesh" mesh="block" density="100"/></body>
+    </worldbody></mujoco>""")
+    surface, hull = (geom_surface(model, model.geom("block").id, hulls=hulls) for hulls in (False, True))
+    assert abs(surface.volume - (1600 - 400) * 40e-9) < 1e-11 and abs(hull.volume - 64e-6) < 1e-11
+    data = mujoco.MjData(model)
+    data.qpos[2] -= 1e-4
+    mujoco.mj_forward(model, data)
+    assert data.ncon > 0
+    residuals = np.empty((1, 1))
+    readings = {}
+    for hulls in (False, True):
+        skin = Skin(model, {"top": bt.Patch.grid(6, 6, 2e-3, 3e-3, stiffness=1e4)}, geoms=["block"], hulls=hulls)
+        readings[hulls] = skin.read(data, output="force")
+        skin.read(data, match="normal_force", residuals=residuals)
+        assert (abs(residuals[0, 0]) < 1e-6) == hulls, (hulls, residuals)
+    assert not readings[False].any() and readings[True].all()

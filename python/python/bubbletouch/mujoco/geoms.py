@@ -9,12 +9,12 @@ import bubbletouch._core as _core
 
 
 
-def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5) -> _core.Mesh | _core.SphereUnion:
+def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5, *, hulls: bool = False) -> _core.Mesh | _core.SphereUnion:
     """Returns the surface of a geom in the geom's frame: exact for spheres, boxes, capsules, meshes and height fields, otherwise facets within the
     tolerance, metres.
 
-    A plane is a box of 2 km whose upper face is in the plane. A height field is the solid of MuJoCo's prisms. A mesh is the mesh itself, while MuJoCo's
-    contacts use its convex hull. A signed distance field (SDF) is the mesh that MuJoCo samples from the field.
+    A plane is a box of 2 km whose upper face is in the plane. A height field is the solid of MuJoCo's prisms. A mesh is the mesh itself or, with
+    `hulls`, its convex hull, which MuJoCo's contacts use. A signed distance field (SDF) is the mesh that MuJoCo samples from the field.
     """
     kind, size = mujoco.mjtGeom(model.geom_type[geom]), model.geom_size[geom]
     kinds = mujoco.mjtGeom
@@ -35,11 +35,23 @@ def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5) -> _
         return _height_field(model, int(model.geom_dataid[geom]))
     if kind in (kinds.mjGEOM_MESH, kinds.mjGEOM_SDF):
         mesh = model.geom_dataid[geom]
+        if hulls and kind == kinds.mjGEOM_MESH and model.mesh_graphadr[mesh] >= 0:
+            return _convex_hull(model, int(mesh))
         vertices = model.mesh_vert[model.mesh_vertadr[mesh] :][: model.mesh_vertnum[mesh]]
         triangles = model.mesh_face[model.mesh_faceadr[mesh] :][: model.mesh_facenum[mesh]]
         return _core.Mesh(vertices.astype(np.float64), triangles)
     name = model.geom(geom).name or f"geom_{geom}"
     raise ValueError(f"geom {name}: a {kind.name[7:].lower()}; a plane, sphere, box, ellipsoid, capsule, cylinder, mesh, hfield or sdf")
+
+
+def _convex_hull(model: mujoco.MjModel, mesh: int) -> _core.Mesh:
+    """Returns the convex hull of a mesh from its graph in the model: numbers of vertices and faces, tables of vertices and edges, and corners of the faces."""
+    graph = model.mesh_graph[model.mesh_graphadr[mesh] :]
+    n_vertices, n_faces = int(graph[0]), int(graph[1])
+    corners = graph[2 + 3 * n_vertices + 3 * n_faces :][: 3 * n_faces]
+    used, triangles = np.unique(corners, return_inverse=True)
+    vertices = model.mesh_vert[model.mesh_vertadr[mesh] + used]
+    return _core.Mesh(vertices.astype(np.float64), triangles.reshape(-1, 3))
 
 
 def _height_field(model: mujoco.MjModel, field: int) -> _core.Mesh:

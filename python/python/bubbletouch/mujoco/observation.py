@@ -18,7 +18,7 @@ class SkinObservation(gymnasium.ObservationWrapper[Any, Any, Any]):
     """Adds the readings of a skin to the observations of an environment that simulates with MuJoCo.
 
     env: environment whose `unwrapped` has `model` and `data`, such as `gymnasium.make("HalfCheetah-v5")`.
-    layout, geoms, tolerance: as for bubbletouch.mujoco.Skin.
+    layout, geoms, tolerance, hulls: as for bubbletouch.mujoco.Skin.
     output: "force", newtons, or "deflection", metres.
     match: None or "normal_force", as for Skin.read.
     key: name of the readings in a Dict space.
@@ -40,12 +40,13 @@ class SkinObservation(gymnasium.ObservationWrapper[Any, Any, Any]):
         key: str = "skin",
         dtype: DTypeLike = np.float32,
         tolerance: float = 1e-5,
+        hulls: bool = False,
     ) -> None:
         super().__init__(env)
         inner: Any = env.unwrapped
         if not (hasattr(inner, "model") and hasattr(inner, "data")):
             raise ValueError(f"env: {type(inner).__name__}; an environment with MuJoCo's model and data")
-        self.skin = Skin(inner.model, layout, geoms=geoms, tolerance=tolerance)
+        self.skin = Skin(inner.model, layout, geoms=geoms, tolerance=tolerance, hulls=hulls)
         self._key, self._output, self._match = key, output, match
         limits = [np.broadcast_to(_limit(patch, output), (patch.n_taxels,)) for patch in self.skin.patches.values()]
         given = env.observation_space

@@ -31,6 +31,7 @@ class Skin:
         patches of all other bodies, geoms of the world all patches. Flexes never touch the skin.
     tolerance: largest distance of the facets of cylinders and ellipsoids from the surface, metres. Planes, spheres, boxes, capsules, meshes and height
         fields are exact; an SDF is the mesh that MuJoCo samples from it.
+    hulls: whether a mesh presses with its convex hull, as in MuJoCo's contacts, instead of its own surface.
 
     If the body of a frame has no collision geoms, the patch belongs to the nearest parent body that has some, provided that no joint lies between.
     The surfaces are read once; a model whose geoms change needs a new skin. Raises ValueError for names that the model does not have.
@@ -43,6 +44,7 @@ class Skin:
         *,
         geoms: Literal["all"] | Sequence[str] = "all",
         tolerance: float = 1e-5,
+        hulls: bool = False,
     ) -> None:
         self._model = model
         self._patches = dict(layout)
@@ -66,7 +68,7 @@ class Skin:
             given = "MuJoCo's collision filter leaves none" if geoms == "all" else "none on another body than the patches"
             raise ValueError(f"geoms: {given}; at least one that can touch the skin{advice}")
         self._geoms = np.array(found, dtype=np.intp)
-        bodies = [geom_surface(model, geom, tolerance) for geom in found]
+        bodies = [geom_surface(model, geom, tolerance, hulls=hulls) for geom in found]
         # The geoms of one body press a patch together.
         of_geoms: dict[int, int] = dict(enumerate(model.geom_bodyid.tolist()))
         self._bodies = list(dict.fromkeys(of_geoms[geom] for geom in found))
