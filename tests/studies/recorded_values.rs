@@ -115,13 +115,13 @@ fn each_value_of_a_taxel_has_a_zero() {
     let (found, stroke) = (frame(&plain), 5e-3);
     for (place, value) in found.iter().enumerate() {
         let expected = last[[7, place % 32 / 8, place % 8, place / 32]] / 2.0 * stroke;
-        assert!((f64::from(*value) - expected).abs() < 1e-8, "{place}");
+        assert!((*value - expected).abs() < 1e-8, "{place}");
     }
     for (place, value) in frame(&study).iter().enumerate() {
         let zero = zeros[[place % 32 / 8, place % 8, place / 32]];
         let expected =
             0.5 * last[[7, place % 32 / 8, place % 8, place / 32]] / (40.0 - zero) * stroke;
-        assert!((f64::from(*value) - expected).abs() < 1e-8, "{place}");
+        assert!((*value - expected).abs() < 1e-8, "{place}");
     }
 }
 

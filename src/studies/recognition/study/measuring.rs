@@ -42,7 +42,7 @@ impl RecognitionStudy {
                     (Err(error), ClassifierKind::Foreign(foreign))
                         if foreign.may_be_elsewhere() =>
                     {
-                        missing.insert(foreign, error);
+                        missing.insert((foreign.name(), foreign.version()), error);
                     }
                     (checked, _) => checked?,
                 }
