@@ -263,7 +263,7 @@ class Wrong:
         (lambda given: {"labels": [None, *LABELS[1:]]}, r"^recorded\.labels, position 0: None; integers or texts$"),
         (lambda given: {"labels": np.array([1, *LABELS[1:]], object)}, r"^recorded\.labels: texts and integers; one kind$"),
         (lambda given: {"labels": np.linspace(0, 1, N)}, r"recorded\.labels, position 1: 0\.0227.*; one class for each touch"),
-        (lambda given: {"labels": LABELS[1:]}, r"recorded\.labels: 44 numbers; 45, one a touch of recorded\.frames"),
+        (lambda given: {"labels": LABELS[1:]}, r"recorded\.labels: 44 values; 45, one a touch of recorded\.frames"),
         (lambda given: {"sensors": "palm"}, r"^recorded\.sensors: str; a list of dicts, each with name and frames$"),
         (lambda given: {"lengths": np.full(N, 99)}, r"recorded\.lengths, position 0: 99; an integer from 1 to 7"),
     ],

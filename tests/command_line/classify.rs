@@ -438,10 +438,14 @@ fn groups_that_do_not_fit_the_rows_or_the_split_are_refused() {
     );
     write_npy(
         case.path("groups.npy"),
-        &groups().mapv(|group| group as f64),
+        &groups().mapv(|group| group as f64 + 0.5),
     )
     .unwrap();
-    refused(&case, &GROUPED, &["groups.npy", "int8 to int64"]);
+    refused(
+        &case,
+        &GROUPED,
+        &["groups.npy, position 0: ", "int8 to int64", "whole floats"],
+    );
     refused(
         &case,
         &["--classifier", "linear_svm", "--groups", "none.npy"],

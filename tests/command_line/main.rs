@@ -42,3 +42,4 @@ mod simulate;
 mod surface;
 mod touches;
 mod unused;
+mod wrong_recordings;

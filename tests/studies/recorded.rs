@@ -206,7 +206,7 @@ fn what_does_not_fit_is_refused_by_its_name() {
     let sided = laid_out(&sided).err().unwrap().to_string();
     assert!(sided.contains("key skin.taxels: given"), "{sided}");
     write(folder, &frames, &labels[..5]);
-    refused("", "labels.npy: 5 numbers; 6, one a touch");
+    refused("", "labels.npy: 5 values; 6, one a touch");
     write(folder, &frames, &[0; 6]);
     refused("", "at least two, since recognition tells classes apart");
     write(folder, &Array1::<f32>::zeros(6), &labels);

@@ -708,7 +708,7 @@ fn a_given_test_set_is_the_split_of_every_trial() {
             keys(folder, "frames_a.npy", "labels_a.npy")
                 + &key(folder, "frames_test", "frames_b.npy")
                 + &key(folder, "labels_test", "labels_a.npy"),
-            "labels_a.npy: 42 numbers; 18, one a touch",
+            "labels_a.npy: 42 values; 18, one a touch",
         ),
     ] {
         let said = error(&text);

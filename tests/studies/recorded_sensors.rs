@@ -464,7 +464,7 @@ fn recordings_that_contradict_themselves_are_refused() {
         ),
         (
             time("lengths = \"FOLDER/short.npy\""),
-            "short.npy: 59 numbers; 60, one a touch of ",
+            "short.npy: 59 values; 60, one a touch of ",
         ),
         (
             time("lengths = \"FOLDER/zero.npy\""),
@@ -590,7 +590,7 @@ fn recordings_that_contradict_themselves_are_refused() {
         ),
         (
             one("layout = \"FOLDER/no_column.csv\""),
-            "no_column.csv: no column nz",
+            "no_column.csv, line 1: no column nz",
         ),
         (
             one("layout = \"FOLDER/broken.npz\""),

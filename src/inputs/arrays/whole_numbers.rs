@@ -76,21 +76,15 @@ pub fn read_class_labels(path: &Path, name: &str, n_rows: usize) -> Result<Class
     Ok(ClassLabels::new(&values))
 }
 
-/// Reads one group for each of `n` touches: non-negative integers of any type, or texts.
+/// Reads one group for each of `n` touches: non-negative whole numbers of any type, or texts.
 ///
 /// # Errors
 /// If the file does not exist or contains other data, or an integer is below 0 or beyond 2⁵³; the error names its position.
 pub fn read_group_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
-    const ALLOWED: &str = "one dimension of int8 to int64, uint8 to uint64, bool or texts";
     let array = with_rows(FileArray::read(path, name)?, path, n);
-    if let ElementKind::Float(_) = array.kind {
-        return Err(Error::input(
-            array.place,
-            "elements of another type",
-            ALLOWED,
-        ));
-    }
-    let values = values(array, ALLOWED)?;
+    let allowed =
+        "one group for each touch: int8 to int64, uint8 to uint64, whole floats, bool or texts";
+    let values = values(array, allowed)?;
     not_below_zero(path, &values)?;
     Ok(values)
 }

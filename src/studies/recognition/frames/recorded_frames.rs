@@ -226,13 +226,14 @@ impl RecordedSpec {
                 continue;
             };
             let own = read_class_values(path, name, n)?;
-            one_each(path, (own.len(), n), self.first_frames())?;
+            one_each((path, name), (own.len(), n), self.first_frames())?;
             let is_text = |value: &KeyValue| matches!(value, KeyValue::Text(_));
             if let (Some(first), Some(other)) = (own.first(), values.first())
                 && is_text(first) != is_text(other)
             {
-                let allowed = format!("texts or numbers, as {}", self.labels.display());
-                let given = "numbers in one file and texts in the other";
+                let labels = self.file_of("labels").unwrap_or(&self.labels);
+                let allowed = format!("texts or numbers in both, as in {}", labels.display());
+                let given = "numbers in one array of labels and texts in the other";
                 return Err(Error::input(path.display(), given, allowed));
             }
             values.extend(own);
@@ -298,7 +299,7 @@ impl RecordedSpec {
                 None => Ok(None),
                 Some(path) => {
                     let groups = read_group_values(path, name, n)?;
-                    one_each(path, (groups.len(), n), self.first_frames())?;
+                    one_each((path, name), (groups.len(), n), self.first_frames())?;
                     Ok(Some(groups))
                 }
             }
@@ -343,16 +344,21 @@ impl RecordedSpec {
         sides: &[Side],
         labels: &ClassLabels,
     ) -> Result<()> {
-        for (label, name) in names.iter().enumerate() {
-            for (side, key) in [(Side::Train, "frames"), (Side::Test, "frames_test")] {
-                let mut touches = order.iter().zip(sides);
-                if !touches.any(|(&touch, own)| *own == side && labels.labels[touch] == label) {
-                    let given = format!("no touch of {name}");
-                    let allowed =
-                        "touches of each class among those that train and in the test set";
-                    return Err(Error::input(format!("key recorded.{key}"), given, allowed));
-                }
-            }
+        let without = |side: Side| {
+            let is_on =
+                |(touch, own): (&usize, &Side)| (*own == side).then_some(labels.labels[*touch]);
+            let found: HashSet<usize> = order.iter().zip(sides).filter_map(is_on).collect();
+            (0..names.len()).find(|label| !found.contains(label))
+        };
+        if let Some(label) = without(Side::Train) {
+            let given = format!("{}, of which no touch trains", names[label]);
+            let allowed = "classes of recorded.labels";
+            return Err(Error::input("key recorded.labels_test", given, allowed));
+        }
+        if let Some(label) = without(Side::Test) {
+            let given = format!("no touch of {}", names[label]);
+            let allowed = "touches of each class among those that train and in the test set";
+            return Err(Error::input("key recorded.labels_test", given, allowed));
         }
         Ok(())
     }
@@ -362,7 +368,7 @@ impl RecordedSpec {
             return Ok(None);
         };
         let depths = FileArray::read(path, "depths")?.into_numbers()?;
-        one_each(path, (depths.len(), n), self.first_frames())?;
+        one_each((path, "depths"), (depths.len(), n), self.first_frames())?;
         match depths
             .iter()
             .position(|depth| !(depth.is_finite() && *depth > 0.0))

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::inputs::arrays::axis_order::FrameShape;
 use crate::inputs::arrays::file_array::FileArray;
+use crate::inputs::arrays::is_member;
 use crate::signal::{resample, resampled_instant};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use ndarray::{Array2, s};
@@ -28,7 +29,7 @@ impl RecordedSpec {
             let place = array.place.clone();
             let lengths = array.into_numbers()?;
             let frames = self.file_of(name).unwrap_or(&self.frames);
-            one_each(path, (lengths.len(), shape.n_touches), frames)?;
+            one_each((path, key), (lengths.len(), shape.n_touches), frames)?;
             let whole = |(touch, &length): (usize, &f64)| {
                 let is_length = length.fract() == 0.0;
                 let is_length = is_length && (1.0..=shape.n_frames as f64).contains(&length);
@@ -102,12 +103,20 @@ impl RecordedSpec {
     }
 }
 
-/// Returns an error if a file does not contain exactly one value per touch.
-pub(super) fn one_each(path: &Path, (n_given, n): (usize, usize), frames: &Path) -> Result<()> {
-    let given = format!("{n_given} numbers");
+/// Returns an error if the array `name` of a file does not contain exactly one value per touch.
+pub(super) fn one_each(
+    (path, name): (&Path, &str),
+    (n_given, n): (usize, usize),
+    frames: &Path,
+) -> Result<()> {
+    let place = match is_member(path, name) {
+        true => format!("{}, array `{name}`", path.display()),
+        false => path.display().to_string(),
+    };
+    let given = format!("{n_given} values");
     let allowed = format!("{n}, one a touch of {}", frames.display());
     match n_given == n {
         true => Ok(()),
-        false => Err(Error::input(path.display(), given, allowed)),
+        false => Err(Error::input(place, given, allowed)),
     }
 }

@@ -316,6 +316,10 @@ impl RecordedSpec {
     pub fn check_files(&self) -> Result<()> {
         self.check_sensors()?;
         if self.file_of("labels").is_none() {
+            // A file that cannot be read has no labels either.
+            for (_, sensor) in self.used_sensors() {
+                sensor.shape_of("frames")?;
+            }
             let allowed = "labels = \"FILE\", the class of every touch (or an array `labels` in the archive of the frames)";
             return Err(Error::input("key recorded.labels", "no such key", allowed));
         }

@@ -1,0 +1,309 @@
+//! Recordings with a fault, in each format of arrays: the error names the file and the array, and nothing is written.
+
+use crate::bad_input::refused;
+use crate::command::Case;
+use bubbletouch::study::{write_integers, write_npy};
+use ndarray::Array2;
+use ndarray_npy::NpzWriter;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs::File;
+
+const N: usize = 30;
+
+/// Arrays of a recording by their keys: rows of numbers, or one text for each touch.
+type Arrays = BTreeMap<&'static str, Content>;
+
+#[derive(Clone)]
+enum Content {
+    Numbers(Array2<f64>),
+    Texts(Vec<&'static str>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Format {
+    Npy,
+    Npz,
+    Csv,
+}
+
+fn column(numbers: impl Iterator<Item = f64>) -> Content {
+    let numbers: Vec<f64> = numbers.collect();
+    Content::Numbers(Array2::from_shape_vec((numbers.len(), 1), numbers).unwrap())
+}
+
+fn classes(n: usize) -> impl Iterator<Item = f64> {
+    (0..n).map(|touch| (touch * 3 / N) as f64)
+}
+
+fn frames(n: usize, n_taxels: usize) -> Array2<f64> {
+    Array2::from_shape_fn((n, n_taxels), |(touch, taxel)| {
+        (touch * 3 / N) as f64 + ((touch * 7 + taxel * 5) % 11) as f64 / 11.0
+    })
+}
+
+fn whole() -> Arrays {
+    BTreeMap::from([
+        ("frames", Content::Numbers(frames(N, 6))),
+        ("labels", column(classes(N))),
+        ("groups", column((0..N).map(|touch| (touch / 3) as f64))),
+    ])
+}
+
+/// Returns a recording with a test set, without groups.
+fn with_test() -> Arrays {
+    let mut arrays = whole();
+    arrays.remove("groups");
+    arrays.insert("frames_test", Content::Numbers(frames(N, 6)));
+    arrays.insert("labels_test", column(classes(N)));
+    arrays
+}
+
+/// Writes the arrays and a study of them; returns the name of the file of each array.
+fn write(case: &Case, format: Format, arrays: &Arrays) -> BTreeMap<&'static str, String> {
+    let mut files = BTreeMap::new();
+    let mut archive = NpzWriter::new(File::create(case.path("a.npz")).unwrap());
+    for (key, content) in arrays {
+        let file = match format {
+            Format::Npz => "a.npz".to_owned(),
+            Format::Npy => format!("{key}.npy"),
+            Format::Csv => format!("{key}.csv"),
+        };
+        match (format, content) {
+            (Format::Npy, Content::Numbers(numbers)) => {
+                write_npy(&case.path(&file), numbers).unwrap()
+            }
+            (Format::Npz, Content::Numbers(numbers)) => archive.add_array(*key, numbers).unwrap(),
+            (Format::Csv, Content::Numbers(numbers)) => {
+                let mut text = String::new();
+                for row in numbers.outer_iter() {
+                    let cells: Vec<String> = row.iter().map(f64::to_string).collect();
+                    writeln!(text, "{}", cells.join(",")).unwrap();
+                }
+                case.file(&file, text);
+            }
+            // Texts are tables in every case.
+            (_, Content::Texts(texts)) => {
+                case.file(&format!("{key}.csv"), texts.join("\n"));
+                files.insert(*key, format!("{key}.csv"));
+                continue;
+            }
+        }
+        files.insert(*key, file);
+    }
+    archive.finish().unwrap();
+    let keys: Vec<String> = files
+        .iter()
+        .map(|(key, file)| format!("{key} = {file:?}\n"))
+        .collect();
+    case.file(
+        "study.toml",
+        format!(
+            "question = \"?\"\ntrials = 1\n[recorded]\n{}[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n[sensing]\nmeasurements = 2\n[recognition]\nclassifier = \"nearest_centroid\"\n",
+            keys.concat()
+        ),
+    );
+    files
+}
+
+/// Asserts that the study is refused with the name of the file of the array `key`, and with these words.
+fn is_refused(case: &Case, file: &str, words: &str) {
+    let before = case.names();
+    refused(
+        &case.run(&["run", "study.toml", "--out", "out"]),
+        2,
+        &[file, words],
+    );
+    assert_eq!(case.names(), before, "{words}");
+}
+
+fn changed(mut arrays: Arrays, key: &'static str, content: Content) -> Arrays {
+    arrays.insert(key, content);
+    arrays
+}
+
+fn with_reading(reading: f64) -> Arrays {
+    let mut own = frames(N, 6);
+    own[[3, 2]] = reading;
+    changed(whole(), "frames", Content::Numbers(own))
+}
+
+fn with_key(key: &'static str, value: f64) -> Arrays {
+    changed(
+        whole(),
+        key,
+        column(
+            classes(N)
+                .enumerate()
+                .map(|(at, class)| if at == 4 { value } else { class }),
+        ),
+    )
+}
+
+#[test]
+fn each_fault_of_a_recording_is_refused_in_each_format() {
+    let shifted = changed(
+        with_test(),
+        "labels_test",
+        column(classes(N).map(|class| class + 1.0)),
+    );
+    let texts = Content::Texts((0..N).map(|touch| ["a", "b", "c"][touch / 10]).collect());
+    let unknown = Content::Texts((0..N).map(|touch| ["a", "b", "d"][touch / 10]).collect());
+    let both = changed(
+        changed(with_test(), "labels", texts.clone()),
+        "labels_test",
+        unknown,
+    );
+    let faults: Vec<(Arrays, &'static str, &str)> = vec![
+        (
+            changed(whole(), "labels", column(classes(N - 1))),
+            "labels",
+            "29 values; 30, one a touch of ",
+        ),
+        (
+            changed(whole(), "groups", column(classes(N - 1))),
+            "groups",
+            "29 values; 30, one a touch of ",
+        ),
+        (
+            with_reading(f64::NAN),
+            "frames",
+            "frame 3, taxel 2: NaN; a finite number",
+        ),
+        (
+            with_reading(f64::INFINITY),
+            "frames",
+            "frame 3, taxel 2: inf; a finite number",
+        ),
+        (
+            changed(whole(), "frames", Content::Numbers(frames(N, 6) * f64::NAN)),
+            "frames",
+            "no taxel with readings",
+        ),
+        (
+            with_key("labels", f64::NAN),
+            "labels",
+            "position 4: NaN; one class for each touch",
+        ),
+        (
+            with_key("labels", 0.5),
+            "labels",
+            "position 4: 0.5; one class for each touch",
+        ),
+        (
+            with_key("groups", f64::NAN),
+            "groups",
+            "position 4: NaN; one group for each touch",
+        ),
+        (
+            with_key("groups", 0.5),
+            "groups",
+            "position 4: 0.5; one group for each touch",
+        ),
+        (
+            shifted,
+            "study",
+            "key recorded.labels_test: class 3, of which no touch trains; classes of recorded.labels",
+        ),
+        (
+            both,
+            "study",
+            "key recorded.labels_test: d, of which no touch trains; classes of recorded.labels",
+        ),
+        (
+            changed(with_test(), "labels_test", column(classes(20))),
+            "labels_test",
+            "20 values; 30, one a touch of ",
+        ),
+        (
+            changed(with_test(), "labels_test", texts),
+            "labels_test",
+            "numbers in one array of labels and texts in the other",
+        ),
+        (
+            changed(with_test(), "frames_test", Content::Numbers(frames(N, 5))),
+            "frames_test",
+            "touches of 1 frames of 1 × 5 taxels; touches of 1 frames of 1 × 6 taxels",
+        ),
+    ];
+    for format in [Format::Npy, Format::Npz, Format::Csv] {
+        let case = Case::new();
+        write(&case, format, &whole());
+        case.succeeds(&["run", "study.toml", "--out", "good", "--quiet"]);
+        write(&case, format, &with_test());
+        case.succeeds(&["run", "study.toml", "--out", "test", "--quiet"]);
+        for (arrays, key, words) in &faults {
+            let files = write(&case, format, arrays);
+            let file = files.get(key).map_or("study.toml", String::as_str);
+            is_refused(&case, file, words);
+            // In an archive, the error names the array.
+            if file == "a.npz" {
+                is_refused(&case, &format!("a.npz, array `{key}`"), words);
+            }
+        }
+    }
+}
+
+#[test]
+fn truncated_and_empty_files_are_refused_by_their_name() {
+    for format in [Format::Npy, Format::Npz, Format::Csv] {
+        let case = Case::new();
+        let files = write(&case, format, &whole());
+        for file in files.values() {
+            let bytes = std::fs::read(case.path(file)).unwrap();
+            // Half of a table of one column is a whole table of fewer touches.
+            for (length, words) in [
+                (bytes.len() / 2, ""),
+                (
+                    0,
+                    if format == Format::Csv {
+                        "an empty file"
+                    } else {
+                        "begins neither as a .npy nor as a .npz file"
+                    },
+                ),
+            ] {
+                case.file(file, &bytes[..length]);
+                is_refused(&case, file, words);
+            }
+            case.file(file, &bytes);
+        }
+    }
+    let case = Case::new();
+    write(&case, Format::Npz, &whole());
+    let mut archive = NpzWriter::new(File::create(case.path("a.npz")).unwrap());
+    archive.add_array("frame", &frames(N, 6)).unwrap();
+    archive.add_array("label", &frames(N, 1)).unwrap();
+    archive.finish().unwrap();
+    is_refused(&case, "a.npz", "frame, label");
+    // Without labels, the key is named.
+    let mut arrays = whole();
+    arrays.remove("labels");
+    for format in [Format::Npy, Format::Npz, Format::Csv] {
+        write(&case, format, &arrays);
+        is_refused(
+            &case,
+            "study.toml",
+            "key recorded.labels: no such key; labels = \"FILE\"",
+        );
+    }
+    write_integers(&case.path("labels.npy"), [0; N]).unwrap();
+    let text = std::fs::read_to_string(case.path("study.toml")).unwrap();
+    case.file(
+        "study.toml",
+        text.replace(
+            "[recorded]\n",
+            "[recorded]\nlabels = \"labels.npy\"\nlabels = \"labels.npy\"\n",
+        ),
+    );
+    is_refused(&case, "study.toml", "duplicate key");
+    case.file(
+        "study.toml",
+        text.replace("[recorded]\n", "[recorded]\nlabels = \"labels.npy\"\n"),
+    );
+    is_refused(
+        &case,
+        "study.toml",
+        "key recorded.labels: 1 class; at least two",
+    );
+}
