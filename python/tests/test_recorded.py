@@ -341,7 +341,7 @@ def test_wrong_files_are_refused(kind, arrays, tmp_path):
     refused({"frames": rows, "labels": labels}, f"a.{kind}: no array `object`; one of ", labels="object")
     if kind != "parquet":
         refused({"frames": rows, "labels": labels[1:]}, rf"a\.{kind}, `labels`: shape \(59,\); \(60,\), a value for each touch")
-    refused({"frames": rows, "labels": np.where(np.arange(N) == 7, np.nan, 1.0)}, f"a.{kind}, `labels`: numbers that are no integers")
+    refused({"frames": rows, "labels": np.where(np.arange(N) == 7, np.nan, 1.0)}, f"a.{kind}, `labels`, position 7: nan; integers or texts")
     refused({"frames": labels, "labels": labels}, f"a.{kind}, array `frames`: elements of type .*; numbers")
     one_hot = (labels[:, None] == np.array(["ball", "cup", "pen"])).astype(np.float64)
     write(kind, file, {"frames": rows, "labels": one_hot})

@@ -274,3 +274,100 @@ def test_wrong_arrays_are_refused_by_their_key(change: Callable[[Any], dict[str,
         bt.run(STUDY, tmp_path / "out", recorded={**given, **change(trials)})
     assert str(tmp_path) not in str(raised.value) and "/tmp" not in str(raised.value)
     assert not (tmp_path / "out" / "journal.jsonl").exists()
+
+
+def written(kind: str, file: Path, arrays: dict[str, Any]) -> None:
+    """Writes arrays by name into a file of a format; rows of numbers are a column for each taxel of a table."""
+    if kind == "npz":
+        np.savez(file, **arrays)
+    elif kind == "h5":
+        with pytest.importorskip("h5py").File(file, "w") as opened:
+            for name, array in arrays.items():
+                opened[name] = array.astype("S") if array.dtype.kind == "U" else array
+    elif kind == "zarr":
+        group = pytest.importorskip("zarr", "3.0").open_group(str(file), mode="w")
+        for name, array in arrays.items():
+            made = group.create_array(name, shape=array.shape, dtype=str if array.dtype.kind == "U" else array.dtype)
+            if array.size:
+                made[...] = array
+    else:
+        columns: dict[str, Any] = {}
+        for name, array in arrays.items():
+            columns |= {f"{name}_{k}": array[:, k] for k in range(array.shape[1])} if array.ndim == 2 else {name: array}
+        if kind == "csv":
+            write_csv(file, columns)
+        else:
+            pytest.importorskip("pyarrow.parquet").write_table(pytest.importorskip("pyarrow").table(columns), file)
+
+
+@pytest.mark.parametrize("kind", ["npz", "h5", "zarr", "parquet", "csv"])
+def test_each_fault_is_refused_in_each_format(kind: str, tmp_path: Path) -> None:
+    labels, numbers = np.repeat(["cup", "ball", "pen"], 10), np.arange(30) // 10
+    frames = np.random.default_rng(1).normal(numbers[:, None], 1.0, (30, 8))
+    good: dict[str, Any] = {"frames": frames, "labels": labels, "groups": np.arange(30) // 3}
+    nan, missing = np.where(np.arange(30) == 4, np.nan, numbers), np.where(np.arange(30) == 4, "", labels)
+    is_table = kind in ("parquet", "csv")
+    faults: list[tuple[dict[str, Any], str]] = [
+        ({"labels": nan}, "`labels`, position 4: nan; integers or texts"),
+        ({"groups": nan}, "`groups`, position 4: nan; integers or texts"),
+        ({"labels": missing}, "`labels`, position 4: an empty text; integers or texts"),
+        ({"frames": np.full((30, 8), "x")}, "elements of type .*; numbers$"),
+        ({name: array[:0] for name, array in good.items()}, r"shape \(0,.*\); at least one reading"),
+    ]
+    if not is_table:
+        faults += [
+            ({"labels": labels[1:]}, r"`labels`: shape \(29,\); \(30,\), a value for each touch"),
+            ({"groups": np.arange(31)}, r"`groups`: shape \(31,\); \(30,\), a value for each touch"),
+            ({"labels": frames}, r"`labels`: shape \(30, 8\); \(30,\), a value for each touch"),
+        ]
+    for number, (change, words) in enumerate(faults):
+        file = tmp_path / f"a{number}.{kind}"
+        written(kind, file, good | change)
+        with pytest.raises(ValueError, match=rf"a{number}\.{kind}.*{words}"):
+            bt.read_recorded(file, "frames_*" if is_table else "frames")
+    file = tmp_path / f"a.{kind}"
+    written(kind, file, good)
+    found = bt.read_recorded(file, "frames_*" if is_table else "frames")
+    accuracy(found)
+    for name, words in (("labels", "no array `label`"), ("groups", "no array `label`"), ("touches", "no array `label`")):
+        with pytest.raises(ValueError, match=rf"a\.{kind}: {words}; one of "):
+            bt.read_recorded(file, "frames_*" if is_table else "frames", **{name: "label"})
+    with pytest.raises(ValueError, match=rf"a\.{kind}, `groups`: 0, 1, 2 in touch cup; one value for all rows of a touch"):
+        bt.read_recorded(file, "frames_*" if is_table else "frames", touches="labels")
+    # Readings are checked by the study, which names the array and the position.
+    written(kind, file, good | {"frames": np.where(np.arange(240).reshape(30, 8) == 26, np.nan, frames)})
+    with pytest.raises(ValueError, match=r"^recorded\.frames, frame 3, taxel 2: NaN; a finite number"):
+        accuracy(bt.read_recorded(file, "frames_*" if is_table else "frames"))
+    written(kind, file, {"frames": frames})
+    with pytest.raises(ValueError, match="key recorded.labels: no such key"):
+        accuracy(bt.read_recorded(file, "frames_*" if is_table else "frames"))
+    if kind != "zarr":
+        whole = file.read_bytes()
+        for n in (len(whole) // 2, 10, 0):
+            file.write_bytes(whole[:n])
+            with pytest.raises(ValueError, match=rf"a\.{kind}"):
+                bt.read_recorded(file, "frames_*" if is_table else "frames")
+    if kind == "parquet":
+        pa = pytest.importorskip("pyarrow")
+        twice = pa.Table.from_arrays([pa.array([1.0]), pa.array([1.0])], names=["frames_0", "frames_0"])
+        pytest.importorskip("pyarrow.parquet").write_table(twice, file)
+        with pytest.raises(ValueError, match=r"a\.parquet: cannot be read .column `frames_0` twice"):
+            bt.read_recorded(file, "frames_*")
+
+
+def test_wrong_test_sets_are_refused_by_their_key() -> None:
+    numbers = np.arange(30) // 10
+    frames = np.random.default_rng(1).normal(numbers[:, None], 1.0, (30, 8))
+    good: dict[str, Any] = {"frames": frames, "labels": numbers, "frames_test": frames[::3], "labels_test": numbers[::3]}
+    accuracy(good)
+    for change, words in [
+        ({"labels_test": numbers[::3] + 1}, "key recorded.labels_test: class 3, of which no touch trains; classes of recorded.labels"),
+        ({"labels_test": numbers[::3] * 0}, "key recorded.labels_test: no touch of class 1; touches of each class"),
+        ({"labels_test": ["cup"] * 10}, "recorded.labels_test: numbers in one array of labels and texts in the other; .* as in recorded.labels$"),
+        ({"labels_test": numbers[:9]}, "recorded.labels_test: 9 values; 10, one a touch of recorded.frames"),
+        ({"frames_test": frames[::3, :5]}, "recorded.frames_test: touches of 1 frames of 1 × 5 taxels; .* 1 × 8 taxels, as recorded.frames has"),
+        ({"frames_test": frames[:0]}, r"recorded\.frames_test: shape \(0, 8\); at least one reading"),
+        ({"labels_test": None}, "key recorded.labels_test: no such key beside frames_test"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            accuracy({**good, **change})

@@ -207,6 +207,9 @@ def _open_parquet(file: Path) -> Source:
     parquet = optional_package("pyarrow.parquet", file)
     opened = parquet.ParquetFile(file)
     names = list(opened.schema_arrow.names)
+    twice = [name for name in names if names.count(name) > 1]
+    if twice:
+        raise ValueError(f"column `{twice[0]}` twice; each name once")
 
     def read(name: str) -> Array:
         return of_column(opened.read(columns=[name]).column(name))

@@ -33,17 +33,18 @@ def as_numbers(place: str, values: Array) -> Array:
     """Returns readings as numbers. Raises ValueError for texts and objects."""
     if values.dtype.names:
         raise ValueError(f"{place}: fields {', '.join(values.dtype.names)}; an array of numbers, such as one field")
+    if values.size == 0:
+        raise ValueError(f"{place}: shape {values.shape}; at least one reading")
     if values.dtype.kind == "O":
         try:
             return values.astype(np.float64)
         except (TypeError, ValueError):
             pass
         kind = type(next(value for value in values.ravel().tolist() if not isinstance(value, float))).__name__
-        raise ValueError(f"{place}: elements of type {kind}; numbers, in an array for each touch or in touches that are padded with NaN")
+        many = "" if kind == "str" else ", in an array for each touch or in touches that are padded with NaN"
+        raise ValueError(f"{place}: elements of type {kind}; numbers{many}")
     if values.dtype.kind not in "fiub":
         raise ValueError(f"{place}: elements of type {values.dtype}; numbers")
-    if values.size == 0:
-        raise ValueError(f"{place}: shape {values.shape}; at least one reading")
     return values
 
 
@@ -68,9 +69,12 @@ def as_keys(place: str, values: ArrayLike, n: int | None = None) -> Array:
     if array.ndim != 1 or (n is not None and len(array) != n):
         raise ValueError(f"{place}: shape {array.shape}; ({'n' if n is None else n},), a value for each touch")
     if array.dtype.kind == "f":
-        if not (np.isfinite(array).all() and (array == np.round(array)).all()):
-            raise ValueError(f"{place}: numbers that are no integers; integers or texts")
+        wrong = np.flatnonzero(~(np.isfinite(array) & (array == np.round(array))))
+        if len(wrong):
+            raise ValueError(f"{place}, position {wrong[0]}: {array[wrong[0]]}; integers or texts")
         array = array.astype(np.int64)
+    if array.dtype.kind == "U" and not (array != "").all():
+        raise ValueError(f"{place}, position {np.flatnonzero(array == '')[0]}: an empty text; integers or texts")
     if array.dtype.kind not in "iubU":
         raise ValueError(f"{place}: elements of type {array.dtype}; integers or texts")
     return array
