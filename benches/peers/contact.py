@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Times MuJoCo and bubbletouch on the same presses, side by side: the same objects, the same poses, one run.
+"""Times MuJoCo and bubbletouch on equal presses: both programs get the same objects and poses in one run.
 
-A patch of 64 x 64 taxels (balls of 1 mm at 2 mm) is pressed 3 mm into an object. MuJoCo does it in two ways: with taxels as bodies on slide
-joints, and with its own tactile sensor on a signed-distance octree. Ours evaluates the packed object directly. What is right says our
-exact contact with the mesh, which tests of bubbletouch hold against a slow oracle. See README.md beside this file.
+A patch of 64 x 64 taxels (balls of radius 1 mm, 2 mm apart) is pressed 3 mm into an object. MuJoCo has two methods: taxels as bodies on slide
+joints, and its tactile sensor on a signed-distance octree. bubbletouch presses packed objects and exact meshes. Errors are relative to the exact
+contact with the mesh, which tests of bubbletouch compare with a slow reference implementation. README.md beside this file describes the settings.
 """
 
 import argparse
@@ -33,12 +33,12 @@ COLUMNS = [
 
 
 def grid():
-    """Places of the taxels along a side, metres; taxels are numbered row (y) by row."""
+    """Returns the coordinates of the taxels along a side, metres, shape (SIDE,). Taxels are numbered row by row (y)."""
     return (np.arange(SIDE) - (SIDE - 1) / 2) * PITCH
 
 
 def draw_poses(bounds, n, seed):
-    """Poses of an object high above the patch, upside down, so that its top comes first: n x (x, y, z, qw, qx, qy, qz)."""
+    """Returns random poses of an object 0.3 m above the patch, upside down, so that its top touches first: (n, 7), x, y, z, qw, qx, qy, qz."""
     rng = np.random.default_rng(seed)
     rows = []
     middle = bounds.mean(axis=0)
@@ -53,13 +53,13 @@ def draw_poses(bounds, n, seed):
 
 
 class Ours:
-    """The command: it presses, and times itself."""
+    """The command `bubbletouch press`, which times its own presses."""
 
     def __init__(self, binary, scratch):
         self.binary, self.scratch = binary, Path(scratch)
 
     def press(self, source, poses, depth=None, repeat=1):
-        """Deflections (n x n_taxels, metres) and what the command says of travel and time."""
+        """Returns deflections, metres, (n, n_taxels), and the command's JSON output with the travel and the time of each press."""
         file, out = self.scratch / "poses.csv", self.scratch / "out.npy"
         np.savetxt(file, poses, delimiter=",", header="x,y,z,qw,qx,qy,qz", comments="", fmt="%.17g")
         command = [self.binary, "press", *source, "--poses", str(file), "--repeat", str(repeat), "--json", "--out", str(out)]
@@ -70,7 +70,7 @@ class Ours:
         return np.load(out).reshape(len(poses), -1), json.loads(done.stdout)
 
     def pack(self, path, tolerance_mm):
-        """The spheres of a mesh as a file, kept from run to run, and the seconds that it took."""
+        """Returns the CSV file of the spheres of a packed mesh and the packing time, seconds; NaN if the file exists from an earlier run."""
         kept = ROOT / "target" / "peers" / f"{path.stem}_{tolerance_mm}.csv"
         if kept.exists():
             return kept, float("nan")
@@ -82,7 +82,7 @@ class Ours:
 
 
 class TactileSensor:
-    """MuJoCo's tactile sensor: how deep each vertex of a pad is inside the object, by its signed-distance octree."""
+    """MuJoCo's tactile sensor: the depth of each vertex of a pad inside the object, from the object's signed-distance octree."""
 
     method = "mujoco_tactile"
 
@@ -96,7 +96,7 @@ class TactileSensor:
         corner = np.arange(SIDE * SIDE).reshape(SIDE, SIDE)[:-1, :-1].ravel()
         faces = np.concatenate([[[c, c + 1, c + SIDE], [c + 1, c + SIDE + 1, c + SIDE]] for c in corner])
         add_mesh(spec, "pad", vertices, faces, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
-        # The sensor looks at objects only that collide with its body: a box does that, at the cost of 6 us.
+        # The sensor reads only objects that collide with its body. A box provides the collisions and costs 6 us.
         spec.worldbody.add_geom(name="pad", type=mujoco.mjtGeom.mjGEOM_MESH, meshname="pad", contype=0, conaffinity=0)
         spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.064, 0.064, 0.01], pos=[0, 0, -0.01])
         body = spec.worldbody.add_body(name="object")
@@ -110,11 +110,11 @@ class TactileSensor:
         self.model = spec.compile()
         self.build_s = time.perf_counter() - start
         self.data = mujoco.MjData(self.model)
-        # The tips of the taxels, the best constant height of the pad's vertices is chosen in `tune`.
+        # Height of the tips of the taxels; `tune` chooses the best constant height of the pad's vertices.
         self.height = RADIUS
 
     def tune(self, poses, truth):
-        """Puts the vertices at the height that makes the mean error least: at the tips, or somewhat within the balls."""
+        """Sets the height of the vertices to the value with the smallest mean error, between 0.5 and 1.2 taxel radii."""
         heights = np.linspace(0.5 * RADIUS, 1.2 * RADIUS, 29)
         errors = []
         for height in heights:
@@ -127,7 +127,7 @@ class TactileSensor:
         return self.data.sensordata[: SIDE * SIDE].copy()
 
     def evaluate(self, pose):
-        """No more than the sensor needs: places, collisions, the sensor. A whole step takes a little longer."""
+        """Evaluates only the stages that the sensor needs: kinematics, collisions and the sensor. A whole step takes slightly longer."""
         model, data = self.model, self.data
         data.qpos[:] = pose
         data.qpos[2] -= self.height
@@ -138,19 +138,19 @@ class TactileSensor:
 
 
 class Bodies:
-    """Taxels as bodies on slide joints in MuJoCo: a ball of 1 g on a spring and the damper that is best for it."""
+    """Taxels as bodies on slide joints in MuJoCo. Each taxel is a ball of 1 g on a spring with critical damping."""
 
     method = "mujoco_bodies"
 
     def __init__(self, mesh, n_steps, dt):
-        """An object: the convex hull of a mesh, or a ball if `mesh` is a radius."""
+        """Creates the model. The object is the convex hull of `mesh`, or a ball if `mesh` is a radius in metres."""
         self.n_steps = n_steps
         self.setting = f"{'ball' if np.isscalar(mesh) else 'hull'}, {n_steps} steps of {1e3 * dt:g} ms"
         spec = mujoco.MjSpec()
         spec.option.gravity = [0, 0, 0]
         spec.option.timestep = dt
         spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
-        # As hard as it gets: with the engine's limit on how fast a contact recovers (twice the step), ten steps and more would not settle.
+        # Hardest contacts. With the engine's limit on the recovery time of contacts (two steps), taxels would not be at rest after ten steps.
         spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE
         contact = dict(solref=[0.1 * dt, 1], solimp=[0.99, 0.9999, 1e-4, 0.5, 2], friction=[0, 0, 0], condim=1)
         body = spec.worldbody.add_body(name="object", mocap=True)
@@ -193,14 +193,14 @@ def add_mesh(spec, name, vertices, faces, **options):
 
 
 def error_of(felt, truth):
-    """Mean, 95th percentile and largest |difference| over taxels that either touches, mm."""
+    """Returns the mean, the 95th percentile and the maximum of |felt - truth|, mm, over taxels that are touched in either of them."""
     either = (felt > 0) | (truth > 0)
     off = 1e3 * np.abs(np.maximum(felt, 0) - truth)[either]
     return off.mean(), np.percentile(off, 95), off.max()
 
 
 def timed(evaluate, poses):
-    """Microseconds of each pose."""
+    """Returns the evaluation time of each pose, microseconds."""
     times = []
     for pose in poses:
         start = time.perf_counter()
@@ -210,7 +210,7 @@ def timed(evaluate, poses):
 
 
 def compare(object_name, truth, peers, ours, poses, rounds):
-    """Rows of an object; peers and ours take turns, medians are taken."""
+    """Returns the table rows of an object. Peers and bubbletouch alternate; the times are medians over all rounds."""
     times = {id(peer): [] for peer in peers}
     our_times = {setting: [] for setting, *_ in ours[1]}
     for _ in range(rounds):
@@ -272,7 +272,7 @@ def on_mesh(path, ours, options):
 
 
 def on_ball(ours, options, radius=0.05):
-    """A ball needs no mesh: one sphere is exact."""
+    """Returns the table rows of a ball, which is one exact sphere without a mesh."""
     file = ours.scratch / "ball.csv"
     file.write_text(f"x,y,z,r\n0,0,0,{radius}\n")
     high = draw_poses(np.array([[-radius] * 3, [radius] * 3]), options.touches, seed=1)
@@ -286,7 +286,7 @@ def on_ball(ours, options, radius=0.05):
 
 
 def tell(rows):
-    """What the bars of speed ask: the peer's time over ours at an equal or smaller error, object by object."""
+    """Prints the rows. For MuJoCo, prints the ratio of its time to the shortest time of bubbletouch with an equal or smaller error."""
     for name in dict.fromkeys(row["object"] for row in rows):
         of_object = [row for row in rows if row["object"] == name]
         ours = [row for row in of_object if row["program"] == "bubbletouch"]
@@ -338,7 +338,7 @@ def kept(path):
 
 
 def write(path, rows):
-    """Whole, or not at all."""
+    """Writes the rows to a temporary file and renames it, so that no partial table remains."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_suffix(".part")
     with open(part, "w", newline="") as file:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Times MuJoCo's tactile sensor and bubbletouch's Python package on the same presses, in one process and in turn, one thread.
+"""Times MuJoCo's tactile sensor and bubbletouch's Python package alternately on equal presses, in one process with one thread.
 
-As contact.py, whose sensor, poses and errors these are; but ours is called from Python too: one pose a call into an array that is there, as
-MuJoCo is, and all poses in one call. Needs mujoco, trimesh, numpy and bubbletouch (pip install ./python).
+The sensor, the poses and the errors are those of contact.py. bubbletouch is called in two ways: with one pose per call into an existing array, as
+MuJoCo is called, and with all poses in one call. Needs mujoco, trimesh, numpy and bubbletouch (pip install ./python).
 """
 
 import argparse
@@ -16,12 +16,12 @@ import trimesh
 from contact import DEPTH, PITCH, RADIUS, SIDE, STIFFNESS, STROKE, TactileSensor, draw_poses, error_of, timed
 
 TOLERANCES_MM = [1.0, 0.5, 0.4, 0.3, 0.2, 0.1]
-# So many poses at once: those of the sensor again and again.
+# Number of repetitions of the poses in a batch.
 REPEAT = 50
 
 
 def ours(path):
-    """Settings and what is pressed: packed to tolerances, and the mesh itself."""
+    """Returns the mesh, and pairs of a setting's name and an object: the mesh packed within each tolerance, and the exact mesh."""
     mesh = bt.Mesh.read(path)
     packed = [(f"packed within {tolerance:g} mm", mesh.pack(1e-3 * tolerance)) for tolerance in TOLERANCES_MM]
     return mesh, [*packed, ("exact mesh", mesh)]
@@ -47,7 +47,7 @@ def on_mesh(path, n_touches, rounds, octree_depth):
         for name, thing in things:
             alone, batch = times[name]
             alone += timed(lambda pose, thing=thing: patch.press(thing, pose, out=one), np.tile(poses, (5, 1)))
-            # Time of the thread alone: a batch is long enough to be put aside by a busy machine.
+            # Processor time of the thread, because a busy machine may interrupt a batch.
             start = time.thread_time()
             patch.press(thing, repeated, out=many, threads=1)
             batch.append(1e6 * (time.thread_time() - start) / len(repeated))

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Times scikit-learn and bubbletouch on the same touches, side by side: the same rows, the same split, one run.
+"""Times scikit-learn and bubbletouch on equal touches: both get the same rows and the same split in one run.
 
-Both learn from the folders that `bubbletouch features` writes, standardised on the training rows beforehand (population
-standard deviation). A comparison alternates peer and ours: in a turn, one fit of the peer, and about as many of ours as take as long
-(their mean, without the first); times are medians over the turns. Predictions are compared row by row, and so are the dual
-objectives of the SVMs that solve the same problem. See README.md beside this file.
+Both learn from the folders that `bubbletouch features` writes. Features are standardised on the training rows beforehand (population
+standard deviation). A comparison alternates the two programs. In each round, the peer is fitted once, and bubbletouch is fitted about as
+often as takes the same time; the first of these fits is not counted. Times are medians over the rounds of the mean times. Predictions are
+compared row by row. Dual objectives are compared for SVMs that solve the same problem. README.md beside this file describes the settings.
 """
 
 import argparse
@@ -77,7 +77,7 @@ COLUMNS = [
 
 
 class Folder:
-    """A folder of features, read and standardised."""
+    """Folder of features that `bubbletouch features` wrote, with standardised training and test rows."""
 
     def __init__(self, path, n_train):
         self.path = path
@@ -91,7 +91,7 @@ class Folder:
         self.scaled = self.write_scaled(scaler.transform(features))
 
     def write_scaled(self, features):
-        """The same folder with standardised features: neither side's time holds the scaling."""
+        """Writes a copy of the folder with standardised features and returns its path. The times of both programs then exclude the scaling."""
         scaled = self.path.parent / f"{self.path.name}_scaled"
         scaled.mkdir(exist_ok=True)
         for file in self.path.iterdir():
@@ -102,19 +102,19 @@ class Folder:
 
 
 def toml_number(text, key):
-    """One number of a flat TOML table: Python has a reader of its own only since 3.11."""
+    """Returns a number of a flat TOML table. (Python has a TOML reader only since version 3.11.)"""
     return float(next(line.split("=")[1] for line in text.splitlines() if line.startswith(f"{key} =")))
 
 
 class Ours:
-    """The command on a folder, with a number of threads."""
+    """The command `bubbletouch classify` with a fixed number of threads."""
 
     def __init__(self, binary, threads, n_train):
         self.binary, self.n_train = binary, n_train
         self.environment = dict(os.environ, RAYON_NUM_THREADS=str(threads))
 
     def classify(self, folder, options, repeat=1):
-        """What the command says and predicts."""
+        """Returns the command's JSON output (accuracy, times in seconds, dual objective) and the predicted labels of the test rows, (n_test,)."""
         with tempfile.TemporaryDirectory() as scratch:
             predictions = Path(scratch) / "predictions.npy"
             command = [self.binary, "classify", str(folder.scaled), "--scaling", "none", *options, "--json", "--repeat", str(repeat)]
@@ -125,10 +125,10 @@ class Ours:
             return json.loads(done.stdout), np.load(predictions)
 
 
-# Of ours in one turn.
+# Maximum number of counted fits of bubbletouch in one round.
 MOST_WARM_FITS = 20
-# A peer that takes so many seconds is fitted once on a folder, whatever it is compared with and by how many threads: LIBLINEAR has one thread, takes
-# minutes at 1,024 measurements, and such a time covers good and bad spells of the machine.
+# A peer whose fit takes longer, in seconds, is fitted only once for each folder, for all comparisons and numbers of threads. LIBLINEAR has one thread
+# and takes minutes at 1,024 measurements. Variations of the machine's speed average out over such a time.
 SLOW_S = 10.0
 
 
@@ -139,10 +139,10 @@ def timed(action):
 
 
 def dual_objective(model, labels):
-    """Sum over all pairs of ½ Σ a_i a_j y_i y_j K(x_i, x_j) − Σ a_i, from the coefficients that libsvm returns.
+    """Returns the sum over all pairs of classes of ½ Σ a_i a_j y_i y_j K(x_i, x_j) − Σ a_i, from the coefficients that libsvm returns.
 
-    scikit-learn's dual_coef_ (n_classes − 1, n_SV) packs, for a support vector of class i, the coefficients of the pairs
-    (i, j) in row j − 1 if j > i, else in row j.
+    In scikit-learn's dual_coef_, shape (n_classes − 1, n_SV), a support vector of class i has the coefficient of the pair
+    (i, j) in row j − 1 if j > i, and in row j otherwise.
     """
     n_classes = len(model.classes_)
     vectors, packed = model.support_vectors_, model.dual_coef_
@@ -166,7 +166,7 @@ def dual_objective(model, labels):
 
 
 def compare(folder, ours, comparison, threads, repeats, slow):
-    """One row of the table; the peer and ours take turns."""
+    """Returns the table row of one comparison. The peer and bubbletouch alternate."""
     name, make, options, is_same_problem = comparison
     peer_times, our_times, cold_s = [], [], []
     repeat = 2
@@ -185,11 +185,11 @@ def compare(folder, ours, comparison, threads, repeats, slow):
                     slow[name, folder.path] = fitted
             model, fit_s, predict_s, predicted, names = fitted
             peer_times.append((fit_s, predict_s))
-            # A command that starts anew has cold caches; from the second fit on it is as warm as the peer's.
+            # The first fit of a new process has cold caches, unlike the peer's; only later fits are counted.
             ours_s = [statistics.mean(answer[0][part][1:]) for part in ["fit_s", "predict_s"]]
             our_times.append(ours_s)
             cold_s.append(answer[0]["fit_s"][0])
-            # As much of the machine's better and worse spells as one fit and prediction of the peer holds.
+            # Repeat for about the time of one fit and prediction of the peer; both then average over equal variations of the machine's speed.
             repeat = 1 + max(1, min(MOST_WARM_FITS, round((fit_s + predict_s) / sum(ours_s))))
     row = {"peer": name, "peer_accuracy": np.mean(predicted == folder.test_labels)}
     row["peer_fit_s"], row["peer_predict_s"] = map(statistics.median, zip(*peer_times))
@@ -209,9 +209,9 @@ def compare(folder, ours, comparison, threads, repeats, slow):
 
 
 def compare_grid(folder, ours, threads, repeats):
-    """Our 6 × 6 grid of C and γ with 5-fold cross-validation, and the fit with what was chosen, against GridSearchCV's."""
+    """Compares a 6 × 6 grid of C and γ with 5-fold cross-validation and the final fit with GridSearchCV; returns a list of one row."""
     penalties = [10.0**k for k in range(-1, 5)]
-    # As multiples of 'scale', 1 / (m · variance).
+    # Multiples of 'scale', 1 / (m · variance).
     gammas = [4.0**k for k in range(-4, 2)]
     options = ["--classifier", "rbf_svm", *OVO, "--cv-folds", "5"]
     for name, values in [("--c-grid", penalties), ("--gamma-grid", gammas)]:
@@ -255,7 +255,7 @@ HEADER = (
 
 
 def make_folders(arguments):
-    """Writes one folder per configuration with the command; existing folders are used again."""
+    """Writes the features of each configuration with the command, and returns the folders. Existing folders are reused."""
     folders = []
     for number in arguments.configurations:
         path = arguments.work / f"{arguments.study.stem}_configuration_{number}"
@@ -286,7 +286,7 @@ def parse():
 
 
 def machine():
-    """The processor's name, where the system tells."""
+    """Returns the processor's name, or an empty text if /proc/cpuinfo does not contain it."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
         return next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
@@ -327,7 +327,7 @@ def measure(folder, ours, threads, arguments, slow):
 
 
 def write(path, rows):
-    """The rows so far: a file beside it, then renamed."""
+    """Writes the rows to a temporary file and renames it, so that no partial table remains."""
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_suffix(".partial")
     with partial.open("w", newline="") as file:

@@ -46,7 +46,7 @@ TOUCH_GRID = """
 
 
 def torus(n=225, far=0.03, near=0.012):
-    """Vertices and triangles of a ring, 2 n² triangles."""
+    """Returns the vertices (n², 3), metres, and the triangles (2 n², 3) of a torus."""
     turns = 2 * np.pi * np.arange(n) / n
     around, across = [turns.ravel() for turns in np.meshgrid(turns, turns, indexing="ij")]
     out = far + near * np.cos(across)
@@ -59,7 +59,7 @@ def torus(n=225, far=0.03, near=0.012):
 
 
 def alternate(calls, rounds, repeat):
-    """Median over rounds of the mean time of each call, microseconds; in each round all calls take turns."""
+    """Returns the time of each call, microseconds: the median over rounds of its mean time. All calls run in each round."""
     times = {name: [] for name in calls}
     for _ in range(rounds):
         for name, call in calls.items():
@@ -71,14 +71,14 @@ def alternate(calls, rounds, repeat):
 
 
 def contact_poses(patch, mesh, n, depth, seed):
-    """Poses at which the patch is `depth` metres past first contact with the mesh: n x (x, y, z, qw, qx, qy, qz)."""
+    """Returns poses at which the patch is `depth` metres past first contact with the mesh: (n, 7), x, y, z, qw, qx, qy, qz."""
     poses = contact.draw_poses(np.asarray(mesh.bounds), n, seed)
     poses[:, 2] -= patch.press(mesh, poses, depth=depth, contacts=True)[1].travel
     return poses
 
 
 class Table:
-    """Rows of the results."""
+    """Table of results, which prints each added row."""
 
     def __init__(self):
         self.rows = []
@@ -98,7 +98,7 @@ class Table:
 
 
 def small_shapes():
-    """Vertices, triangles and the limit of a read, microseconds, of three shapes."""
+    """Returns three shapes by name: vertices, triangles, and the time limit of one read, microseconds."""
     box, ball = trimesh.creation.box([0.04, 0.03, 0.02]), trimesh.creation.icosphere(3, 0.03)
     return {
         "box": (np.asarray(box.vertices), np.asarray(box.faces), 6.0),
@@ -108,7 +108,7 @@ def small_shapes():
 
 
 def curved_patch():
-    """256 listed taxels on a bump, whose axes vary smoothly by up to 23 degrees."""
+    """Returns a patch of 256 listed taxels on a bump; their axes are inclined by up to 23 degrees."""
     half = 0.5 * (SIDE - 1) * PITCH
     x, y = (grid.ravel() for grid in np.meshgrid(*2 * [np.linspace(-half, half, SIDE)]))
     axes = np.stack([0.3 * x / half, 0.3 * y / half, np.ones_like(x)], axis=1)
@@ -117,7 +117,7 @@ def curved_patch():
 
 
 def reads(patch, mesh, poses):
-    """Calls that read a patch at all poses: plain, with contacts, by a skin, and by a skin with shear."""
+    """Returns functions that read a patch at all poses: deflections alone, with contacts, with bt.Skin, and with bt.Skin and shear."""
     skin, here = bt.Skin([patch], [mesh]), np.array([[0.0, 0, 0, 1, 0, 0, 0]])
     out, shear = np.zeros(patch.shape), skin.shear_state(stiffness=400.0, friction=0.5)
     return {
@@ -129,7 +129,7 @@ def reads(patch, mesh, poses):
 
 
 def any_layout(table, options):
-    """256 taxels on a flat grid and on a curved layout, at one pose a call; ratios are relative to the read without contacts or shear."""
+    """Times 256 taxels on a flat grid and on a curved layout, one pose per call. Ratios are relative to the read without contacts and shear."""
     contact.SIDE = SIDE
     patches = {"grid": bt.Patch.grid(SIDE, SIDE, PITCH, STROKE, taxel_radius=RADIUS), "curved": curved_patch()}
     for name, (vertices, triangles, _) in small_shapes().items():
@@ -143,7 +143,7 @@ def any_layout(table, options):
 
 
 def small_patch(table, options):
-    """16 x 16 taxels: one pose a call, and 1,024 poses a call."""
+    """Times 16 x 16 taxels with one pose per call and with 1,024 poses per call."""
     contact.SIDE = SIDE
     shapes = small_shapes()
     patch = bt.Patch.grid(SIDE, SIDE, PITCH, STROKE, taxel_radius=RADIUS)
@@ -172,7 +172,7 @@ def small_patch(table, options):
 
 
 def packed_within(path, mesh, folder):
-    """The spheres of a mesh packed within 0.25 mm, kept in a folder; an open mesh is packed as a sheet."""
+    """Returns the spheres of a mesh, packed within 0.25 mm and stored in a folder. An open mesh is packed as a sheet."""
     kept = folder / f"{path.stem}_0.25.npz"
     if not kept.exists():
         folder.mkdir(parents=True, exist_ok=True)
@@ -186,7 +186,7 @@ def packed_within(path, mesh, folder):
 
 
 def large_patch(table, options):
-    """64 x 64 taxels on meshes, exact and packed within 0.25 mm."""
+    """Times 64 x 64 taxels on meshes, exact and packed within 0.25 mm."""
     patch = bt.Patch.grid(64, 64, PITCH, STROKE, taxel_radius=RADIUS)
     out, ratios = np.zeros((64, 64)), []
     for path in sorted(options.objects.glob("*.ply")):
@@ -209,7 +209,7 @@ def large_patch(table, options):
 
 
 def hand(table, options):
-    """A hand with 20 patches of 64 taxels, three of them in contact, under five bodies."""
+    """Times a hand with 20 patches of 64 taxels, three of them in contact, under five bodies, and MuJoCo's step of this hand."""
     for meshes, limit in ((False, 60.0), (True, 150.0)):
         model, data, skin = hands.full_hand(meshes)
         out = np.zeros(skin.n_taxels)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Runs MuJoCo on the scenes of experiments/stability.toml, and judges it as the study judges its own methods.
+"""Runs MuJoCo on the scenes of experiments/stability.toml, with the criteria that the study applies to its own methods.
 
-The parts that the study gives to rapier are run with MuJoCo as it comes, with its Euler and implicitfast integrators, and with its discrete
-integrator and hard contacts. Rows go to results/stability/peers.csv, where the study finds them. Scenes, moments of judgement and outcomes are
-those of src/studies/stability/: see there. See README.md beside this file.
+The parts of the study with rapier are run with three settings of MuJoCo: the Euler and the implicitfast integrator with default contacts, and the
+discrete integrator with hard contacts. Rows are written to results/stability/peers.csv, which the study reads. src/studies/stability/ defines the
+scenes, the times of evaluation and the outcomes. README.md beside this file describes the settings.
 """
 
 import argparse
@@ -21,7 +21,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 GRAVITY, SPEED, APPROACH, LEAST_HOLD, DECAY = 9.81, 0.5, 2e-3, 0.2, 10.0
 LEAST_HOLD_STEPS, LEAST_TIME, LEAST_STEPS, TOLERANCE = 5.0, 0.5, 50.0, 0.01
-# Balls of a scene, one upon the other; one where it is not named.
+# Numbers of stacked balls by scene; other scenes have one ball.
 BALLS = dict(stack_of_two=2, stack_of_four=4)
 SKIN_SIM = dict(mass=1e-3, stiffness=16.37, damping=0.13)
 
@@ -33,7 +33,7 @@ METHODS = [
     ("mujoco_discrete", INTEGRATOR.mjINT_DISCRETE, True),
 ]
 
-# Of hard contacts: how fast they recover, in steps, and their least impedance.
+# Recovery time of hard contacts, in steps, and their minimum impedance.
 HARD = (0.1, 0.999)
 
 COLUMNS = [
@@ -44,7 +44,7 @@ COLUMNS = [
 
 
 class Scene:
-    """A cell's cradle, ball, damper, times and exact answer."""
+    """Scene of a cell: bed of taxels, balls, damping, times, and the exact deflections and force."""
 
     def __init__(self, cell, pitch, stroke):
         self.cell, self.stroke = cell, stroke
@@ -57,7 +57,7 @@ class Scene:
         corner = across[0]
         sag = 0.25 * stroke * across / corner
         self.centers = np.column_stack([x.ravel(), y.ravel(), reach - np.sqrt(reach**2 - across) - sag])
-        # The travel of the ball at which it meets each taxel; the innermost are met first.
+        # Travel of the ball at which it touches each taxel, metres; the innermost taxels are touched first.
         self.starts = sag - sag.min()
         self.lift = reach - sag.min()
         mass = cell["object_mass_kg"]
@@ -84,7 +84,7 @@ class Scene:
             self.energy_limit = 2 * len(self.starts) * (k * depth**2 + m * (2 * SPEED) ** 2)
 
     def at_rest(self, k, weight):
-        """Where the springs carry the weight, or the stops what they do not."""
+        """Returns the deflections at which the springs carry the weight, metres, (n_taxels,); at the stops, the stops carry the remaining weight."""
         floor = self.starts.min() + self.stroke
         low, high = 0.0, floor
         if k * np.maximum(floor - self.starts, 0).sum() > weight:
@@ -94,7 +94,7 @@ class Scene:
         return np.maximum(high - self.starts, 0)
 
     def travel_at(self, t):
-        """Of an imposed ball, from where it starts, above first contact."""
+        """Returns the travel of an imposed ball at time t, metres, from its start APPROACH above first contact."""
         down = SPEED * min(max(t, 0), self.way)
         return down - SPEED * min(max(t - self.way - self.hold, 0), self.way)
 
@@ -104,24 +104,24 @@ class Scene:
         return (math.floor(self.judged / dt) if self.judged < self.end else end), end
 
     def model(self, integrator, is_hard):
-        """The scene in MuJoCo: taxels on slide joints with springs, dampers and stops; the ball on one of its own, or moved."""
+        """Returns the MuJoCo model: taxels on slide joints with springs, dampers and stops, and balls on slide joints or one imposed ball."""
         cell = self.cell
         spec = mujoco.MjSpec()
         spec.option.timestep, spec.option.integrator = cell["dt_s"], integrator
         spec.option.gravity = [0, 0, -GRAVITY]
-        # A run that goes wrong shall be seen to go wrong.
+        # Without automatic resets, a diverging run is detected.
         spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         contact = dict(friction=[0, 0, 0], condim=1)
         joint = {}
         if is_hard:
             spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE
             solref, solimp = [HARD[0] * cell["dt_s"], 1], [HARD[1], 0.9999, 1e-4, 0.5, 2]
-            # The ball starts where it touches: without a margin it is through the skin before a long step sees it.
+            # The ball starts at first contact. Without a margin, it passes through the skin within one long step.
             contact |= dict(solref=solref, solimp=solimp, margin=1e-3 * self.deflection.max() if self.is_free else 0.0)
             joint = dict(solref_limit=solref, solimp_limit=solimp)
         above = self.lift + (0 if self.is_free else APPROACH)
         if self.is_free:
-            # Taxels meet the first ball (bits 1 and 2), balls each other (bit 4).
+            # Taxels collide with the first ball (bits 1 and 2), balls with each other (bit 4).
             for number in range(self.n_balls):
                 ball = spec.worldbody.add_body(pos=[0, 0, above + 2 * number * self.ball])
                 ball.add_joint(type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, -1])
@@ -133,7 +133,7 @@ class Scene:
             ball = spec.worldbody.add_body(pos=[0, 0, above], mocap=True)
             ball.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[self.ball, 0, 0], contype=1, conaffinity=2, **contact)
         for center in self.centers:
-            # Gravity is none of the taxels' business.
+            # Gravity does not act on taxels.
             taxel = spec.worldbody.add_body(pos=center, gravcomp=1)
             taxel.add_joint(
                 type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, -1], stiffness=[cell["stiffness_n_per_m"], 0, 0],
@@ -147,7 +147,7 @@ class Scene:
 
 
 def slowest(k, c, m):
-    """The rate of decay of the slower motion of m x'' + c x' + k x = 0, per second."""
+    """Returns the decay rate of the slower mode of m x'' + c x' + k x = 0, 1/s."""
     half = 0.5 * c / m
     inside = half**2 - k / m
     return (k / m) / (half + math.sqrt(inside)) if inside > 0 else half
@@ -161,7 +161,7 @@ def energy(scene, data, first):
 
 
 def force_on_ball(data):
-    """What contacts put on the taxels, along their axis: the contact normals times their forces."""
+    """Returns the total contact force on the taxels along their axis, newtons: the sum of normal forces times the normals' z components."""
     total, wrench = 0.0, np.zeros(6)
     of_taxels = data.model.geom_contype == 2
     for number in range(data.ncon):
@@ -173,7 +173,7 @@ def force_on_ball(data):
 
 
 def simulate(scene, integrator, is_hard):
-    """Outcome, force imbalance, deflection error, steps."""
+    """Returns the outcome, the relative force imbalance, the relative deflection error, and the number of steps."""
     dt = scene.cell["dt_s"]
     judged, end = scene.frames()
     model = scene.model(integrator, is_hard)
@@ -207,7 +207,7 @@ def simulate(scene, integrator, is_hard):
 
 
 def cells(study):
-    """The cells that the study gives to an engine, once for each setting."""
+    """Yields each cell of the study's parts with an engine, and its stroke in metres: one cell for each combination of the axes."""
     for number, part in enumerate(study["parts"], start=1):
         if "rapier_tuned" not in part["methods"]:
             continue

@@ -176,7 +176,7 @@ pub enum LayoutSpec {
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
-    /// Taxels listed in a file: `layout = { file = "palm.csv" }`; see [`layout_file`](crate::inputs::layout_file) for the formats.
+    /// Taxels listed in a file, such as `layout = { file = "palm.csv" }`: `.csv`, `.npz`, `.txt` or `.ini` (iCub), `.json` (PaXini) or `.urdf`.
     File(FileLayoutSpec),
     /// Taxels of a tactile sensor, which is given by its name in the robot's file.
     Sensor(String),

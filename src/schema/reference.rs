@@ -215,7 +215,12 @@ impl FileKind<'_> {
             let nested = table.nested_tables(&name, key);
             let values = match &nested[..] {
                 [] => values(key),
-                tables => self.links(tables, written),
+                tables => {
+                    let values =
+                        single_values(key).map(|(value, words, _)| format!("{value} ({words})"));
+                    let links = std::iter::once(self.links(tables, written));
+                    links.chain(values).collect::<Vec<_>>().join(", ")
+                }
             };
             let default = match required.contains(&name.clone().into()) {
                 true => "required".to_owned(),
@@ -319,24 +324,41 @@ impl<'s> Table<'s> {
                 description: key["description"].as_str().unwrap_or_default(),
             }];
         }
-        // An enum: each variant is a table with one key, which is a table.
-        let variants = value["oneOf"].as_array().into_iter().flatten();
-        let variants = variants.flat_map(|variant| {
-            let description = variant["description"].as_str().unwrap_or_default();
-            properties(variant).map(move |(name, schema)| (name, schema, description))
-        });
-        let variants = variants.filter(|(_, schema, _)| schema.get("properties").is_some());
-        let variants = variants.map(|(variant, schema, description)| {
+        let variants = variants(value).filter_map(|(variant, schema, description)| {
             let name = variant.clone();
             let is_list = false;
-            Self {
+            Some(Self {
                 path: [&path[..], &[Step { name, is_list }]].concat(),
-                schema,
+                schema: choices(schema).find(|choice| choice.get("properties").is_some())?,
                 description,
-            }
+            })
         });
         variants.collect()
     }
+}
+
+/// Returns the variants of an enum whose variants are tables with one key: the key, the schema of its value, and the description.
+fn variants(schema: &Value) -> impl Iterator<Item = (&String, &Value, &str)> {
+    let variants = schema["oneOf"].as_array().into_iter().flatten();
+    variants.flat_map(|variant| {
+        let description = variant["description"].as_str().unwrap_or_default();
+        properties(variant).map(move |(name, schema)| (name, schema, description))
+    })
+}
+
+/// Returns the schemas of which a value fulfils one: the elements of `anyOf`, or the schema itself.
+fn choices(schema: &Value) -> impl Iterator<Item = &Value> {
+    let choices = schema["anyOf"].as_array();
+    let own = choices.is_none().then_some(schema);
+    choices.into_iter().flatten().chain(own)
+}
+
+/// Returns the variants of an enum whose value may be a word or a number instead of a table: the variant as it is written, its values, and the description.
+fn single_values(schema: &Value) -> impl Iterator<Item = (String, String, &str)> {
+    variants(schema).flat_map(|(name, value, description)| {
+        let single = choices(value).filter(|choice| choice.get("properties").is_none());
+        single.map(move |choice| (format!("`{{ {name} = … }}`"), values(choice), description))
+    })
 }
 
 /// Returns a schema without the texts that depend on its position in the document.
@@ -487,13 +509,14 @@ fn meanings_of_values(name: &str, schema: &Value) -> String {
         one
     };
     let choices = one["oneOf"].as_array().into_iter().flatten();
-    let lines = choices.filter_map(|choice| {
+    let names = choices.filter_map(|choice| {
         let value = choice["const"].as_str()?;
-        Some(format!(
-            "- `{value}`: {}\n",
-            choice["description"].as_str()?.replace("\n\n", " ")
-        ))
+        Some((format!("`{value}`"), choice["description"].as_str()?))
     });
+    let values = single_values(one).map(|(value, _, description)| (value, description));
+    let lines = names
+        .chain(values)
+        .map(|(value, words)| format!("- {value}: {}\n", words.replace("\n\n", " ")));
     // Blank lines between the values separate their sentences.
     let lines = lines.collect::<Vec<String>>().join("\n");
     match lines.is_empty() {
