@@ -66,7 +66,7 @@ pub fn plan(
 /// Runs a study for `seconds` without storing results, and returns a text that describes the completed work. The run goes on until the process ends.
 ///
 /// # Errors
-/// Those of the work items that ran.
+/// If a work item of the sample fails.
 fn sample(study: Box<dyn AnyStudy>, seconds: f64) -> Result<String> {
     let sample = Arc::new(Sample::default());
     let (sender, ended) = mpsc::channel();

@@ -249,7 +249,8 @@ impl Args {
         Ok((model, pose))
     }
 
-    /// Returns the press depth past first contact, metres; `None` for a press to a force, or for an object that is not moved. Says if taxels cannot follow.
+    /// Returns the press depth past first contact, metres; `None` for a press to a force, or for an object that is not moved. Prints a note if the depth
+    /// exceeds the stroke of the taxels.
     fn depth(&self, taxel: &Taxel) -> Result<Option<f64>> {
         let is_placed = self.source.spheres.is_some() || self.many.poses.is_some();
         let default = (!is_placed && self.force_n.is_none()).then_some(3.0);

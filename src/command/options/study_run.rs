@@ -17,7 +17,7 @@ use std::io::stdout;
 use std::path::PathBuf;
 use std::time::SystemTime;
 
-/// What `run`, `merge` and `slurm` are about.
+/// Arguments that `run`, `merge` and `slurm` share: the study and the folder of its results.
 #[derive(clap::Args)]
 pub struct ResultsArgs {
     #[command(flatten)]

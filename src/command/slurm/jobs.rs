@@ -6,8 +6,8 @@ use std::io;
 use std::path::Path;
 use std::process::Command;
 
-/// Submits a cluster job, or an array of jobs, that runs a shell command; returns the number of the job. Its script and what it says are files of its name in
-/// the folder `slurm` of a study's results.
+/// Submits a cluster job, or an array of jobs, that runs a shell command; returns the number of the job. The script and the output of the job are
+/// files in the folder `slurm` of a study's results, named after the job.
 pub fn submit(name: &str, options: &[String], line: &str, results: &Path) -> Result<String> {
     let folder = results.join("slurm");
     std::fs::create_dir_all(&folder).map_err(|e| Error::io(&folder, "create folder", e))?;

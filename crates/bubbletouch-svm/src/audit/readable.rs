@@ -41,7 +41,7 @@ struct Pairs {
 struct Workspace {
     /// Sums of the products of each row with the rows of each class.
     sums: Vec<f64>,
-    /// The same sums over the rows of the row's own unit alone.
+    /// Sums of the products of each row with the rows of each class in the row's own unit.
     own_sums: Vec<f64>,
     /// Number of rows, and squared norm of the sum of the rows, of each class outside each unit.
     outside: Vec<(usize, f64)>,

@@ -119,8 +119,8 @@ impl Training<'_> {
         Ok((chosen.best.c, classifier.with_choice(&chosen)))
     }
 
-    /// Returns a predicted label for each training touch, by a classifier that is trained without the fold of the touch. All classifiers use the parameters of
-    /// `like`.
+    /// Returns a predicted label for each training touch, by a classifier that is trained without the fold of the touch. All classifiers have the parameters of
+    /// the fitted classifier `like`.
     ///
     /// # Errors
     /// If a fold cannot be drawn or the training fails.

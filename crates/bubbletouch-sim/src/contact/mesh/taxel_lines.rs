@@ -84,7 +84,7 @@ pub(super) struct Thickness {
     /// Bounds of |(p(t) − ō) × ū| for the heights t at which triangles stop a taxel: by component, and of the length, metres.
     pub across: [f32; 3],
     pub radius: f32,
-    /// The same bounds for all heights t at which the line meets the ball around the mesh.
+    /// Bounds of |(p(t) − ō) × ū| for all heights t at which the line meets the ball around the mesh: by component, and of the length, metres.
     pub across_far: [f32; 3],
     pub radius_far: f32,
     /// Largest distance between a taxel's axis and ū.

@@ -102,7 +102,8 @@ impl Layout {
     }
 }
 
-/// Returns the distances of positions from their nearest neighbours, in ascending order. Of many positions, every second, third, … one is searched.
+/// Returns the distances of positions from their nearest neighbours, in ascending order. If there are more than
+/// `MAX_SEARCHED` positions, only every second, third, … position is searched.
 pub fn nearest_distances(places: &[DVec2]) -> Vec<f64> {
     let step = places.len().div_ceil(MAX_SEARCHED).max(1);
     let nearest = |taxel: usize| {
