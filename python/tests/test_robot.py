@@ -345,3 +345,75 @@ def test_meshes_of_packages_are_found_by_name_or_above_the_file(tmp_path: Path) 
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts" / "corner.obj").write_text(CORNER, encoding="utf-8")
     assert bt.Robot.read(file).mesh("a").volume == pytest.approx(1e-3)
+
+
+SUB = """
+<mujoco>
+  <compiler eulerseq="zyx"/>
+  <default><joint axis="0 1 0"/><default class="c"><joint axis="0 1 1" ref="20"/></default></default>
+  <worldbody>
+    <geom size="0.2" pos="0 0 1"/><site name="base" pos="1 0 0"/>
+    <body name="b0" pos="0.1 0.2 0.3"><joint name="j0"/><geom size="0.01" mass="0.1"/>
+      <body name="b1" pos="0.3 0 0" euler="0 90 0"><joint name="j1" class="c"/><geom size="0.01" mass="0.1"/>
+        <body name="b2" pos="0 0 0.2" euler="10 20 30"><joint name="j2" type="slide"/><joint name="j3"/><geom size="0.01" mass="0.1"/>
+          <site name="tip" pos="0.1 0 0" euler="0 45 0"/></body>
+        <body name="b3" quat="1 1 0 0"><geom size="0.01" mass="0.1"/></body>
+      </body>
+    </body>
+    <body name="ball" pos="1 1 1"><freejoint name="free"/><geom size="0.01" mass="0.1"/></body>
+  </worldbody>
+  <equality><joint joint1="j3" joint2="j1" polycoef="0.1 0.5 0 0 0"/></equality>
+</mujoco>"""
+
+
+@pytest.mark.parametrize(
+    "bodies",
+    [
+        '<attach model="sub" body="b0" prefix="x_"/>',
+        '<attach model="sub" prefix="x_"/>',
+        '<body name="a" pos="1 0 0"><joint name="ja"/><geom size="0.1"/><frame pos="0 0 1" euler="0.1 0.2 0.3"><attach model="sub" body="b1" prefix="x_"/></frame></body>',
+        '<replicate count="3" offset="1 0 0" euler="0 0 0.5"><attach model="sub" body="b1" prefix="x_"/></replicate>',
+        '<frame pos="1 0 0" euler="0 0 1"><attach model="sub" body="ball" prefix="x_"/></frame>',
+        '<attach model="middle" prefix="y_"/><attach model="sub" body="b2" prefix="z_"/>',
+    ],
+)
+def test_attached_models_stand_where_mujocos_do(bodies: str, tmp_path: Path) -> None:
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "sub.xml").write_text(SUB)
+    middle = """<mujoco><asset><model name="s" file="sub.xml"/></asset><worldbody><body name="top" pos="0 1 0"><joint name="jt"/><geom size="0.1"/>
+      <frame euler="0 0 90"><attach model="s" body="b1" prefix="x_"/></frame></body></worldbody></mujoco>"""
+    (tmp_path / "parts" / "middle.xml").write_text(middle)
+    file = tmp_path / "main.xml"
+    file.write_text(f"""<mujoco><compiler angle="radian"/><asset><model name="sub" file="parts/sub.xml"/><model name="middle" file="parts/middle.xml"/></asset>
+      <worldbody>{bodies}</worldbody></mujoco>""")
+    model = mujoco.MjModel.from_xml_path(str(file))
+    data = mujoco.MjData(model)
+    robot = bt.Robot.read(file)
+    assert robot.links[: model.nbody] == [name_of(model, mujoco.mjtObj.mjOBJ_BODY, i) for i in range(model.nbody)]
+    own = {joint.name for joint in robot.joints}
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        q = {name: value for name, value in random_positions(model, data, rng).items() if name in own}
+        for constraint in range(model.neq):
+            first, second = model.eq_obj1id[constraint], model.eq_obj2id[constraint]
+            offset, factor = model.eq_data[constraint][:2]
+            at, of = model.jnt_qposadr[first], model.jnt_qposadr[second]
+            data.qpos[at] = model.qpos0[at] + offset + factor * (data.qpos[of] - model.qpos0[of])
+        assert largest_difference(model, data, robot, q) < TOLERANCE
+
+
+def test_wrong_attached_models_are_named(tmp_path: Path) -> None:
+    file = tmp_path / "main.xml"
+    (tmp_path / "sub.xml").write_text(SUB)
+    for attach, words in [
+        ('<attach model="sup" prefix="x_"/>', r"main.xml, line 1: `model` .sup., which is no <model> of <asset>; perhaps `sub`"),
+        ('<attach model="sub" body="b9" prefix="x_"/>', "`body` .b9., which is no body of the model `sub`"),
+        ('<attach model="sub" prefix="x_"/><attach model="sub" prefix="x_"/>', "a second body `x_b0`"),
+        ('<body><attach model="sub" body="ball" prefix="x_"/></body>', "the free joint `free`; a free joint of a body in <worldbody>"),
+        ('<attach model="self" prefix="x_"/>', "models that attach each other, 20 deep"),
+        ('<attach model="none" prefix="x_"/>', "none.xml: cannot be read"),
+    ]:
+        models = "".join(f'<model name="{name}" file="{of}.xml"/>' for name, of in (("sub", "sub"), ("self", "main"), ("none", "none")))
+        file.write_text(f"<mujoco><asset>{models}</asset><worldbody>{attach}</worldbody></mujoco>")
+        with pytest.raises(ValueError, match=words):
+            bt.Robot.read(file)

@@ -5,6 +5,7 @@ use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::world::{JointKind, LinkGeometry, Robot, ShapeRole};
 use glam::{DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::path::Path;
 
 /// Reads the children of `<mujoco>`.
 fn model(inside: &str) -> bubbletouch_sim::Result<Robot> {
@@ -392,4 +393,51 @@ fn wrong_models_are_refused_with_their_file_and_line() {
         other.contains("URDF: a <robot>, or MJCF: a <mujoco>"),
         "{other}"
     );
+}
+
+#[test]
+fn an_attached_model_has_its_prefix_frame_mimics_and_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::create_dir(path("parts")).unwrap();
+    let part = "<mujoco><asset><mesh name='m' file='m.obj'/></asset><worldbody><body name='a' pos='0 0 1'><joint name='j' axis='0 1 0'/>\
+                <body name='b' pos='1 0 0'><joint name='k' axis='0 1 0'/><geom type='mesh' mesh='m'/><site name='tip' pos='0 1 0'/></body></body>\
+                <body name='c'/></worldbody><equality><joint joint1='k' joint2='j'/></equality></mujoco>";
+    std::fs::write(path("parts/part.xml"), part).unwrap();
+    let main = "<mujoco><asset><model name='p' file='parts/part.xml'/></asset><worldbody>\
+                <frame pos='2 0 0'><attach model='p' body='a' prefix='x_'/></frame></worldbody></mujoco>";
+    std::fs::write(path("main.xml"), main).unwrap();
+    let robot = Robot::read(&path("main.xml")).unwrap();
+    assert!(robot.notes().is_empty(), "{:?}", robot.notes());
+    let names: Vec<&str> = robot
+        .links()
+        .iter()
+        .map(|link| link.name.as_str())
+        .collect();
+    assert_eq!(names, ["world", "x_a", "x_b", "x_tip"]);
+    let poses = robot.forward(&Pose::IDENTITY, &[FRAC_PI_2]).unwrap();
+    // The second joint follows the first, so the last link is turned by half a revolution.
+    assert!((poses[2].translation - DVec3::new(2.0, 0.0, 0.0)).length() < 1e-12);
+    assert!((poses[2].rotation * DVec3::X + DVec3::X).length() < 1e-12);
+    let LinkGeometry::Mesh { file, .. } = &robot.links()[2].shapes[0].geometry else {
+        panic!("a mesh");
+    };
+    assert_eq!(Path::new(file), path("parts/m.obj"));
+}
+
+#[test]
+fn an_aligned_free_joint_has_a_note() {
+    for text in [
+        "<mujoco><worldbody><body name='a'><freejoint align='true'/></body></worldbody></mujoco>",
+        "<mujoco><compiler alignfree='true'/><worldbody><body name='a'><joint type='free'/></body></worldbody></mujoco>",
+    ] {
+        let robot = Robot::from_mjcf("m.xml", text).unwrap();
+        let notes = robot.notes();
+        assert!(
+            notes
+                .iter()
+                .any(|note| note.contains("the body keeps its frame")),
+            "{notes:?}"
+        );
+    }
 }

@@ -13,6 +13,8 @@ pub(super) struct Compiler {
     pub euler_sequence: String,
     /// Whether a joint with a range and without `limited` is limited.
     pub has_auto_limits: bool,
+    /// Whether the frames of bodies with a free joint are moved to the frames of their inertia.
+    pub aligns_free: bool,
     /// Folder of mesh files, relative to the folder of the model.
     pub mesh_folder: String,
     /// Whether folders in the names of mesh files are removed.
@@ -29,6 +31,7 @@ impl Compiler {
             angle: PI / 180.0,
             euler_sequence: "xyz".to_owned(),
             has_auto_limits: true,
+            aligns_free: false,
             mesh_folder: String::new(),
             strips_paths: false,
         };
@@ -79,6 +82,9 @@ impl Compiler {
             const FLAGS: [(&str, bool); 2] = [("false", false), ("true", true)];
             if let Some(flag) = element.one_of("autolimits", &FLAGS)? {
                 compiler.has_auto_limits = flag;
+            }
+            if let Some(flag) = element.one_of("alignfree", &FLAGS)? {
+                compiler.aligns_free = flag;
             }
             if let Some(flag) = element.one_of("strippath", &FLAGS)? {
                 compiler.strips_paths = flag;

@@ -85,6 +85,23 @@ pub(super) fn read_joint(item: &Item, place: JointPlace, compiler: &Compiler) ->
         true => read_limits(item, unit, compiler)?,
         false => None,
     };
+    let aligns = own.one_of(
+        "align",
+        &[
+            ("false", false),
+            ("true", true),
+            ("auto", compiler.aligns_free),
+        ],
+    )?;
+    if kind == Type::Free && aligns.unwrap_or(compiler.aligns_free) {
+        let aligned = Err(own.refuse(
+            format!("the aligned free joint `{}`", place.name),
+            "`align` \"false\"",
+        ));
+        let consequence =
+            "the body keeps its frame, which MuJoCo moves to the frame of its inertia";
+        own.or_note(aligned, (), consequence);
+    }
     let kind = match kind {
         Type::Free if !place.is_alone_in_world => {
             let given = format!("the free joint `{}`", place.name);

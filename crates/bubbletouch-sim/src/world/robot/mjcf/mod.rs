@@ -10,10 +10,12 @@
 //! | `geom` | `<geom>` and mesh assets → shapes of links |
 //! | `joint` | `<joint>` → joints |
 //! | `equality` | `<equality><joint>` → mimicking joints |
+//! | `submodels`, `attach` | models in other files, and their bodies that `<attach>` adds |
 //! | `model` | the tree of bodies → a robot |
 //!
 //! The reader uses the elements that place bodies and sites, and the shapes that skin can cover. A note lists the kinds of the other elements.
 
+mod attach;
 mod classes;
 mod compiler;
 mod equality;
@@ -23,5 +25,6 @@ mod joint;
 mod model;
 mod orientation;
 mod source;
+mod submodels;
 
 pub(super) use model::read_mjcf;

@@ -8,6 +8,7 @@ use super::geom::{Meshes, extent, read_geom, read_meshes};
 use super::joint::{JointPlace, read_joint, rest_of};
 use super::orientation::pose_of;
 use super::source::Source;
+use super::submodels::SubModels;
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::world::robot::mimic::drives;
@@ -24,7 +25,7 @@ const WORLD: &str = "world";
 /// Largest number of bodies of a model. With a larger value, a small file with copies can fill the memory.
 const MAX_BODIES: usize = 100_000;
 /// Elements that add bodies or shapes but are not supported by the reader.
-const ADDING: [&str; 3] = ["attach", "composite", "flexcomp"];
+const ADDING: [&str; 2] = ["composite", "flexcomp"];
 
 /// Reads a robot from the text of an MJCF file; `place` is the path of the file.
 pub(in crate::world::robot) fn read_mjcf(place: &str, text: &str) -> Result<Robot> {
@@ -34,7 +35,7 @@ pub(in crate::world::robot) fn read_mjcf(place: &str, text: &str) -> Result<Robo
         node: document.root_element(),
         lines: &source.lines,
     };
-    let parts = Parts::read(root)?;
+    let parts = Parts::read(root, place, &SubModels::default())?;
     let Parts {
         mut links,
         mut joints,
@@ -76,16 +77,18 @@ pub(in crate::world::robot) fn read_mjcf(place: &str, text: &str) -> Result<Robo
 }
 
 /// Bodies, joints and sites of a model.
-struct Parts<'a> {
+pub(super) struct Parts<'a> {
     classes: Classes<'a>,
     compiler: Compiler,
     meshes: Meshes,
-    links: Vec<Link>,
+    /// Models that `<attach>` can add.
+    pub models: SubModels,
+    pub links: Vec<Link>,
     /// Pose of each body in its parent, as the model contains it.
-    body_poses: Vec<Pose>,
-    joints: Vec<Joint>,
+    pub body_poses: Vec<Pose>,
+    pub joints: Vec<Joint>,
     /// Element of each joint; for a fixed joint, the element of its body.
-    elements: Vec<Element<'a>>,
+    pub elements: Vec<Element<'a>>,
     sites: Vec<Site<'a>>,
     /// Line of each name of a body, joint or site, by kind and name.
     names: HashMap<(&'static str, String), usize>,
@@ -104,7 +107,8 @@ struct Site<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn read(root: Element<'a>) -> Result<Self> {
+    /// Reads the bodies of the model in the file `place`; `around` are the models of the file that attaches it.
+    pub fn read(root: Element<'a>, place: &str, around: &SubModels) -> Result<Self> {
         if root.node.tag_name().name() != "mujoco" {
             return Err(root.refuse(format!("{} as the root", root.called()), "MJCF: a <mujoco>"));
         }
@@ -123,6 +127,7 @@ impl<'a> Parts<'a> {
             classes,
             compiler,
             meshes,
+            models: SubModels::read(root, place, around)?,
             links: vec![link(WORLD)],
             body_poses: vec![Pose::IDENTITY],
             joints: Vec::new(),
@@ -146,7 +151,7 @@ impl<'a> Parts<'a> {
                     parts.add_children(&world, 0)?;
                 }
                 "compiler" | "default" => {}
-                "asset" | "equality" => parts.ignore_children(node, &["mesh", "joint"]),
+                "asset" | "equality" => parts.ignore_children(node, &["mesh", "joint", "model"]),
                 tag => {
                     let n_inside = node.children().filter(|node| node.is_element()).count();
                     *parts.ignored.entry(tag).or_default() += n_inside.max(1);
@@ -190,6 +195,7 @@ impl<'a> Parts<'a> {
                         .refuse("a joint of the world", "joints in a <body>"));
                 }
                 "joint" | "freejoint" => {}
+                "attach" => self.attach(&child, index)?,
                 tag if ADDING.contains(&tag) => {
                     let given = child.element.called();
                     let unread = Err(child.element.refuse(given, "bodies and geoms as elements"));
@@ -219,9 +225,6 @@ impl<'a> Parts<'a> {
             "user",
         ])?;
         let index = self.links.len();
-        if index > MAX_BODIES {
-            return Err(element.refuse("too many bodies", format!("at most {MAX_BODIES}")));
-        }
         let name = self.name("body", body, || format!("body{index}"))?;
         self.links.push(link(&name));
         // No default class has attributes of bodies.
@@ -292,15 +295,44 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// Returns the name of an element. If the element has no name, `unnamed` creates a name. A second element of a kind with an equal name is an error.
+    /// Returns the name of an element. If the element has no name, `unnamed` creates a name.
     fn name(
         &mut self,
         kind: &'static str,
         placed: &Placed,
         unnamed: impl Fn() -> String,
     ) -> Result<String> {
-        let element = placed.element;
         let name = placed.name().unwrap_or_else(unnamed);
+        self.taken_name(kind, placed.element, name)
+    }
+
+    /// Returns the sites with their names, bodies and poses.
+    pub fn named_sites(&self) -> Vec<(String, usize, Pose)> {
+        let of = |site: &Site| (site.name.clone(), site.body, site.body_from_site);
+        self.sites.iter().map(of).collect()
+    }
+
+    /// Adds a site of an attached model, given its body and its pose on the body.
+    pub fn add_attached_site(&mut self, element: Element<'a>, name: String, place: (usize, Pose)) {
+        let (body, body_from_site) = place;
+        self.sites.push(Site {
+            element,
+            name,
+            body,
+            body_from_site,
+        });
+    }
+
+    /// Returns the name, which is taken from now on. A second element of a kind with an equal name is an error.
+    pub fn taken_name(
+        &mut self,
+        kind: &'static str,
+        element: Element,
+        name: String,
+    ) -> Result<String> {
+        if self.links.len() > MAX_BODIES {
+            return Err(element.refuse("too many bodies", format!("at most {MAX_BODIES}")));
+        }
         match self.names.insert((kind, name.clone()), element.line()) {
             None => Ok(name),
             Some(first) => {
