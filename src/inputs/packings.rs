@@ -46,7 +46,7 @@ pub fn pack_within(
             note(format_args!("{place}: {slow}"));
         }
         pack_mesh(surface, Body::Solid, tolerance).map_err(|error| {
-            let advice = "a study closes small holes with objects.close_holes_mm; open meshes can be touched with model = \"mesh\", free ones with model = \"vertex_spheres\"";
+            let advice = "a study closes small holes with objects.close_holes_mm; open meshes can be touched with model = \"mesh\", or with model = \"vertex_spheres\" beside other objects in a scene with a free object";
             error_of_file(error, place, advice)
         })
     })

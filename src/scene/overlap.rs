@@ -45,7 +45,8 @@ pub(super) fn check_starts(
             && Welded::new(mesh.mesh()).n_unbalanced() > 0
         {
             let given = "an open mesh, beside another object in a scene with a free object";
-            let allowed = "a closed mesh, or model = \"packed\": an open mesh has no inside";
+            let allowed =
+                "a closed mesh, or model = \"vertex_spheres\": an open mesh has no inside";
             return Err(check.error(&format!("objects.{}.mesh", object.name), given, allowed));
         }
     }

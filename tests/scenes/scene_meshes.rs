@@ -126,7 +126,7 @@ fn open_and_overlapping_meshes_beside_others_are_refused() {
     assert_eq!(
         said(tray.clone() + &mesh("box", "open.obj", [4.0, -3.0, 18.0], 0.05)),
         "s.toml, key objects.box.mesh: an open mesh, beside another object in a scene with a free object; \
-         a closed mesh, or model = \"packed\": an open mesh has no inside"
+         a closed mesh, or model = \"vertex_spheres\": an open mesh has no inside"
     );
     // The lower corners of the box are 2 mm below the floor of the tray.
     assert_eq!(
