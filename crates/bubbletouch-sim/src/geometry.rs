@@ -140,6 +140,23 @@ impl Aabb {
         beyond.length_squared()
     }
 
+    /// Returns whether no point is in both boxes.
+    pub fn is_apart(&self, other: &Self) -> bool {
+        self.min.cmpgt(other.max).any() || other.min.cmpgt(self.max).any()
+    }
+
+    /// Returns the bounding box of the box after a rotation and a translation (metres).
+    pub fn turned(&self, turn: &DMat3, shift: DVec3) -> Self {
+        let half = 0.5 * self.size();
+        let center = *turn * self.center() + shift;
+        let [x, y, z] = [turn.x_axis, turn.y_axis, turn.z_axis].map(DVec3::abs);
+        let reach = half.x * x + half.y * y + half.z * z;
+        Self {
+            min: center - reach,
+            max: center + reach,
+        }
+    }
+
     /// Returns the box enlarged by `margin` (metres, not negative) on every side.
     pub fn widened(&self, margin: f64) -> Self {
         Self {

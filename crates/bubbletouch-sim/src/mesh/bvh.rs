@@ -3,7 +3,7 @@
 use super::slab::{Slab, slabs};
 use super::{BoxTree, Feature, Triangle, TriangleMesh};
 use crate::geometry::Aabb;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::ops::Range;
 
 /// Bounding volume hierarchy: triangles in a tree of bounding boxes. Equal triangles give equal trees.
@@ -106,14 +106,49 @@ impl Bvh {
 
     /// Visits each triangle whose bounding box intersects `region`, in the order of the tree, with its index in the mesh.
     pub fn each_in_box(&self, region: &Aabb, mut visit: impl FnMut(usize, &Triangle)) {
-        let apart = |a: &Aabb, b: &Aabb| a.min.cmpgt(b.max).any() || b.min.cmpgt(a.max).any();
-        let bound = |bounds: &Aabb| f64::from(u8::from(apart(bounds, region)));
+        let bound = |bounds: &Aabb| f64::from(u8::from(bounds.is_apart(region)));
         self.search(1.0, bound, |number, triangle, limit| {
-            if !apart(&triangle.bounds(), region) {
+            if !triangle.bounds().is_apart(region) {
                 visit(number, triangle);
             }
             limit
         });
+    }
+
+    /// Visits each triangle of another mesh whose bounding box, after a rotation and a translation (metres), is within `margin` metres of the bounding box of a
+    /// triangle of this mesh. The visited triangles may also include others. The order is that of the other tree.
+    pub fn each_near(
+        &self,
+        other: &Self,
+        (turn, shift): (&DMat3, DVec3),
+        margin: f64,
+        mut visit: impl FnMut(usize),
+    ) {
+        let mut waiting = vec![0];
+        while let Some(node) = waiting.pop() {
+            let bounds = other.tree.node_bounds(node).turned(turn, shift);
+            if !self.is_met(&bounds.widened(margin)) {
+                continue;
+            }
+            match other.tree.children(node) {
+                Some([one, two]) => waiting.extend([two, one]),
+                None => other
+                    .tree
+                    .leaf(node)
+                    .for_each(|place| visit(other.number(place))),
+            }
+        }
+    }
+
+    /// Returns whether the bounding box of a triangle intersects `region`.
+    fn is_met(&self, region: &Aabb) -> bool {
+        let mut is_met = false;
+        let bound = |bounds: &Aabb| f64::from(u8::from(bounds.is_apart(region)));
+        self.search(1.0, bound, |_, triangle, limit| {
+            is_met |= !triangle.bounds().is_apart(region);
+            if is_met { f64::NEG_INFINITY } else { limit }
+        });
+        is_met
     }
 
     /// Returns the first triangle that the line `origin + along · direction` crosses, for values of `along` in a range.

@@ -10,8 +10,10 @@
 //!
 //! Exactly one part fulfils its condition where the nearest point changes smoothly, so no part is counted twice.
 
-use super::TriangleMesh;
+use super::crossings::winding;
+use super::pseudonormals::Pseudonormals;
 use super::welded::{Welded, has_equal};
+use super::{Bvh, Closest, Feature, TriangleMesh};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
@@ -31,6 +33,8 @@ pub struct MeshFeatures {
     /// Unit vectors in the adjacent faces of each edge, perpendicular to the edge and into the face.
     sides: Lists<DVec3>,
     faces: Vec<Face>,
+    normals: Pseudonormals,
+    is_closed: bool,
 }
 
 /// Edge of a mesh.
@@ -182,6 +186,8 @@ impl MeshFeatures {
             corners,
             edges,
             faces,
+            normals: Pseudonormals::new(mesh, &welded),
+            is_closed: welded.is_closed(),
         }
     }
 
@@ -223,6 +229,38 @@ impl MeshFeatures {
     /// Returns the number of a face among all parts.
     pub fn face_number(&self, triangle: usize) -> u32 {
         (self.corners.len() + self.edges.len() + triangle) as u32
+    }
+
+    /// Returns the number of the part that contains a nearest point.
+    pub fn part_of(&self, closest: &Closest) -> u32 {
+        let face = &self.faces[closest.triangle];
+        match closest.feature {
+            Feature::Face => self.face_number(closest.triangle),
+            // A triangle with two equal corners has sides that are no edges.
+            Feature::Edge(k) => match face.edges[usize::from(k)] {
+                u32::MAX => face.corner_numbers[usize::from(k)],
+                edge => self.edge_number(edge as usize),
+            },
+            Feature::Vertex(k) => face.corner_numbers[usize::from(k)],
+        }
+    }
+
+    /// Returns the direction of the edge that contains a nearest point (unit vector); `None` if the point is in a face or at a corner.
+    pub fn edge_along(&self, closest: &Closest) -> Option<DVec3> {
+        let Feature::Edge(side) = closest.feature else {
+            return None;
+        };
+        let edge = self.faces[closest.triangle].edges[usize::from(side)];
+        self.edges.get(edge as usize).map(|edge| edge.direction)
+    }
+
+    /// Returns whether a point is inside the solid of the mesh, given the nearest point of the mesh. `bvh` is the tree of the mesh's triangles.
+    pub fn is_inside(&self, bvh: &Bvh, point: DVec3, closest: &Closest) -> bool {
+        let by_normal = match self.is_closed || closest.feature == Feature::Face {
+            true => self.normals.is_outside(point, closest),
+            false => None,
+        };
+        !by_normal.unwrap_or_else(|| winding(bvh, point) <= 0)
     }
 
     /// Returns whether an edge is nearer than its faces to a point in the direction `d` (unit vector) from the edge.

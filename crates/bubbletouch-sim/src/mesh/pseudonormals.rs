@@ -1,8 +1,12 @@
 //! Pseudonormals of faces, edges and corners, which distinguish inside from outside \[BA\].
 
 use super::welded::Welded;
-use super::{Feature, TriangleMesh};
+use super::{Closest, Feature, TriangleMesh};
 use glam::DVec3;
+
+/// Smallest cosine between a pseudonormal and the direction to the query point for which the pseudonormal determines inside or outside. Below this cosine the
+/// winding number decides, because thin triangles have no weight in a pseudonormal.
+const FLAT: f64 = 0.05;
 
 /// Pseudonormals of all faces, edges and corners of a mesh. A pseudonormal is the sum of the normals of the adjacent faces, weighted by their angle there.
 ///
@@ -56,5 +60,12 @@ impl Pseudonormals {
             Feature::Edge(k) => self.edges[triangle][usize::from(k)],
             Feature::Vertex(k) => self.corners[triangle][usize::from(k)],
         }
+    }
+
+    /// Returns whether a point is outside a closed mesh, given the nearest point of the mesh; `None` if the pseudonormal does not decide.
+    pub fn is_outside(&self, point: DVec3, closest: &Closest) -> Option<bool> {
+        let normal = self.at(closest.triangle, closest.feature);
+        let rise = (point - closest.point).dot(normal);
+        (rise.abs() > FLAT * closest.distance * normal.length()).then_some(rise > 0.0)
     }
 }

@@ -19,10 +19,6 @@ pub struct Surface {
     is_balanced: bool,
 }
 
-/// Smallest cosine between a pseudonormal and the direction to the query point for which the pseudonormal determines inside or outside. Below this cosine the
-/// winding number decides, because thin triangles have no weight in a pseudonormal.
-const FLAT: f64 = 0.05;
-
 impl Surface {
     /// Prepares a mesh for nearest-point, distance and inside queries; takes a few microseconds per triangle.
     pub fn new(mesh: TriangleMesh) -> Self {
@@ -117,13 +113,10 @@ impl Surface {
 
     /// Returns whether a point is outside the mesh, given the nearest point of the mesh.
     pub fn is_outside(&self, point: DVec3, closest: &Closest) -> bool {
-        if self.is_closed {
-            let normal = self.pseudonormal(closest);
-            let rise = (point - closest.point).dot(normal);
-            if rise.abs() > FLAT * closest.distance * normal.length() {
-                return rise > 0.0;
-            }
-        }
-        !self.contains(point)
+        let by_normal = match self.is_closed {
+            true => self.normals.is_outside(point, closest),
+            false => None,
+        };
+        by_normal.unwrap_or_else(|| !self.contains(point))
     }
 }

@@ -13,8 +13,8 @@
 //! - Rigid contacts with half-spaces ([`HalfSpace`]), fixed objects ([`Obstacle`]), and other free objects. The multipliers are the contact forces.
 //!
 //! An object is a union of spheres or a triangle mesh ([`RigidShape`]). The parts of a mesh are its faces, edges and corners. A taxel touches the part that is
-//! nearest to its stopped ball (`mesh_reach`); two meshes touch at corners and faces, and where ridges cross (`mesh_pairs`). Where the nearest part changes, the
-//! energy has a kink only in a valley of the mesh, and the valley's faces share the force as spheres do.
+//! nearest to its stopped ball; two meshes touch at corners and faces, and where ridges cross (`meshes`). Where the nearest part changes, the energy has a kink
+//! only in a valley of the mesh, and the valley's faces share the force as spheres do.
 //!
 //! A damper delays its taxel. Within a step Δt a free taxel returns to φ δ_before (φ = e^(−k Δt / c)); beyond this deflection its stiffness is k / (1 − φ). The
 //! energy within a step is therefore E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and its forces equal the damped forces in
@@ -29,13 +29,13 @@
 //! - `[RW]` Rockafellar, *Augmented Lagrangians and applications of the proximal point algorithm in convex programming*, 1976.
 
 mod body;
+mod curvature;
 mod descent;
 mod energy;
 mod fall;
 mod free_object;
 mod loads;
-mod mesh_pairs;
-mod mesh_reach;
+mod meshes;
 mod model;
 mod pair;
 mod pairs;
@@ -53,7 +53,7 @@ mod tied_max;
 
 pub use super::friction::{TangentialSpring, TangentialSpringState};
 pub use free_object::{FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin};
-pub use mesh_pairs::overlap;
+pub use meshes::overlap;
 pub use reports::{TaxelLoad, Touch};
 pub use rigid_contact::Touched;
 pub use rigid_shape::RigidShape;

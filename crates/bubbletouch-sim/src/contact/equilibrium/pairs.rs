@@ -6,7 +6,7 @@
 use super::super::taxel_contact::GRAZING;
 use super::body::Body;
 use super::free_object::{Ground, PlacedSkin};
-use super::mesh_reach::MeshOnSkin;
+use super::meshes::MeshOnSkin;
 use super::pair::{Key, Kind, OTHERS, Pair, Part};
 use super::reach::Reach;
 use super::rigid_pairs::gather_rigid;

@@ -1,6 +1,6 @@
 //! Contact of a free object's part with a rigid counterpart.
 
-use super::pair::Curvature;
+use super::curvature::Curvature;
 use glam::{DMat3, DVec3};
 
 /// Rigid counterpart that a part of a free object touches: a sphere, or a part of a mesh by its number

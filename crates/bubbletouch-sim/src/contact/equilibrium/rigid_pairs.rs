@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::free_object::{Ground, HalfSpace};
-use super::mesh_pairs::{Placed, Range, each_below_plane, each_contact};
+use super::meshes::{Placed, Range, each_below_plane, each_contact};
 use super::pair::{Key, Kind, Pair, Part};
 use super::rigid_contact::{Touched, Touching};
 use super::rigid_shape::RigidShape;

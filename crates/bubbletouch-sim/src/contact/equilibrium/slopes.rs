@@ -1,7 +1,8 @@
 //! Derivatives of deflections with respect to the motions of bodies.
 
 use super::body::{Body, along, unit_motions};
-use super::pair::{Curvature, Pair};
+use super::curvature::Curvature;
+use super::pair::Pair;
 use super::symmetric::{Six, Symmetric, dot};
 use glam::{DMat3, DVec3};
 

@@ -2,7 +2,7 @@
 
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, HalfSpace, Obstacle, Outcome, PlacedSkin,
-    Touch, Touched,
+    Touch, Touched, overlap,
 };
 use bubbletouch_sim::contact::{Workspace, press_with_contacts};
 use bubbletouch_sim::geometry::Pose;
@@ -336,6 +336,58 @@ fn meshes_rest_on_planes_and_obstacles_of_spheres_and_triangles() {
         assert!(found.imbalance <= BALANCED);
         let force: DVec3 = rest.touches.iter().map(|touch| touch.force).sum();
         assert!((force + 0.1 * DOWN).length() < 1e-6 * 0.1 * G);
+    }
+}
+
+/// A plate that is 1 mm thick, with a roof of two faces that meet at a ridge above its middle.
+fn roof() -> Model {
+    let (x, y) = (20e-3, 15e-3);
+    let corners = [
+        (-x, -y, 0.0),
+        (x, -y, 0.0),
+        (x, y, 0.0),
+        (-x, y, 0.0),
+        (-x, 0.0, 1e-3),
+        (x, 0.0, 1e-3),
+    ];
+    let corners = corners.map(|(x, y, z)| DVec3::new(x, y, z)).to_vec();
+    let triangles = vec![
+        [0, 2, 1],
+        [0, 3, 2],
+        [0, 1, 5],
+        [0, 5, 4],
+        [2, 3, 4],
+        [2, 4, 5],
+        [0, 4, 3],
+        [1, 2, 5],
+    ];
+    MeshModel::new(TriangleMesh::new("roof", corners, triangles).unwrap()).into()
+}
+
+/// A corner above a ridge has its foot on no face of the near side. The far side of the thin plate is not touched.
+#[test]
+fn a_corner_above_the_ridge_of_a_thin_plate_touches_nothing() {
+    let (roof, cube) = (roof(), cuboid(10e-3, 10e-3, 10e-3));
+    // The cube stands on one corner.
+    let upright = DQuat::from_rotation_arc(DVec3::ONE.normalize(), DVec3::NEG_Z);
+    let half_diagonal = 3f64.sqrt() * 5e-3;
+    let depth = |above: f64| {
+        let cube_at = Pose::new(upright, DVec3::new(1e-3, 0.0, 1e-3 + above + half_diagonal));
+        overlap(
+            ((&cube).into(), &cube_at),
+            ((&roof).into(), &Pose::IDENTITY),
+        )
+    };
+    for above in [1e-6, 1e-4, 5e-4, 2e-3] {
+        assert_eq!(depth(above), 0.0, "{above}");
+    }
+    for below in [1e-5, 3e-4] {
+        let expected = below * (15.0 / (15f64.powi(2) + 1.0).sqrt());
+        assert!(
+            (depth(-below) - expected).abs() < 1e-9,
+            "{below}: {}",
+            depth(-below)
+        );
     }
 }
 

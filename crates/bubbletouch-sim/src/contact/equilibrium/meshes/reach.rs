@@ -11,12 +11,13 @@
 //! up to second order, where a is the vector from the centre of mass to c. K is the second derivative of the distance from the part: zero for a face, and
 //! `(1 − d dᵀ − t tᵀ) / r` for an edge along t. A corner is a sphere without radius ([`Reach`]).
 
-use super::super::mesh::skin_mesh::MeshAt;
-use super::super::mesh::stopping_height;
-use super::super::taxel_contact::GRAZING;
-use super::pair::Curvature;
-use super::reach::Reach;
+use super::super::curvature::Curvature;
+use super::super::reach::Reach;
+use super::algebra::{cross_matrix, outer};
 use crate::contact::law;
+use crate::contact::mesh::skin_mesh::MeshAt;
+use crate::contact::mesh::stopping_height;
+use crate::contact::taxel_contact::GRAZING;
 use crate::geometry::Pose;
 use crate::mesh::{Edge, Face, MeshFeatures, Triangle};
 use crate::objects::MeshModel;
@@ -29,7 +30,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Deflection of one taxel by one part of a mesh; vectors are in the patch frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MeshReach {
+pub(in crate::contact::equilibrium) struct MeshReach {
     /// Number of the part among the parts of the mesh.
     pub part: u32,
     /// Deflection that contact with the part requires, metres; negative if the part does not touch the taxel yet.
@@ -44,7 +45,7 @@ pub(super) struct MeshReach {
 }
 
 /// Mesh at a pose in the frame of a patch.
-pub(super) struct MeshOnSkin<'a> {
+pub(in crate::contact::equilibrium) struct MeshOnSkin<'a> {
     model: &'a MeshModel,
     features: &'a MeshFeatures,
     pose: &'a Pose,
@@ -275,13 +276,4 @@ impl Probe {
             is_grazing: cosine < GRAZING,
         })
     }
-}
-
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
-}
-
-/// Returns the matrix of the cross product `v × ·`.
-pub(super) fn cross_matrix(v: DVec3) -> DMat3 {
-    DMat3::from_cols(v.cross(DVec3::X), v.cross(DVec3::Y), v.cross(DVec3::Z))
 }

@@ -1,0 +1,248 @@
+//! Contacts of the corners of a mesh, and of spheres, with another mesh.
+//!
+//! A point touches a face if its foot is inside the face. Beside a valley the face continues behind its neighbour, so that a corner in a valley touches both
+//! faces. Let q be the point of the mesh nearest to the point p, and h = ± |p − q| its signed distance, negative inside the solid. With the outward normal n of
+//! a face through a, and its height g = n·(p − a), the face is a contact if one of two conditions holds:
+//!
+//! | point | face | excluded |
+//! |---|---|---|
+//! | in front of the face, g > 0 | g ≥ h | parts of a face that its neighbours cover |
+//! | behind the face, g ≤ 0, and inside the solid | n·(q − a) ≥ 0: the way to q leads out of this face, too | the far sides of the solid |
+//!
+//! If no face contains the foot of a point inside the solid, q is on an edge or at a corner, and the point touches this part.
+
+use super::super::curvature::Curvature;
+use super::super::rigid_shape::RigidShape;
+use super::algebra::{cross_matrix, outer};
+use super::found::{Found, MISS, Placed, Range};
+use crate::geometry::Pose;
+use crate::mesh::{Closest, Feature, MeshFeatures};
+use crate::objects::MeshModel;
+use glam::{DMat3, DVec3};
+
+/// Distance behind a valley up to which its faces continue in front of the point, relative to the largest depth that is searched. If smaller, a step meets a face
+/// that it did not know; if larger, more faces are collected.
+const VALLEY: f64 = 0.1;
+/// Distance behind a valley up to which its faces continue, relative to the depth of a point behind them. The foot of a point is at most as far behind a valley as
+/// the point is from the valley.
+const BELOW: f64 = 1.01;
+/// Height of the nearest point behind another face, relative to the depth, up to which this face counts. If larger, the far side of a solid can count; if
+/// smaller, contacts on nearly flat ridges change more often.
+const NEARLY_FLAT: f64 = 0.1;
+
+/// Contact of a point with a mesh, in the frame of the mesh.
+struct OnMesh {
+    part: u32,
+    beyond: f64,
+    /// Distance of the point from the triangles, metres; negative inside the solid.
+    distance: f64,
+    normal: DVec3,
+    /// Second derivative of the distance, 1/m.
+    bending: DMat3,
+}
+
+/// Scratch memory for the contacts of points with meshes.
+#[derive(Default)]
+pub(super) struct Points {
+    found: Vec<OnMesh>,
+}
+
+impl Points {
+    /// Visits the contacts of points of a shape with a mesh: the `corners` of a mesh, or all spheres. If `is_second`, the mesh is the first shape of the contact,
+    /// and the points are of the second.
+    pub fn each(
+        &mut self,
+        (points, corners, is_second): (&Placed, &[usize], bool),
+        (mesh, pose): (&MeshModel, &Pose),
+        range: Range,
+        visit: &mut impl FnMut(Found),
+    ) {
+        let mesh_from_points = points.pose.seen_from(pose);
+        let turn = DMat3::from_quat(mesh_from_points.rotation);
+        let to_world = DMat3::from_quat(pose.rotation);
+        let mut look = |number: usize, point: DVec3, radius: f64| {
+            let place = turn * point + mesh_from_points.translation;
+            let reach = radius + mesh.rounding();
+            self.touch(mesh, place, reach, range);
+            for on in &self.found {
+                // The normal points to the first shape.
+                let outward = to_world * on.normal;
+                let (parts, normal, inset, turning) = match is_second {
+                    false => {
+                        let turning = [DMat3::ZERO, -cross_matrix(outward)];
+                        ([number as u32, on.part], outward, radius, turning)
+                    }
+                    true => {
+                        let turning = [cross_matrix(outward), DMat3::ZERO];
+                        ([on.part, number as u32], -outward, -radius, turning)
+                    }
+                };
+                visit(Found {
+                    parts,
+                    penetration: reach - on.distance,
+                    beyond: on.beyond,
+                    point: pose.translation + to_world * place,
+                    curvature: Curvature {
+                        gradient: -normal,
+                        bending: -(to_world * on.bending * to_world.transpose()),
+                        turning,
+                    },
+                    inset,
+                });
+            }
+        };
+        match points.shape {
+            RigidShape::Spheres(union) => {
+                for (number, sphere) in union.spheres().iter().enumerate() {
+                    look(number, sphere.center, sphere.radius);
+                }
+            }
+            RigidShape::Mesh(of) => {
+                for &number in corners {
+                    look(number, of.features().corners()[number], of.rounding());
+                }
+            }
+        }
+    }
+
+    /// Finds the contacts of one point with a mesh. The point touches the mesh at a distance of `reach` metres.
+    fn touch(&mut self, mesh: &MeshModel, place: DVec3, reach: f64, range: Range) {
+        self.found.clear();
+        let within = reach + range.reach();
+        let Some(nearest) = mesh.bvh().closest(place, within) else {
+            return;
+        };
+        let features = mesh.features();
+        let is_inside = features.is_inside(mesh.bvh(), place, &nearest);
+        if is_inside && nearest.distance > range.deep {
+            return;
+        }
+        self.touch_faces(mesh, (place, &nearest, is_inside), reach, range);
+        let is_met = self.found.iter().any(|on| on.beyond <= 0.0);
+        if is_inside && !is_met && nearest.feature != Feature::Face {
+            let normal = (nearest.point - place) / nearest.distance;
+            let along = features.edge_along(&nearest).unwrap_or(DVec3::ZERO);
+            let flat = outer(normal, normal) + outer(along, along);
+            self.found.push(OnMesh {
+                part: features.part_of(&nearest),
+                beyond: 0.0,
+                distance: -nearest.distance,
+                normal,
+                bending: (DMat3::IDENTITY - flat) * (-1.0 / nearest.distance),
+            });
+        }
+        if reach > 0.0 && !is_inside {
+            self.touch_edges(mesh, place, reach + range.gap);
+        }
+    }
+
+    /// Adds the faces that a point touches. `nearest` is the nearest point of the mesh.
+    fn touch_faces(
+        &mut self,
+        mesh: &MeshModel,
+        (place, nearest, is_inside): (DVec3, &Closest, bool),
+        reach: f64,
+        range: Range,
+    ) {
+        let features: &MeshFeatures = mesh.features();
+        let within = reach + range.reach();
+        let (rounding, miss) = (1e-9 * within, MISS * range.deep);
+        let depth = if is_inside { nearest.distance } else { 0.0 };
+        let least = if is_inside {
+            f64::NEG_INFINITY
+        } else {
+            nearest.distance
+        };
+        mesh.bvh().search(
+            within * within,
+            |bounds| bounds.distance_squared(place),
+            |triangle, _, limit| {
+                let face = features.face(triangle);
+                let Some(normal) = face.normal else {
+                    return limit;
+                };
+                let height = normal.dot(place - face.corners[0]);
+                let is_nearest = nearest.feature == Feature::Face && triangle == nearest.triangle;
+                let valley = if height > 0.0 {
+                    VALLEY * range.deep
+                } else {
+                    BELOW * depth
+                };
+                let is_out_with_nearest = || {
+                    let above = normal.dot(nearest.point - face.corners[0]);
+                    is_inside && above >= -rounding - NEARLY_FLAT * depth
+                };
+                let counts = match height > 0.0 {
+                    true => height >= least - rounding,
+                    false => is_out_with_nearest(),
+                };
+                if height >= reach + range.gap || height <= -within || !(counts || is_nearest) {
+                    return limit;
+                }
+                let beyond = match is_nearest {
+                    true => 0.0,
+                    false => face.beyond(place - height * normal, normal, valley) - rounding,
+                };
+                if beyond <= miss {
+                    self.found.push(OnMesh {
+                        part: features.face_number(triangle),
+                        beyond,
+                        distance: height,
+                        normal,
+                        bending: DMat3::ZERO,
+                    });
+                }
+                limit
+            },
+        );
+    }
+
+    /// Adds the edges and corners of a mesh that are nearer to a point than their faces, and nearer than `within` metres.
+    fn touch_edges(&mut self, mesh: &MeshModel, place: DVec3, within: f64) {
+        let features = mesh.features();
+        mesh.bvh().search(
+            within * within,
+            |bounds| bounds.distance_squared(place),
+            |triangle, _, limit| {
+                for number in features.own_edges(triangle) {
+                    let edge = &features.edges()[number];
+                    let at = edge.direction.dot(place - edge.from);
+                    let away = place - edge.from - at * edge.direction;
+                    let distance = away.length();
+                    if !edge.range().contains(&at) || distance >= within || distance == 0.0 {
+                        continue;
+                    }
+                    let normal = away / distance;
+                    if features.edge_is_nearest(number, normal) {
+                        let flat = outer(normal, normal) + outer(edge.direction, edge.direction);
+                        self.found.push(OnMesh {
+                            part: features.edge_number(number),
+                            beyond: 0.0,
+                            distance,
+                            normal,
+                            bending: (DMat3::IDENTITY - flat) * (1.0 / distance),
+                        });
+                    }
+                }
+                for number in features.own_corners(triangle) {
+                    let away = place - features.corners()[number];
+                    let distance = away.length();
+                    if distance >= within || distance == 0.0 {
+                        continue;
+                    }
+                    let normal = away / distance;
+                    if features.corner_is_nearest(number, normal) {
+                        self.found.push(OnMesh {
+                            part: number as u32,
+                            beyond: 0.0,
+                            distance,
+                            normal,
+                            bending: (DMat3::IDENTITY - outer(normal, normal)) * (1.0 / distance),
+                        });
+                    }
+                }
+                limit
+            },
+        );
+    }
+}
