@@ -10,7 +10,8 @@ use crate::random::Seed;
 use bubbletouch_sim::audit::missing::{count_missing, fill_missing};
 use bubbletouch_sim::audit::pooled::{blocks_of, pooled, spans};
 use bubbletouch_sim::audit::taxels::{
-    TaxelReadings, active_std, contact_sums, taxel_readings, untouched_taxels, without_class_means,
+    TaxelReadings, active_std, constant_contact, contact_sums, taxel_readings, untouched_taxels,
+    without_class_means,
 };
 use bubbletouch_sim::features::{Cut, ImageFeature, ImageFeatures, Join, Workspace};
 use bubbletouch_svm::audit::{Readability, readability};
@@ -32,7 +33,7 @@ const MAX_PIXELS: usize = 1024;
 pub struct AuditOptions {
     /// Seed of splits and permutations.
     pub seed: u64,
-    /// Number of permutations of each test. With fewer than 20 times the number of tests, no corrected p-value is significant.
+    /// Number of permutations of each test. If none of them reaches the observed value, four times as many, at least 4,000, are made.
     pub n_permutations: usize,
     /// Frames of each touch that are known to precede the contact; `None` to find them.
     pub before_contact: Option<Range<usize>>,
@@ -78,6 +79,8 @@ pub struct Context {
     pub taxels: Vec<TaxelReadings>,
     /// Sampled frames as fractions of the full scale.
     pub skin: RecordedSkin,
+    /// Class of each sampled frame.
+    pub frame_labels: Vec<usize>,
     /// Reading of an untouched taxel, and the reading at full scale.
     pub scale: (f64, f64),
     /// Largest reading if several taxels share it in many frames, as a fraction of the full scale; otherwise `None`.
@@ -106,7 +109,7 @@ impl Context {
         let labels = data.labels.clone().unwrap_or_else(|| vec![0; n]);
         let classes = labels.iter().collect::<BTreeSet<_>>();
         let n_classes = classes.len();
-        let sample = sample(n, &seed);
+        let sample = drawn(n, MAX_SAMPLE, &seed.named("sample"));
         let sample_labels: Vec<usize> = sample.iter().map(|&touch| labels[touch]).collect();
         let frames_of = |touch: &usize| touch * data.n_frames..(touch + 1) * data.n_frames;
         let sampled: Vec<usize> = sample.iter().flat_map(frames_of).collect();
@@ -115,14 +118,25 @@ impl Context {
         let residuals = without_class_means(sample_rows.view(), &sample_labels);
         let active_std = active_std(residuals.view());
         let contact = contact_sums(residuals.view(), active_std);
-        let is_untouched =
+        let mut is_untouched =
             untouched_taxels(sample_rows.view(), residuals.view(), &contact, active_std);
-        // Touches of many frames need no more frames than touches of one.
-        let step = sampled.nrows().div_ceil(2 * MAX_SAMPLE);
-        let some: Vec<usize> = (0..sampled.nrows()).step_by(step).collect();
+        let is_pressed =
+            constant_contact(sample_rows.view(), &sample_labels, data.grid, active_std);
+        // Touches of many frames need no more frames than touches of one. Equal steps could omit the same frames of all touches.
+        let some = drawn(sampled.nrows(), 2 * MAX_SAMPLE, &seed.named("frames"));
+        let frame_labels = some
+            .iter()
+            .map(|&frame| sample_labels[frame / data.n_frames]);
+        let frame_labels = frame_labels.collect();
         let some = sampled.select(Axis(0), &some);
         let taxels = taxel_readings(some.view());
         let (scale, skin) = skin(&data, &some, &taxels);
+        // A taxel above half of the full scale in most frames is in contact.
+        let level = scale.0 + 0.5 * (scale.1 - scale.0);
+        for (taxel, is_untouched) in is_untouched.iter_mut().enumerate() {
+            let is_varying = !taxels[taxel].is_constant();
+            *is_untouched &= !is_pressed[taxel] && !(is_varying && taxels[taxel].median > level);
+        }
         let features = features(&data, &taxels);
         let has_classes = data.labels.is_some() && n_classes > 1;
         let (groups, sessions) = (data.groups.as_deref(), data.sessions.as_deref());
@@ -149,6 +163,7 @@ impl Context {
             is_untouched,
             taxels,
             skin,
+            frame_labels,
             scale,
             plateau,
             features,
@@ -165,13 +180,21 @@ impl Context {
         Seed::new(self.options.seed).named("audit").named(name)
     }
 
+    /// Returns whether a test needs another permutation after `n_done` permutations, of which `at_least` reach the observed value. If none of them does, more
+    /// permutations resolve smaller p-values.
+    pub const fn permutes_again(&self, n_done: usize, at_least: usize) -> bool {
+        let n = self.options.n_permutations;
+        let extended = if n < 1000 { 4000 } else { 4 * n };
+        n_done < n || (at_least == 0 && n_done < extended)
+    }
+
     /// Returns whether the labels contain at least two classes.
     pub fn has_classes(&self) -> bool {
         self.scores.is_some()
     }
 
     /// Tests whether the labels of the sampled touches can be read from some features. With `holds_out_groups`, the label of a touch is read from the touches
-    /// of other groups, if at least two classes have touches in several groups.
+    /// of other groups, if at least two classes have touches in several groups. Rows that begin with NaN are omitted.
     pub fn readability(
         &self,
         rows: ArrayView2<f64>,
@@ -179,13 +202,19 @@ impl Context {
         holds_out_groups: bool,
     ) -> Option<Readability> {
         let seed = self.seed(name);
+        let places = (0..rows.nrows()).filter(|&place| !rows[(place, 0)].is_nan());
+        let places: Vec<usize> = places.collect();
+        let labels: Vec<usize> = places
+            .iter()
+            .map(|&place| self.sample_labels[place])
+            .collect();
         let groups = self.data.groups.as_ref().filter(|_| holds_out_groups);
         let groups = groups.map(|groups| {
-            let of_sample = self.sample.iter().map(|&touch| groups[touch]);
-            of_sample.collect::<Vec<usize>>()
+            let of_places = places.iter().map(|&place| groups[self.sample[place]]);
+            of_places.collect::<Vec<usize>>()
         });
         let is_held_out = |groups: &Vec<usize>| {
-            let cells: BTreeSet<_> = self.sample_labels.iter().zip(groups).collect();
+            let cells: BTreeSet<_> = labels.iter().zip(groups).collect();
             let mut n_groups = BTreeMap::<usize, usize>::new();
             for (&label, _) in cells {
                 *n_groups.entry(label).or_default() += 1;
@@ -193,8 +222,8 @@ impl Context {
             n_groups.into_values().filter(|&n| n > 1).count() > 1
         };
         readability(
-            rows,
-            &self.sample_labels,
+            rows.select(Axis(0), &places).view(),
+            &labels,
             groups.filter(is_held_out).as_deref(),
             self.options.n_permutations,
             &seed,
@@ -237,13 +266,13 @@ impl Context {
     }
 }
 
-/// Draws touches at random and returns them in the order of recording.
-fn sample(n: usize, seed: &Seed) -> Vec<usize> {
-    let mut touches: Vec<usize> = (0..n).collect();
-    touches.shuffle(&mut seed.named("sample").rng());
-    touches.truncate(MAX_SAMPLE);
-    touches.sort_unstable();
-    touches
+/// Draws at most `n_drawn` of the numbers 0..n at random, and returns them in ascending order.
+fn drawn(n: usize, n_drawn: usize, seed: &Seed) -> Vec<usize> {
+    let mut numbers: Vec<usize> = (0..n).collect();
+    numbers.shuffle(&mut seed.rng());
+    numbers.truncate(n_drawn);
+    numbers.sort_unstable();
+    numbers
 }
 
 /// Returns the readings at zero and at full scale, and the frames as fractions of the full scale.
@@ -294,14 +323,19 @@ fn features(data: &AuditData, taxels: &[TaxelReadings]) -> Features {
     let max_blocks = MAX_BLOCKS[usize::from(data.n_frames > 1)];
     let blocks = pooled(data.frames.view(), data.n_frames, data.grid, max_blocks);
     let is_image = |grid: &(usize, usize)| grid.0.min(grid.1) >= 4;
-    let invariant = data.grid.filter(is_image).map(|grid| {
+    let grid = data.grid.filter(is_image);
+    let image = grid.map_or((0, 0), |grid| blocks_of(grid, MAX_PIXELS).0);
+    let invariant = grid.map(|grid| {
         let mean = spans(data.frames.view(), data.n_frames, 1);
         let least: Array1<f64> = taxels.iter().map(|taxel| taxel.least).collect();
         let images = pooled((mean - &least).view(), 1, Some(grid), MAX_PIXELS);
-        let (shape, _) = blocks_of(grid, MAX_PIXELS);
-        fourier_magnitudes(&images, shape)
+        fourier_magnitudes(&images, image)
     });
-    Features { blocks, invariant }
+    Features {
+        blocks,
+        invariant,
+        image,
+    }
 }
 
 /// Computes the Fourier magnitudes of images, one image per row.

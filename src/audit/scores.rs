@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// Number of touches whose distances to all others are computed together.
 const BLOCK: usize = 256;
 /// Number of nearest touches of each touch.
-const N_NEAREST: usize = 8;
+pub const N_NEAREST: usize = 17;
 
 /// Display names of the classifiers of an audit.
 pub const METHODS: &[(&str, &str)] = &[
@@ -36,6 +36,8 @@ pub struct Features {
     pub blocks: Array2<f64>,
     /// Shift-invariant features of the mean frame, shape (n, m); `None` without a grid.
     pub invariant: Option<Array2<f64>>,
+    /// Numbers of rows and columns of the image from which the shift-invariant features are computed.
+    pub image: (usize, usize),
 }
 
 /// Predictions of one classifier by one split.

@@ -255,7 +255,8 @@ fn doubtful_rows(context: &Context) -> Vec<DoubtfulRow> {
         class.cloned().unwrap_or_default()
     };
     let mut rows = Vec::new();
-    for (touch, other) in near_duplicates::pairs(context).map_or_else(Vec::new, |found| found.0) {
+    for (touch, other) in near_duplicates::pairs(context).map_or_else(Vec::new, |found| found.pairs)
+    {
         rows.push(DoubtfulRow {
             touch,
             class: name(touch),

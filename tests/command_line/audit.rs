@@ -63,7 +63,7 @@ fn a_folder_becomes_a_page_with_tables() {
     assert!(page.contains("id=\"findings\"") && page.contains("picture-taxels"));
     assert_eq!(
         verdicts(&case, "results/skin_audit", "missing_readings"),
-        ["passed"]
+        ["passed", "passed", "not_checked"]
     );
     assert_eq!(
         verdicts(&case, "results/skin_audit", "before_contact"),

@@ -189,6 +189,8 @@ const GROUPED: &[&str] = &[
     "random_labels",
     "sample_size",
     "method_order",
+    // The touches of a group form a cluster.
+    "near_duplicates",
     // The pattern of a group is also added to untouched taxels.
     "untouched_taxels",
     "hot_taxels",
@@ -447,6 +449,98 @@ const PLANTS: &[Plant] = &[
             let steps = [15.0, 7.0, 3.0][strength];
             data.frames
                 .mapv_inplace(|x| (x.clamp(0.0, 1.0) * steps).round() / steps);
+        },
+    },
+    Plant {
+        // Copies with another gain and offset.
+        check: "near_duplicates",
+        entails: &[],
+        plant: |data, strength| {
+            let n = data.n();
+            for copy in 0..[4, 10, 30][strength] {
+                let (gain, offset) = (
+                    data.rng.gen_range(0.8..1.2),
+                    data.rng.gen_range(-0.05..0.05),
+                );
+                let row = data.frames.row(copy).mapv(|x| gain * x + offset);
+                data.frames.row_mut(n - 1 - copy).assign(&row);
+                data.labels[n - 1 - copy] = data.labels[copy];
+            }
+        },
+    },
+    Plant {
+        // Some frames are without contact. Their levels depend on the class.
+        check: "before_contact",
+        entails: &[
+            "untouched_taxels",
+            "hot_taxels",
+            "near_duplicates",
+            "mean_reading",
+        ],
+        plant: |data, strength| {
+            let share = [0.2, 0.4, 0.6][strength];
+            for touch in 0..data.n() {
+                if data.rng.gen_bool(share) {
+                    let rng = &mut data.rng;
+                    data.frames
+                        .row_mut(touch)
+                        .mapv_inplace(|_| NOISE * normal(rng));
+                }
+            }
+            let labels = data.labels.clone();
+            data.add_patterns(&labels, [0.5, 0.7, 1.0][strength] * NOISE, |_| true);
+        },
+    },
+    Plant {
+        // The number −1 stands for missing readings.
+        check: "missing_readings",
+        entails: &["saturation"],
+        plant: |data, strength| {
+            for _ in 0..[20, 200, 2000][strength] {
+                let place = (
+                    data.rng.gen_range(0..data.n()),
+                    data.rng.gen_range(0..N_TAXELS),
+                );
+                data.frames[place] = -1.0;
+            }
+        },
+    },
+    Plant {
+        // Some taxels are clipped at levels of their own.
+        check: "saturation",
+        entails: &["dead_taxels", "untouched_taxels"],
+        plant: |data, strength| {
+            for taxel in data.middle([2, 5, 10][strength]) {
+                let mut readings = data.frames.column(taxel).to_vec();
+                readings.sort_by(f64::total_cmp);
+                let level = readings[data.n() * [95, 90, 80][strength] / 100];
+                data.frames.column_mut(taxel).mapv_inplace(|x| x.min(level));
+            }
+        },
+    },
+    Plant {
+        // The taxels are stuck for some time.
+        check: "dead_taxels",
+        entails: &["hot_taxels", "sample_size", "drift"],
+        plant: |data, strength| {
+            let n_stuck = data.n() * [20, 40, 70][strength] / 100;
+            for taxel in data.middle([1, 2, 4][strength]) {
+                let first = data.rng.gen_range(0..data.n() - n_stuck);
+                let level = 0.2 + 1e-4 * taxel as f64;
+                (first..first + n_stuck).for_each(|touch| data.frames[(touch, taxel)] = level);
+            }
+        },
+    },
+    Plant {
+        // Each taxel is calibrated after rounding.
+        check: "quantisation",
+        entails: &["near_duplicates"],
+        plant: |data, strength| {
+            let steps = [31.0, 15.0, 3.0][strength];
+            for mut readings in data.frames.columns_mut() {
+                let gain = data.rng.gen_range(0.7..1.3);
+                readings.mapv_inplace(|x| gain * (x.clamp(0.0, 1.0) * steps).round() / steps);
+            }
         },
     },
 ];

@@ -2,8 +2,10 @@
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result, Source};
 use crate::audit::finding::percent;
-use bubbletouch_sim::audit::taxels::{untouched_taxels, without_class_means};
+use crate::quantile::quantile;
+use bubbletouch_sim::audit::taxels::{contact_sums, untouched_taxels, without_class_means};
 use ndarray::{Array2, Axis};
+use std::collections::BTreeMap;
 
 /// Maximum number of readings from which the label is read.
 pub const MAX_READINGS: usize = 256;
@@ -33,6 +35,97 @@ pub const ONSET: Source = Source {
     rows: onset,
     holds_out_groups: true,
 };
+
+/// Frames without contact at any place of the recording: touches that consist of such a frame, or the first such frame of each touch.
+pub const AT_REST: Source = Source {
+    name: "frames_without_contact",
+    rows: frames_without_contact,
+    holds_out_groups: true,
+};
+
+/// Quantile of the contact of all frames, and the largest contact of a frame without contact relative to this quantile. At least 5 % of the frames must be
+/// without contact; their readings may have levels that depend on the class.
+const QUIET: f64 = 0.05;
+const MAX_CONTACT: f64 = 1.3;
+/// Minimum number of frames without contact, and of those of each of two classes.
+const MIN_QUIET: [usize; 2] = [20, 5];
+/// Maximum number of frames of which the contact is computed.
+const MAX_FRAMES: usize = 20_000;
+
+/// Returns readings of frames without contact, shape (n_sample, m); rows of NaN for touches without such a frame. Returns `None` if few frames are without
+/// contact, or if taxels that are touched in other frames read contact in these frames, too.
+fn frames_without_contact(context: &Context) -> Option<Array2<f64>> {
+    let n_frames = context.data.n_frames;
+    if n_frames > 1 && rows(context).is_some() {
+        return None;
+    }
+    let stds = context.residuals.std_axis(Axis(0), 0.0);
+    let active: Vec<usize> = (0..stds.len()).filter(|&taxel| stds[taxel] > 0.5 * context.active_std).collect();
+    let step = active.len().div_ceil(MAX_READINGS).max(1);
+    let some: Vec<usize> = active.iter().copied().step_by(step).collect();
+    let n_touches = context.sample.len().min(MAX_FRAMES / n_frames);
+    let frames = context.sample[..n_touches].iter().flat_map(|touch| touch * n_frames..(touch + 1) * n_frames);
+    let frames: Vec<usize> = frames.collect();
+    let readings = context.data.frames.select(Axis(0), &frames);
+    let readings = readings.select(Axis(1), &some);
+    let mut squares = vec![0.0; frames.len()];
+    for column in readings.columns() {
+        let least = quantile(&mut column.to_vec(), QUIET);
+        for (square, reading) in squares.iter_mut().zip(column) {
+            *square += (reading - least).powi(2);
+        }
+    }
+    let largest = MAX_CONTACT.powi(2) * quantile(&mut squares.clone(), QUIET);
+    // The first quiet frame of each touch.
+    let quiet = squares.chunks(n_frames).enumerate().filter_map(|(place, squares)| {
+        let frame = squares.iter().position(|&square| square <= largest)?;
+        Some((place, frames[place * n_frames + frame]))
+    });
+    let (places, quiet): (Vec<usize>, Vec<usize>) = quiet.unzip();
+    let labels: Vec<usize> = places.iter().map(|&place| context.sample_labels[place]).collect();
+    let mut counts = BTreeMap::<usize, usize>::new();
+    labels.iter().for_each(|&label| *counts.entry(label).or_default() += 1);
+    let n_known = counts.values().filter(|&&count| count >= MIN_QUIET[1]).count();
+    if quiet.len() < MIN_QUIET[0] || n_known < 2 {
+        return None;
+    }
+    let quiet = context.data.frames.select(Axis(0), &quiet);
+    let residuals = without_class_means(quiet.view(), &labels);
+    let sums = contact_sums(residuals.view(), context.active_std);
+    let is_untouched = untouched_taxels(quiet.view(), residuals.view(), &sums, context.active_std);
+    let n_untouched = active.iter().filter(|&&taxel| is_untouched[taxel]).count();
+    if (n_untouched as f64) < MIN_UNTOUCHED * active.len() as f64 {
+        return None;
+    }
+    let varies = |taxel: usize| residuals.column(taxel).iter().any(|&x| x != 0.0);
+    let readings = some_columns(&quiet, |taxel| is_untouched[taxel] && varies(taxel));
+    if readings.ncols() == 0 {
+        return None;
+    }
+    let mut all = Array2::from_elem((context.sample.len(), readings.ncols()), f64::NAN);
+    for (&place, readings) in places.iter().zip(readings.rows()) {
+        all.row_mut(place).assign(&readings);
+    }
+    Some(all)
+}
+
+/// Returns the finding about frames without contact at any place, if there are such frames.
+fn at_rest(context: &Context) -> Option<Finding> {
+    let found = context.readable.get(AT_REST.name)?;
+    let sentence = format!(
+        "{} touches contain a frame without contact. These frames name the class of {} of these touches; permuted labels give {}.",
+        found.is_correct.len(),
+        percent(found.accuracy),
+        percent(found.chance)
+    );
+    let advice = "Leave frames without contact out of the labelled touches, subtract the level at rest of the session, and record the classes in random order.";
+    let finding = Finding::tested("", found.accuracy, sentence, (found.p_value, true))
+        .about("frames without contact")
+        .against(found.chance)
+        .advice(advice)
+        .shown_in("confounds");
+    Some(finding)
+}
 
 /// Minimum number of frames at rest with which touches begin, and this number as a fraction of the frames. In recordings that begin with the contact, the
 /// shape of an object determines how its contact grows.
@@ -143,7 +236,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     if !context.has_classes() {
         return Ok(vec![Finding::not_checked("", NO_LABELS)]);
     }
-    let mut findings = Vec::new();
+    let mut findings: Vec<Finding> = at_rest(context).into_iter().collect();
     if let Some(found) = context.readable.get(ONSET.name) {
         let sentence = format!(
             "The number of frames before the contact names the class of {} of the touches; permuted labels give {}.",

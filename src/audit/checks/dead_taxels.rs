@@ -3,6 +3,8 @@
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
 use crate::calibration::faults::{self, Fault};
+use bubbletouch_sim::audit::frozen::frozen_taxels;
+use std::collections::BTreeSet;
 
 pub const ABOUT: CheckAbout = CheckAbout {
     name: "dead_taxels",
@@ -12,6 +14,8 @@ pub const ABOUT: CheckAbout = CheckAbout {
 
 /// Reading above which a taxel counts as touched, as a fraction of the full scale.
 const TOUCHED: f64 = 0.1;
+/// Probability that any working taxel counts as frozen for some time.
+const ANY: f64 = 0.001;
 /// Minimum number of frames in which a constant taxel lies between two touched taxels.
 const MIN_FRAMES: usize = 3;
 
@@ -62,8 +66,38 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
             .advice("Mask these taxels in all recordings, also in those of other sessions, and state their number.")
             .shown_in("taxels")
     };
-    Ok(vec![
+    let mut findings = vec![
         finding(count(true), "dead", "the zero"),
         finding(count(false), "stuck", "another level"),
-    ])
+    ];
+    findings.push(frozen_finding(context, &found));
+    Ok(findings)
+}
+
+/// Looks for taxels that keep a reading for some time.
+fn frozen_finding(context: &Context, faults: &[Fault]) -> Finding {
+    let Some(grid) = context.data.grid else {
+        let why = "The taxels have no rows and columns, so that the taxels around a taxel are unknown.";
+        return Finding::not_checked("", why).about("for some time");
+    };
+    let mut is_counted: Vec<bool> = context.taxels.iter().map(|taxel| !taxel.is_constant()).collect();
+    faults.iter().for_each(|fault| is_counted[fault.taxel] = false);
+    let frames = context.skin.touched.view();
+    let found = frozen_taxels(frames, grid, &context.frame_labels, TOUCHED, &is_counted, ANY);
+    let taxels: BTreeSet<usize> = found.iter().map(|run| run.taxel).collect();
+    let sentence = match found.iter().max_by_key(|run| run.n_frames) {
+        None => "No taxel keeps a reading for some time while the taxels around it change.".to_owned(),
+        Some(run) => format!(
+            "{} taxels keep one reading for some time while the taxels around them change, such as number {} during {} of the frames.",
+            taxels.len(),
+            run.taxel,
+            percent(run.n_frames as f64 / frames.nrows() as f64)
+        ),
+    };
+    let share = taxels.len() as f64 / frames.ncols() as f64;
+    Finding::counted("", share, sentence, !found.is_empty())
+        .about("for some time")
+        .against(0.0)
+        .advice("Mask these taxels in the recordings in which they are faulty, or in all, and state their number.")
+        .shown_in("taxels")
 }

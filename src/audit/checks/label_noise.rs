@@ -1,10 +1,11 @@
 //! Wrong labels: held-out touches for which a classifier confidently predicts another label.
 //!
 //! Suppose that two classes overlap like normal distributions, and that a classifier recognises the fraction a = Φ(μ) of their touches. The margin of a touch
-//! to the true class is then N(μ, 1). A touch lies deeper in the other class than the median member of that class with the probability Φ(−2μ). Half of the
-//! touches lie as deep in their own class. Therefore the fraction q = Φ(−2μ) / (1/2 + Φ(−2μ)) of all touches deep in a class has another label, although all
-//! labels are right. A larger number of touches with another label indicates wrong labels; the test is binomial. Real classes can also overlap otherwise, so
-//! the nearest touches must confirm the class. A touch counts only if its five nearest touches all have the label of the class.
+//! to the true class is then N(μ, 1). A touch lies deeper in the other class than the t-quantile of its members with the probability β = Φ(−2μ − Φ⁻¹(t)).
+//! The fraction 1 − t of the touches lies as deep in their own class. Therefore the fraction q = β / (1 − t + β) of all touches deep in a class has another
+//! label, although all labels are right. A larger number of touches with another label indicates wrong labels; the test is binomial. Real classes can also
+//! overlap otherwise, so the nearest touches must confirm the class: a touch counts only if four of its five nearest touches have the label of the class.
+//! Classes of which less than 70 % are recognised do not count, neither as labels nor as predictions.
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result};
 use crate::audit::finding::percent;
@@ -14,9 +15,12 @@ use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal};
 
 /// Minimum relevant fraction of wrong labels.
 const TOLERATED: f64 = 0.005;
-/// Number of nearest touches that confirm a class.
-const N_CONFIRMING: usize = 5;
-/// Minimum accuracy of a classifier from which labels are tested.
+/// Number of nearest touches, and how many of them confirm a class. One of them may have a wrong label itself.
+const N_NEAR: usize = 5;
+const N_CONFIRMING: usize = 4;
+/// Quantile t of the margins of a class from which touches lie deep in it. If larger, fewer wrong labels count; if smaller, more touches of overlapping classes.
+const DEEP: f64 = 0.25;
+/// Minimum fraction of the touches of a class that a classifier recognises, from which labels are tested.
 const MIN_ACCURACY: f64 = 0.7;
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -33,13 +37,13 @@ pub struct Doubtful {
     pub class: usize,
 }
 
-/// Touches that lie as deep in a class as its median member.
+/// Touches that lie deep in a class.
 pub struct DeepTouches {
     /// Touches with another label than the class in which they lie, the deepest first.
     pub doubtful: Vec<Doubtful>,
-    /// Number of touches that lie as deep in a class as its median member, with any label.
+    /// Number of touches that lie deep in a class, with any label.
     pub n_deep: usize,
-    /// Accuracy of the classifier.
+    /// Fraction of the touches of the tested classes that the classifier recognises.
     pub accuracy: f64,
 }
 
@@ -48,19 +52,29 @@ pub fn deep_touches(context: &Context) -> Option<DeepTouches> {
     let scored = context.tested(0).filter(|tested| tested.scores.is_some());
     let best = scored.max_by(|a, b| a.accuracy().total_cmp(&b.accuracy()))?;
     let scores = best.scores.as_ref()?;
-    let accuracy = best.accuracy();
-    if accuracy < MIN_ACCURACY {
+    let n_classes = scores.ncols();
+    let mut counts = vec![[0.0; 2]; n_classes];
+    for (is_correct, &label) in best.is_correct.iter().zip(&context.labels) {
+        if let Some(is_correct) = is_correct {
+            counts[label][0] += 1.0;
+            counts[label][1] += f64::from(u8::from(*is_correct));
+        }
+    }
+    let is_known = |class: usize| counts[class][1] >= MIN_ACCURACY * counts[class][0].max(1.0);
+    let known: Vec<[f64; 2]> = (0..n_classes).filter(|&class| is_known(class)).map(|class| counts[class]).collect();
+    if known.len() < 2 {
         return None;
     }
-    let n_classes = scores.ncols();
+    let [n, n_correct] = known.iter().fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]]);
+    let accuracy = n_correct / n;
     let neighbours = neighbours(context)?;
     let is_confirmed = |touch: usize, class: usize| {
-        let near = &neighbours[touch][..N_CONFIRMING.min(neighbours[touch].len())];
-        near.iter().all(|&other| context.labels[other] == class)
+        let near = neighbours[touch].iter().take(N_NEAR);
+        near.filter(|&&other| context.labels[other] == class).count() >= N_CONFIRMING
     };
     let mut touches = Vec::new();
     for (touch, scores) in scores.rows().into_iter().enumerate() {
-        if best.is_correct[touch].is_none() {
+        if best.is_correct[touch].is_none() || !is_known(context.labels[touch]) {
             continue;
         }
         let mut order: Vec<usize> = (0..n_classes).collect();
@@ -74,7 +88,7 @@ pub fn deep_touches(context: &Context) -> Option<DeepTouches> {
         accuracy,
     };
     let mut doubtful = Vec::new();
-    for class in 0..n_classes {
+    for class in (0..n_classes).filter(|&class| is_known(class)) {
         let is_right = |touch: usize| context.labels[touch] == class;
         let within = touches
             .iter()
@@ -85,8 +99,9 @@ pub fn deep_touches(context: &Context) -> Option<DeepTouches> {
             continue;
         }
         let median = crate::quantile::quantile(&mut margins, 0.5);
+        let least = crate::quantile::quantile(&mut margins, DEEP);
         let deep =
-            within.filter(|(touch, _, margin)| *margin >= median && is_confirmed(*touch, class));
+            within.filter(|(touch, _, margin)| *margin >= least && is_confirmed(*touch, class));
         for &(touch, _, margin) in deep {
             found.n_deep += 1;
             if !is_right(touch) {
@@ -122,7 +137,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     }
     let Some(found) = deep_touches(context).filter(|found| found.n_deep > 0) else {
         let why = format!(
-            "No cheap classifier recognises {} of the touches, so that a wrong label cannot be told from a difficult touch.",
+            "No cheap classifier recognises {} of the touches of two classes, so that a wrong label cannot be told from a difficult touch.",
             percent(MIN_ACCURACY)
         );
         return Ok(vec![Finding::not_checked("", why)]);
@@ -134,8 +149,8 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     // Wrong labels reduce the accuracy, too.
     let accuracy = (found.accuracy / (1.0 - share)).min(1.0 - 0.5 / n);
     let mean = normal.inverse_cdf(accuracy);
-    let beyond = normal.cdf(-2.0 * mean);
-    let expected = (beyond / (0.5 + beyond)).max(TOLERATED);
+    let beyond = normal.cdf(-2.0 * mean - normal.inverse_cdf(DEEP));
+    let expected = (beyond / (1.0 - DEEP + beyond)).max(TOLERATED);
     let p_value = match (n_doubtful, Binomial::new(expected, found.n_deep as u64)) {
         (1.., Ok(binomial)) => binomial.sf(n_doubtful as u64 - 1),
         _ => 1.0,

@@ -39,7 +39,7 @@ fn means(context: &Context) -> Array2<f64> {
 }
 
 /// Returns the rows less their means, with norm 1.
-fn shapes(mut rows: Array2<f64>) -> Array2<f64> {
+pub fn shapes(mut rows: Array2<f64>) -> Array2<f64> {
     for mut row in rows.rows_mut() {
         let mean = row.mean().unwrap_or(0.0);
         row -= mean;

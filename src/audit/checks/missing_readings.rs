@@ -1,7 +1,9 @@
-//! Missing readings: NaN and infinite numbers.
+//! Missing readings: NaN and infinite numbers, placeholders such as −1, and repeated frames.
 
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
+use crate::table::short_number;
+use bubbletouch_sim::audit::placeholders::{count_repeated, placeholder};
 
 pub const ABOUT: CheckAbout = CheckAbout {
     name: "missing_readings",
@@ -24,5 +26,59 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         .against(0.0)
         .advice("Mask taxels with many missing readings, and leave out frames with others; state both. taxels.csv has the counts.")
         .shown_in("taxels");
-    Ok(vec![finding])
+    Ok(vec![finding, placeholders(context), repeated_frames(context)])
+}
+
+/// Looks for a value in place of missing readings.
+fn placeholders(context: &Context) -> Finding {
+    let is_counted: Vec<bool> = varying(context);
+    let frames = context.skin.touched.view();
+    let found = placeholder(frames, &is_counted);
+    let (share, sentence) = match found {
+        None => (0.0, "No value stands for missing readings.".to_owned()),
+        Some(found) => {
+            let value = context.scale.0 + found.value * (context.scale.1 - context.scale.0);
+            let share = found.n_readings as f64 / frames.len() as f64;
+            let sentence = format!(
+                "{} of the readings are exactly {}, which noise explains neither there nor beside it: the value seems to stand for a missing reading.",
+                percent(share),
+                // Fractions of the full scale are rounded.
+                short_number((value * 1e9).round() / 1e9)
+            );
+            (share, sentence)
+        }
+    };
+    Finding::counted("", share, sentence, found.is_some())
+        .about("placeholder")
+        .against(0.0)
+        .advice("Replace the value by NaN, mask these readings, and state their number.")
+        .shown_in("taxels")
+}
+
+/// Looks for frames that repeat the frame before.
+fn repeated_frames(context: &Context) -> Finding {
+    let data = &context.data;
+    if data.n_frames == 1 {
+        let why = "Each touch is a single frame; repeated touches are near-duplicates.";
+        return Finding::not_checked("", why).about("repeated frames");
+    }
+    let n = count_repeated(data.frames.view(), data.n_frames, &varying(context));
+    let share = n as f64 / data.frames.nrows() as f64;
+    let sentence = match n {
+        0 => "No frame of a touch repeats the frame before it.".to_owned(),
+        _ => format!(
+            "{n} frames ({}) are exactly equal to the frame before them, although readings have noise: the readout seems to have repeated them.",
+            percent(share)
+        ),
+    };
+    Finding::counted("", share, sentence, n > 0)
+        .about("repeated frames")
+        .against(0.0)
+        .advice("Treat repeated frames as missing, and state their number.")
+}
+
+/// Returns whether the readings of each taxel vary.
+fn varying(context: &Context) -> Vec<bool> {
+    let taxels = context.taxels.iter();
+    taxels.map(|taxel| !taxel.is_constant()).collect()
 }

@@ -39,10 +39,12 @@ pub const SOURCES: &[Source] = &[
     before_contact::SOURCE,
     before_contact::QUIETEST,
     before_contact::ONSET,
+    before_contact::AT_REST,
     untouched_taxels::SOURCE,
     mean_reading::MEAN,
     mean_reading::SHAPE,
     mean_reading::INVARIANT_SHAPE,
     row_order::SOURCE,
     session_labels::SOURCE,
+    session_labels::GROUPS,
 ];

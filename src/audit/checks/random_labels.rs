@@ -76,9 +76,10 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     // Touches of a class exchange their groups, so that the group of a neighbour is independent of the touch.
     let observed = share(&cells);
     let classes: Vec<Vec<usize>> = touches_of_classes(&context.labels).into_values().collect();
-    let (mut at_least, mut chance) = (0, 0.0);
+    let (mut at_least, mut chance, mut n_done) = (0_usize, 0.0, 0);
     let mut permuted = cells.clone();
-    for _ in 0..context.options.n_permutations {
+    while context.permutes_again(n_done, at_least) {
+        n_done += 1;
         for touches in &classes {
             let mut shuffled: Vec<usize> = touches.iter().map(|&touch| cells[touch]).collect();
             shuffled.shuffle(&mut rng);
@@ -89,9 +90,10 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         let same = share(&permuted);
         at_least += usize::from(same >= observed);
         let of_cells: Vec<usize> = permuted.iter().map(|&cell| labels[cell]).collect();
-        chance += share(&of_cells) / context.options.n_permutations as f64;
+        chance += share(&of_cells);
     }
-    let p_value = (1 + at_least) as f64 / (1 + context.options.n_permutations) as f64;
+    let chance = chance / n_done.max(1) as f64;
+    let p_value = (1 + at_least) as f64 / (1 + n_done) as f64;
     let sentence = format!(
         "If the {words} are labelled at random, a random split still gives {}; {} if the {words} had nothing in common.",
         percent(reached),

@@ -1,8 +1,15 @@
-//! Saturated readings: the full scale, or a largest reading that several taxels share in many frames.
+//! Saturated readings: the full scale, a largest reading that several taxels share in many frames, or taxels that are clipped at levels of their own.
 
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
 use crate::table::short_number;
+use bubbletouch_sim::audit::clipped::clipped_at;
+use ndarray::ArrayView1;
+
+/// Probability that any taxel without saturation counts as clipped.
+const ANY: f64 = 0.001;
+/// Minimum fraction of frames with a single largest reading, from which the frames count as scaled to their largest reading.
+const MIN_SCALED: f64 = 0.99;
 
 pub const ABOUT: CheckAbout = CheckAbout {
     name: "saturation",
@@ -17,11 +24,12 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         None => context.plateau,
     };
     let Some(level) = level else {
-        let sentence = "The largest reading is not shared by many frames.".to_owned();
-        return Ok(vec![
-            Finding::counted("", 0.0, sentence, false).against(0.0),
-        ]);
+        return Ok(vec![of_taxels(context)]);
     };
+    if context.data.full_scale.is_none() && is_normalised(context, level) {
+        let sentence = "The largest reading of each frame is the same: the frames are scaled, so that saturation cannot be seen.";
+        return Ok(vec![Finding::not_checked("", sentence)]);
+    }
     let frames = context.skin.touched.outer_iter();
     let is_constant = |taxel: usize| context.taxels[taxel].is_constant();
     let is_saturated = frames.map(|frame| {
@@ -45,4 +53,54 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         .advice("Press less, reduce the gain of the readout, or state the limit: forces above it are not recorded.")
         .shown_in("taxels");
     Ok(vec![finding])
+}
+
+/// Returns whether exactly one reading of nearly each frame is at the level, as after division of each frame by its largest reading.
+fn is_normalised(context: &Context, level: f64) -> bool {
+    let frames = context.skin.touched.outer_iter();
+    let is_single = |frame: &ArrayView1<f64>| frame.iter().filter(|&&x| x >= level).count() == 1;
+    let n_single = frames.filter(is_single).count();
+    n_single as f64 >= MIN_SCALED * context.skin.touched.nrows() as f64
+}
+
+/// Looks for taxels that are clipped at levels of their own. If contact reduces the readings, the smallest readings are clipped.
+fn of_taxels(context: &Context) -> Finding {
+    let frames = context.skin.touched.view();
+    let std = context.active_std / (context.scale.1 - context.scale.0);
+    let active: Vec<usize> = (0..frames.ncols())
+        .filter(|&taxel| {
+            let readings = &context.taxels[taxel];
+            !readings.is_constant() && context.residuals.column(taxel).std(0.0) > 0.25 * context.active_std
+        })
+        .collect();
+    let cubes = |taxel: &usize| {
+        let readings = frames.column(*taxel);
+        let mean = readings.mean().unwrap_or(0.0);
+        readings.iter().map(|x| ((x - mean) / std).powi(3)).sum::<f64>()
+    };
+    let skewness: f64 = active.iter().map(cubes).sum();
+    let sign = if skewness < 0.0 { -1.0 } else { 1.0 };
+    let significance = ANY / active.len().max(1) as f64;
+    let clipped = active.iter().filter_map(|&taxel| {
+        let mut readings: Vec<f64> = frames.column(taxel).iter().map(|x| sign * x).collect();
+        readings.sort_by(f64::total_cmp);
+        let level = clipped_at(ArrayView1::from(&readings), significance)?;
+        Some((taxel, readings.iter().filter(|&&x| x == level).count()))
+    });
+    let clipped: Vec<(usize, usize)> = clipped.collect();
+    let n: usize = clipped.iter().map(|(_, n)| n).sum();
+    let share = n as f64 / (frames.nrows() * active.len().max(1)) as f64;
+    let end = if sign < 0.0 { "smallest" } else { "largest" };
+    let sentence = match clipped.first() {
+        None => format!("The {end} reading is not shared by many frames."),
+        Some((taxel, of_taxel)) => format!(
+            "{} taxels read their {end} reading more often than the readings beside it allow, such as number {taxel} in {} of the frames.",
+            clipped.len(),
+            percent(*of_taxel as f64 / frames.nrows() as f64)
+        ),
+    };
+    Finding::counted("", share, sentence, !clipped.is_empty())
+        .against(0.0)
+        .advice("Press less, reduce the gain of the readout, or state the limit: forces above it are not recorded.")
+        .shown_in("taxels")
 }

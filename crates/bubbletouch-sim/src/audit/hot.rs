@@ -1,7 +1,7 @@
 //! Hot taxels: taxels that read a pressure, or strong noise, while the taxels around them are at rest.
 //!
 //! A taxel is compared with its neighbours in the tenth of the frames in which the sum of its neighbours is least. If the neighbours are at rest in these
-//! frames, a working taxel is at rest too, because contact areas are connected.
+//! frames, a working taxel is at rest too, because contact areas are connected. One neighbour may be hot itself.
 
 use crate::statistics::quantile::{of_sorted, quantile};
 use ndarray::ArrayView2;
@@ -11,6 +11,8 @@ use statrs::distribution::{ContinuousCDF, Normal};
 const REST: f64 = 0.1;
 /// Minimum excess of a hot taxel over the zero, as a fraction of the range of all readings. A smaller excess is an error of the zero, not a hot taxel.
 const MIN_EXCESS: f64 = 0.05;
+/// Median of the absolute value of a standard normal number.
+const MEDIAN_OF_NORMAL: f64 = 0.6745;
 /// Minimum ratio between the noise of a hot taxel and the median noise of all taxels.
 const MIN_NOISE: f64 = 4.0;
 
@@ -62,7 +64,10 @@ pub fn hot_taxels(
     );
     let range = largest - least;
     let errors = Normal::standard().inverse_cdf(1.0 - 0.01 / n_taxels.max(1) as f64);
-    let floor = (errors * spread).max(MIN_EXCESS * range);
+    // Levels at rest that differ from taxel to taxel are errors of the zero: the excess of a hot taxel exceeds the excesses of the others.
+    let excess = rested.iter().map(|rest| rest.excess.abs());
+    let scale = quantile(&mut excess.collect::<Vec<_>>(), 0.5) / MEDIAN_OF_NORMAL;
+    let floor = (errors * spread.max(scale)).max(MIN_EXCESS * range);
     let hot = rested.into_iter().filter_map(|rest| {
         let noise_ratio = match spread > 0.0 {
             true => rest.spread / spread,
@@ -91,7 +96,7 @@ struct Rest {
     excess: f64,
     /// Interquartile range of the taxel's readings.
     spread: f64,
-    /// Largest level of a neighbour.
+    /// Second largest level of a neighbour. One neighbour may be hot, too.
     near_level: f64,
 }
 
@@ -123,7 +128,7 @@ impl Rest {
             taxel,
             excess: level - middle,
             spread,
-            near_level: of_sorted(&levels, 1.0),
+            near_level: levels[levels.len().saturating_sub(2)],
         })
     }
 }

@@ -30,6 +30,8 @@ const SINGLE_CORRELATION_ERRORS: f64 = 6.0;
 const MAX_COMPARED: usize = 256;
 /// Maximum standard deviation of an untouched taxel, relative to active taxels.
 const MAX_STD: f64 = 0.5;
+/// Minimum correlation of the class means of two taxels in contact with the same object.
+const ALIKE: f64 = 0.9;
 /// Minimum fraction of a taxel's readings that equal its least reading, from which its readings count as clipped.
 const CLIPPED: f64 = 0.05;
 /// Fractions of clipped readings between which clipped noise can be distinguished from rare contact.
@@ -177,6 +179,53 @@ pub fn untouched_taxels(
                     && (taxel + 1 == rows.ncols() || beside(taxel + 1)));
     }
     is_untouched
+}
+
+/// Returns for each taxel whether it is in constant contact with some classes, as below a flat object at equal depths. The class means of its readings differ
+/// by more than half of the standard deviation of active taxels, and are correlated with the class means of a taxel beside it: contact covers several taxels,
+/// while offsets of single taxels are independent.
+pub fn constant_contact(
+    rows: ArrayView2<f64>,
+    labels: &[usize],
+    grid: Option<(usize, usize)>,
+    active_std: f64,
+) -> Vec<bool> {
+    let means = &rows - &without_class_means(rows, labels);
+    let std = means.std_axis(Axis(0), 0.0);
+    let centred = &means
+        - &means
+            .mean_axis(Axis(0))
+            .unwrap_or_else(|| Array1::zeros(rows.ncols()));
+    let range = |taxel: usize| {
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let (least, largest) = means
+            .column(taxel)
+            .iter()
+            .fold(ends, |(low, high), &x| (low.min(x), high.max(x)));
+        largest - least
+    };
+    let columns = grid.map_or(rows.ncols(), |(_, columns)| columns);
+    let is_alike = |taxel: usize, other: usize| {
+        let covariance = centred.column(taxel).dot(&centred.column(other)) / rows.nrows() as f64;
+        covariance > ALIKE * std[taxel] * std[other]
+    };
+    let taxels = 0..rows.ncols();
+    taxels
+        .map(|taxel| {
+            let (y, x) = (taxel / columns, taxel % columns);
+            let beside = [
+                (x > 0).then(|| taxel - 1),
+                (x + 1 < columns).then(|| taxel + 1),
+                (y > 0).then(|| taxel - columns),
+                (taxel + columns < rows.ncols()).then(|| taxel + columns),
+            ];
+            range(taxel) > MAX_STD * active_std
+                && beside
+                    .into_iter()
+                    .flatten()
+                    .any(|other| is_alike(taxel, other))
+        })
+        .collect()
 }
 
 /// Returns the largest absolute correlation of each of `taxels` with an active taxel.

@@ -14,6 +14,9 @@ use std::collections::BTreeMap;
 
 /// Number of nearest rows that vote.
 const N_VOTES: usize = 5;
+/// Minimum number of permutations if none of fewer permutations reaches the observed accuracy. A p-value of 1/4,001 remains significant after a correction
+/// for 40 tests.
+const N_EXTENDED: usize = 4000;
 
 /// Accuracy with which labels can be read from features, and its distribution under permuted labels.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,7 +131,11 @@ pub fn readability(
     let mut permuted = labels.to_vec();
     let mut rng = seed.named("permutations").rng();
     let mut found = Vec::with_capacity(n_permutations);
-    for _ in 0..n_permutations {
+    let mut is_reached = false;
+    // More permutations resolve smaller p-values.
+    while found.len() < n_permutations
+        || (!is_reached && found.len() < N_EXTENDED.max(4 * n_permutations))
+    {
         for cells in &units.strata {
             let label = |&cell: &usize| labels[units.cells[cell][0]];
             let mut shuffled: Vec<usize> = cells.iter().map(label).collect();
@@ -140,8 +147,11 @@ pub fn readability(
             }
         }
         let counts = pairs.count_correct(&permuted, n_classes, &units, &mut workspace);
-        found.push(counts[0].max(counts[1]));
+        let count = counts[0].max(counts[1]);
+        is_reached |= count >= n_correct;
+        found.push(count);
     }
+    let n_permutations = found.len();
     found.sort_unstable();
     let at_least = found.iter().filter(|&&count| count >= n_correct).count();
     let share = |count: usize| count as f64 / n as f64;
@@ -284,7 +294,7 @@ mod tests {
             row[0] += 2.0 * label as f64;
         }
         let found = of(features, 1);
-        assert_eq!(found.p_value, 0.01);
+        assert_eq!(found.p_value, 1.0 / 4001.0);
         assert!(found.accuracy > 0.95 && found.bound < 0.5, "{found:?}");
     }
 
@@ -331,13 +341,13 @@ mod tests {
             let of = |features: &Array2<f64>, units: Option<&[usize]>| {
                 readability(features.view(), &labels, units, 199, &5_u64).unwrap()
             };
-            assert_eq!(of(&features, None).p_value, 0.005);
+            assert!(of(&features, None).p_value <= 0.005);
             let within = of(&features, Some(&units));
             assert!(within.p_value > 0.05, "{within:?}");
             for (mut row, &label) in features.rows_mut().into_iter().zip(&labels) {
                 row[0] += 2.0 * label as f64;
             }
-            assert_eq!(of(&features, Some(&units)).p_value, 0.005);
+            assert!(of(&features, Some(&units)).p_value <= 0.005);
         }
     }
 }
