@@ -60,11 +60,15 @@ fn frames_without_contact(context: &Context) -> Option<Array2<f64>> {
         return None;
     }
     let stds = context.residuals.std_axis(Axis(0), 0.0);
-    let active: Vec<usize> = (0..stds.len()).filter(|&taxel| stds[taxel] > 0.5 * context.active_std).collect();
+    let active: Vec<usize> = (0..stds.len())
+        .filter(|&taxel| stds[taxel] > 0.5 * context.active_std)
+        .collect();
     let step = active.len().div_ceil(MAX_READINGS).max(1);
     let some: Vec<usize> = active.iter().copied().step_by(step).collect();
     let n_touches = context.sample.len().min(MAX_FRAMES / n_frames);
-    let frames = context.sample[..n_touches].iter().flat_map(|touch| touch * n_frames..(touch + 1) * n_frames);
+    let frames = context.sample[..n_touches]
+        .iter()
+        .flat_map(|touch| touch * n_frames..(touch + 1) * n_frames);
     let frames: Vec<usize> = frames.collect();
     let readings = context.data.frames.select(Axis(0), &frames);
     let readings = readings.select(Axis(1), &some);
@@ -77,15 +81,26 @@ fn frames_without_contact(context: &Context) -> Option<Array2<f64>> {
     }
     let largest = MAX_CONTACT.powi(2) * quantile(&mut squares.clone(), QUIET);
     // The first quiet frame of each touch.
-    let quiet = squares.chunks(n_frames).enumerate().filter_map(|(place, squares)| {
-        let frame = squares.iter().position(|&square| square <= largest)?;
-        Some((place, frames[place * n_frames + frame]))
-    });
+    let quiet = squares
+        .chunks(n_frames)
+        .enumerate()
+        .filter_map(|(place, squares)| {
+            let frame = squares.iter().position(|&square| square <= largest)?;
+            Some((place, frames[place * n_frames + frame]))
+        });
     let (places, quiet): (Vec<usize>, Vec<usize>) = quiet.unzip();
-    let labels: Vec<usize> = places.iter().map(|&place| context.sample_labels[place]).collect();
+    let labels: Vec<usize> = places
+        .iter()
+        .map(|&place| context.sample_labels[place])
+        .collect();
     let mut counts = BTreeMap::<usize, usize>::new();
-    labels.iter().for_each(|&label| *counts.entry(label).or_default() += 1);
-    let n_known = counts.values().filter(|&&count| count >= MIN_QUIET[1]).count();
+    labels
+        .iter()
+        .for_each(|&label| *counts.entry(label).or_default() += 1);
+    let n_known = counts
+        .values()
+        .filter(|&&count| count >= MIN_QUIET[1])
+        .count();
     if quiet.len() < MIN_QUIET[0] || n_known < 2 {
         return None;
     }

@@ -77,16 +77,32 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
 /// Looks for taxels that keep a reading for some time.
 fn frozen_finding(context: &Context, faults: &[Fault]) -> Finding {
     let Some(grid) = context.data.grid else {
-        let why = "The taxels have no rows and columns, so that the taxels around a taxel are unknown.";
+        let why =
+            "The taxels have no rows and columns, so that the taxels around a taxel are unknown.";
         return Finding::not_checked("", why).about("for some time");
     };
-    let mut is_counted: Vec<bool> = context.taxels.iter().map(|taxel| !taxel.is_constant()).collect();
-    faults.iter().for_each(|fault| is_counted[fault.taxel] = false);
+    let mut is_counted: Vec<bool> = context
+        .taxels
+        .iter()
+        .map(|taxel| !taxel.is_constant())
+        .collect();
+    faults
+        .iter()
+        .for_each(|fault| is_counted[fault.taxel] = false);
     let frames = context.skin.touched.view();
-    let found = frozen_taxels(frames, grid, &context.frame_labels, TOUCHED, &is_counted, ANY);
+    let found = frozen_taxels(
+        frames,
+        grid,
+        &context.frame_labels,
+        TOUCHED,
+        &is_counted,
+        ANY,
+    );
     let taxels: BTreeSet<usize> = found.iter().map(|run| run.taxel).collect();
     let sentence = match found.iter().max_by_key(|run| run.n_frames) {
-        None => "No taxel keeps a reading for some time while the taxels around it change.".to_owned(),
+        None => {
+            "No taxel keeps a reading for some time while the taxels around it change.".to_owned()
+        }
         Some(run) => format!(
             "{} taxels keep one reading for some time while the taxels around them change, such as number {} during {} of the frames.",
             taxels.len(),

@@ -61,16 +61,23 @@ pub fn deep_touches(context: &Context) -> Option<DeepTouches> {
         }
     }
     let is_known = |class: usize| counts[class][1] >= MIN_ACCURACY * counts[class][0].max(1.0);
-    let known: Vec<[f64; 2]> = (0..n_classes).filter(|&class| is_known(class)).map(|class| counts[class]).collect();
+    let known: Vec<[f64; 2]> = (0..n_classes)
+        .filter(|&class| is_known(class))
+        .map(|class| counts[class])
+        .collect();
     if known.len() < 2 {
         return None;
     }
-    let [n, n_correct] = known.iter().fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]]);
+    let [n, n_correct] = known
+        .iter()
+        .fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]]);
     let accuracy = n_correct / n;
     let neighbours = neighbours(context)?;
     let is_confirmed = |touch: usize, class: usize| {
         let near = neighbours[touch].iter().take(N_NEAR);
-        near.filter(|&&other| context.labels[other] == class).count() >= N_CONFIRMING
+        near.filter(|&&other| context.labels[other] == class)
+            .count()
+            >= N_CONFIRMING
     };
     let mut touches = Vec::new();
     for (touch, scores) in scores.rows().into_iter().enumerate() {

@@ -26,7 +26,11 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         .against(0.0)
         .advice("Mask taxels with many missing readings, and leave out frames with others; state both. taxels.csv has the counts.")
         .shown_in("taxels");
-    Ok(vec![finding, placeholders(context), repeated_frames(context)])
+    Ok(vec![
+        finding,
+        placeholders(context),
+        repeated_frames(context),
+    ])
 }
 
 /// Looks for a value in place of missing readings.

@@ -66,7 +66,10 @@ pub fn pairs(context: &Context) -> Option<Pairs> {
     let has_contact: Vec<bool> = (blocks.std_axis(Axis(1), 0.0).iter())
         .map(|&std| std > 0.0)
         .collect();
-    let own = context.scores.is_none().then(|| nearest(blocks.view(), N_NEAREST, &[]));
+    let own = context
+        .scores
+        .is_none()
+        .then(|| nearest(blocks.view(), N_NEAREST, &[]));
     let (neighbours, distances) = match (&context.scores, &own) {
         (Some(scores), _) => (&scores.neighbours, &scores.distances),
         (None, Some(nearest)) => (&nearest.neighbours, &nearest.distances),
@@ -99,7 +102,10 @@ pub fn pairs(context: &Context) -> Option<Pairs> {
         let near = nearest_of_sample(rows.view(), &context.sample);
         compared(words, &context.sample, &near.0, &near.1)
     };
-    comparisons.extend(by_features("without mean and scale", &shapes(blocks.clone())));
+    comparisons.extend(by_features(
+        "without mean and scale",
+        &shapes(blocks.clone()),
+    ));
     if let Some(invariant) = &context.features.invariant {
         let rows = symmetrised(invariant.view(), context.features.image);
         comparisons.extend(by_features("moved, mirrored or turned", &rows));
@@ -118,10 +124,16 @@ pub fn pairs(context: &Context) -> Option<Pairs> {
             *known = (p, other);
         }
     }
-    let mut found: Vec<(f64, usize, usize)> = nearest.into_iter().map(|(row, (p, other))| (p, row, other)).collect();
+    let mut found: Vec<(f64, usize, usize)> = nearest
+        .into_iter()
+        .map(|(row, (p, other))| (p, row, other))
+        .collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     Some(Pairs {
-        pairs: found.into_iter().map(|(_, row, other)| (row, other)).collect(),
+        pairs: found
+            .into_iter()
+            .map(|(_, row, other)| (row, other))
+            .collect(),
         p_value: (least * n_comparisons).min(1.0),
         share,
         comparisons,
@@ -131,7 +143,8 @@ pub fn pairs(context: &Context) -> Option<Pairs> {
 /// Returns the probability of at least as many pairs by chance. The number of touches whose p-value is at most [`ANY`] divided by their number has the mean
 /// [`ANY`]. A pair counts if both touches are near-duplicates of each other, or if the other touch was not tested.
 fn p_value_of_pairs(found: &[(usize, usize, f64)], tested: &[usize]) -> f64 {
-    let nearest: BTreeMap<usize, usize> = found.iter().map(|&(row, other, _)| (row, other)).collect();
+    let nearest: BTreeMap<usize, usize> =
+        found.iter().map(|&(row, other, _)| (row, other)).collect();
     let tested: BTreeSet<usize> = tested.iter().copied().collect();
     let is_pair = |&(row, other): &(&usize, &usize)| {
         !tested.contains(other) || (nearest.get(other) == Some(row) && row < other)
@@ -162,7 +175,11 @@ fn nearest_of_sample(rows: ArrayView2<f64>, sample: &[usize]) -> Near {
     let mut near: Near = (Vec::new(), Vec::new());
     for block in found.collect::<Vec<_>>() {
         let neighbours = block.neighbours.into_iter();
-        near.0.extend(neighbours.map(|own| own.into_iter().map(|place| order[place]).collect::<Vec<_>>()));
+        near.0.extend(neighbours.map(|own| {
+            own.into_iter()
+                .map(|place| order[place])
+                .collect::<Vec<_>>()
+        }));
         near.1.extend(block.distances);
     }
     near
@@ -179,14 +196,19 @@ fn nearest_windows(context: &Context) -> Option<(Vec<usize>, Vec<Vec<usize>>, Ve
     if n_frames < 3 || touches.len() < 2 * N_NEAREST {
         return None;
     }
-    let frames = touches.iter().flat_map(|&touch| touch * n_frames..(touch + 1) * n_frames);
+    let frames = touches
+        .iter()
+        .flat_map(|&touch| touch * n_frames..(touch + 1) * n_frames);
     let frames = data.frames.select(Axis(0), &frames.collect::<Vec<_>>());
     let frames = pooled(frames.view(), 1, data.grid, MAX_BLOCKS);
     let squares: Vec<f64> = frames.rows().into_iter().map(|row| row.dot(&row)).collect();
     let starts: Vec<usize> = (0..touches.len()).step_by(BLOCK).collect();
     let found = starts.into_par_iter().map(|start| {
         let block = start..(start + BLOCK).min(touches.len());
-        let middle: Vec<usize> = block.clone().map(|touch| touch * n_frames + n_frames / 2).collect();
+        let middle: Vec<usize> = block
+            .clone()
+            .map(|touch| touch * n_frames + n_frames / 2)
+            .collect();
         let products = frames.select(Axis(0), &middle).dot(&frames.t());
         let mut near: Near = (Vec::new(), Vec::new());
         for (place, touch) in block.enumerate() {
@@ -200,8 +222,14 @@ fn nearest_windows(context: &Context) -> Option<(Vec<usize>, Vec<Vec<usize>>, Ve
             let mut others: Vec<(f64, usize)> = others.map(|other| (least(other), other)).collect();
             others.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             others.truncate(N_NEAREST);
-            near.0.push(others.iter().map(|&(_, other)| touches[other]).collect());
-            near.1.push(others.iter().map(|&(square, _)| square.max(0.0).sqrt()).collect());
+            near.0
+                .push(others.iter().map(|&(_, other)| touches[other]).collect());
+            near.1.push(
+                others
+                    .iter()
+                    .map(|&(square, _)| square.max(0.0).sqrt())
+                    .collect(),
+            );
         }
         near
     });

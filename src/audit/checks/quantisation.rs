@@ -67,7 +67,8 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
             short_number(median - 1.0)
         );
         let note = Finding::note("", median, sentence).against(MIN_LEVELS);
-        let advice = "State the time over which events are counted; longer times give larger counts.";
+        let advice =
+            "State the time over which events are counted; longer times give larger counts.";
         return Ok(vec![note.advice(advice).shown_in("taxels")]);
     }
     let sentence = format!(

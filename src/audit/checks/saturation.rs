@@ -70,13 +70,17 @@ fn of_taxels(context: &Context) -> Finding {
     let active: Vec<usize> = (0..frames.ncols())
         .filter(|&taxel| {
             let readings = &context.taxels[taxel];
-            !readings.is_constant() && context.residuals.column(taxel).std(0.0) > 0.25 * context.active_std
+            !readings.is_constant()
+                && context.residuals.column(taxel).std(0.0) > 0.25 * context.active_std
         })
         .collect();
     let cubes = |taxel: &usize| {
         let readings = frames.column(*taxel);
         let mean = readings.mean().unwrap_or(0.0);
-        readings.iter().map(|x| ((x - mean) / std).powi(3)).sum::<f64>()
+        readings
+            .iter()
+            .map(|x| ((x - mean) / std).powi(3))
+            .sum::<f64>()
     };
     let skewness: f64 = active.iter().map(cubes).sum();
     let sign = if skewness < 0.0 { -1.0 } else { 1.0 };

@@ -49,7 +49,9 @@ fn one_column_per_unit(context: &Context, units: &[usize]) -> Option<Array2<f64>
 fn p_value(context: &Context, units: &[usize], name: &str) -> f64 {
     let all: BTreeSet<usize> = units.iter().copied().collect();
     let all: Vec<usize> = all.into_iter().collect();
-    let units = units.iter().map(|unit| all.partition_point(|other| other < unit));
+    let units = units
+        .iter()
+        .map(|unit| all.partition_point(|other| other < unit));
     let units: Vec<usize> = units.collect();
     let count = |of: &[usize]| {
         let mut counts = vec![0.0; of.iter().max().map_or(0, |largest| largest + 1)];
@@ -121,8 +123,13 @@ fn of_units(context: &Context, (name, units): (&'static str, &[usize])) -> Findi
     let advice = format!(
         "Record all classes in each {name}. If each {name} has its own classes, no split separates the class from the {name}."
     );
-    Finding::tested("", found.accuracy, sentence, (p_value(context, units, name), true))
-        .against(found.chance)
-        .advice(advice)
-        .shown_in("confounds")
+    Finding::tested(
+        "",
+        found.accuracy,
+        sentence,
+        (p_value(context, units, name), true),
+    )
+    .against(found.chance)
+    .advice(advice)
+    .shown_in("confounds")
 }
