@@ -135,7 +135,7 @@ impl Context {
         let level = scale.0 + 0.5 * (scale.1 - scale.0);
         for (taxel, is_untouched) in is_untouched.iter_mut().enumerate() {
             let is_varying = !taxels[taxel].is_constant();
-            *is_untouched &= !is_pressed[taxel] && !(is_varying && taxels[taxel].median > level);
+            *is_untouched &= !(is_pressed[taxel] || is_varying && taxels[taxel].median > level);
         }
         let features = features(&data, &taxels);
         let has_classes = data.labels.is_some() && n_classes > 1;

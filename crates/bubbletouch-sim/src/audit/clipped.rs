@@ -26,7 +26,7 @@ pub fn clipped_at(ascending: ArrayView1<f64>, significance: f64) -> Option<f64> 
         .take_while(|&&x| x == largest)
         .count();
     let share = n_largest as f64 / n as f64;
-    if n_largest < MIN_READINGS || share < MIN_SHARE || share > MAX_SHARE {
+    if n_largest < MIN_READINGS || !(MIN_SHARE..=MAX_SHARE).contains(&share) {
         return None;
     }
     let below = ascending.slice(ndarray::s![..n - n_largest]);
