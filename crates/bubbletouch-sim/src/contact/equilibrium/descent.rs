@@ -46,6 +46,14 @@ const MAX_TIGHTENINGS: usize = 12;
 const RIGID_STEP: f64 = 0.02;
 /// Largest penetration of rigid meshes that is searched, in longest steps: a point can move by two steps, by translation and by rotation.
 const DEEP: f64 = 2.5;
+/// Number of poses after which a descent of meshes that gains less than [`STAGNANT_GAIN`] ends, and the multipliers are updated. If larger, a search that does not
+/// converge takes longer; if smaller, multipliers are updated far from the minimum.
+const STAGNANT_STEPS: usize = 100;
+/// Least decrease of the energy within [`STAGNANT_STEPS`] poses, relative to the sum of weights times radii.
+const STAGNANT_GAIN: f64 = 1e-6;
+/// Number of updates of the multipliers without halving the residuals after which a search with meshes ends. If larger, failures take longer; if smaller, a
+/// search that would still converge ends.
+const STAGNANT_ROUNDS: usize = 10;
 /// Distance below which two positions count as equal, relative to the size and the travel of the object.
 const SAME_PLACE: f64 = 1e-15;
 
@@ -75,6 +83,8 @@ pub(super) struct Descent<'a, 'b> {
     pub n_steps: usize,
     /// Whether a mesh can touch a rigid shape.
     has_mesh: bool,
+    /// Total decrease of the energy by ordinary steps, joules.
+    descended: f64,
 }
 
 /// Result of an energy descent.
@@ -115,6 +125,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         };
         Self {
             has_mesh,
+            descended: 0.0,
             farthest,
             scene: Scene {
                 ground,
@@ -141,6 +152,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         let mut complementarity_residual = f64::INFINITY;
         let mut n_tightened = 0;
         let (mut best, mut least) = (None, f64::INFINITY);
+        let (mut least_unrest, mut n_stagnant) = (f64::INFINITY, 0);
         for _ in 0..MAX_ROUNDS {
             match self.descend() {
                 End::Rest => {}
@@ -160,6 +172,18 @@ impl<'a, 'b> Descent<'a, 'b> {
                 && self.is_at_rest(ACCEPTED_IMBALANCE, ACCEPTED_RESIDUAL)
             {
                 (best, least) = (Some(self.scene.clone()), now);
+            }
+            if self.has_mesh {
+                let imbalances = self.imbalances(&self.workspace.now.pair_loads());
+                let imbalance = imbalances.into_iter().fold(change, f64::max);
+                let unrest = (imbalance / ACCEPTED_IMBALANCE).max(now / ACCEPTED_RESIDUAL);
+                n_stagnant += 1;
+                if unrest < 0.5 * least_unrest {
+                    (least_unrest, n_stagnant) = (unrest, 0);
+                }
+                if n_stagnant >= STAGNANT_ROUNDS {
+                    break;
+                }
             }
             let Some(deepest) = self.deepest() else {
                 // The body floats by less than the last bit above taxels that are too stiff for its weight.
@@ -223,7 +247,16 @@ impl<'a, 'b> Descent<'a, 'b> {
 
     /// Moves the bodies to a stationary point of the smoothed energy that is not a saddle.
     fn descend(&mut self) -> End {
+        let (mut since, mut before) = (self.n_steps, self.descended);
+        let bodies = self.scene.bodies.iter();
+        let size: f64 = bodies.map(|body| body.weight.length() * body.arm()).sum();
         while self.n_steps < MAX_STEPS * self.scene.bodies.len() {
+            if self.has_mesh && self.n_steps >= since + STAGNANT_STEPS {
+                if self.descended - before < STAGNANT_GAIN * size {
+                    return End::Rest;
+                }
+                (since, before) = (self.n_steps, self.descended);
+            }
             if let Some((loose, way, room)) = self.loose() {
                 match room.is_finite() {
                     true => self.fall(&loose, room * way),
@@ -307,6 +340,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             held.dedup();
         }
         if is_better {
+            self.descended += gain;
             return Some(if is_noise { 1.0 } else { gain / step.gain });
         }
         std::mem::swap(&mut self.workspace.now, &mut self.workspace.next);
