@@ -93,14 +93,14 @@ pub fn pairs(context: &Context) -> Option<Pairs> {
         Some(Comparison {
             words,
             n_tested: rows.len(),
-            p_value: single.fold(p_value_of_pairs(&found, rows), f64::min),
+            p_value: single.fold(p_value_of_pairs(&found, rows, neighbours), f64::min),
             found,
         })
     };
     let mut comparisons = vec![compared(AS_RECORDED, &all, neighbours, distances)?];
     let by_features = |words, rows: &Array2<f64>| {
         let near = nearest_of_sample(rows.view(), &context.sample);
-        compared(words, &context.sample, &near.0, &near.1)
+        compared(words, &near.touches, &near.neighbours, &near.distances)
     };
     comparisons.extend(by_features(
         "without mean and scale",
@@ -110,8 +110,13 @@ pub fn pairs(context: &Context) -> Option<Pairs> {
         let rows = symmetrised(invariant.view(), context.features.image);
         comparisons.extend(by_features("moved, mirrored or turned", &rows));
     }
-    if let Some((rows, near, far)) = nearest_windows(context) {
-        comparisons.extend(compared("shifted in time", &rows, &near, &far));
+    if let Some(near) = nearest_windows(context) {
+        comparisons.extend(compared(
+            "shifted in time",
+            &near.touches,
+            &near.neighbours,
+            &near.distances,
+        ));
     }
     let n_comparisons = comparisons.len() as f64;
     let least = comparisons.iter().map(|c| c.p_value).fold(1.0, f64::min);
@@ -140,9 +145,12 @@ pub fn pairs(context: &Context) -> Option<Pairs> {
     })
 }
 
-/// Returns the probability of at least as many pairs by chance. The number of touches whose p-value is at most [`ANY`] divided by their number has the mean
-/// [`ANY`]. A pair counts if both touches are near-duplicates of each other, or if the other touch was not tested.
-fn p_value_of_pairs(found: &[(usize, usize, f64)], tested: &[usize]) -> f64 {
+/// Returns the probability of at least as many pairs by chance. A pair counts if both touches are near-duplicates of each other, or if the other touch was not
+/// tested.
+///
+/// The number of touches whose p-value is at most [`ANY`] divided by their number has at most the mean [`ANY`]. A pair of two tested touches needs two of them.
+/// With the fraction f of touches whose nearest touch was tested, the mean number of pairs is therefore at most [`ANY`] (1 − f/2).
+fn p_value_of_pairs(found: &[(usize, usize, f64)], tested: &[usize], near: &[Vec<usize>]) -> f64 {
     let nearest: BTreeMap<usize, usize> =
         found.iter().map(|&(row, other, _)| (row, other)).collect();
     let tested: BTreeSet<usize> = tested.iter().copied().collect();
@@ -150,14 +158,24 @@ fn p_value_of_pairs(found: &[(usize, usize, f64)], tested: &[usize]) -> f64 {
         !tested.contains(other) || (nearest.get(other) == Some(row) && row < other)
     };
     let n_pairs = nearest.iter().filter(is_pair).count() as u64;
-    match (n_pairs, Poisson::new(ANY)) {
+    let nearest_tested = near.iter().filter(|near| tested.contains(&near[0]));
+    let fraction = nearest_tested.count() as f64 / tested.len() as f64;
+    match (n_pairs, Poisson::new(ANY * (1.0 - 0.5 * fraction))) {
         (1.., Ok(poisson)) => poisson.sf(n_pairs - 1),
         _ => 1.0,
     }
 }
 
-/// Neighbours and distances of some rows.
-type Near = (Vec<Vec<usize>>, Vec<Vec<f64>>);
+/// Nearest touches of some touches.
+#[derive(Default)]
+struct Near {
+    /// Touches of which the nearest ones are known.
+    touches: Vec<usize>,
+    /// Indices of the nearest touches of each touch, the nearest first.
+    neighbours: Vec<Vec<usize>>,
+    /// Distances of the nearest touches of each touch, ascending.
+    distances: Vec<Vec<f64>>,
+}
 
 /// Finds the nearest rows of the rows in `sample` among all rows.
 fn nearest_of_sample(rows: ArrayView2<f64>, sample: &[usize]) -> Near {
@@ -172,22 +190,25 @@ fn nearest_of_sample(rows: ArrayView2<f64>, sample: &[usize]) -> Near {
         let block = start..(start + BLOCK).min(sample.len());
         nearest_rows(rows.view(), N_NEAREST, &[], block)
     });
-    let mut near: Near = (Vec::new(), Vec::new());
+    let mut near = Near {
+        touches: sample.to_vec(),
+        ..Near::default()
+    };
     for block in found.collect::<Vec<_>>() {
         let neighbours = block.neighbours.into_iter();
-        near.0.extend(neighbours.map(|own| {
+        near.neighbours.extend(neighbours.map(|own| {
             own.into_iter()
                 .map(|place| order[place])
                 .collect::<Vec<_>>()
         }));
-        near.1.extend(block.distances);
+        near.distances.extend(block.distances);
     }
     near
 }
 
-/// Finds the nearest touches of the middle frames of sampled touches, compared with all frames of other touches. Returns the touches too; `None` if touches
-/// have fewer than three frames.
-fn nearest_windows(context: &Context) -> Option<(Vec<usize>, Vec<Vec<usize>>, Vec<Vec<f64>>)> {
+/// Finds the nearest touches of the middle frames of sampled touches, compared with all frames of other touches. Returns `None` if touches have fewer than
+/// three frames.
+fn nearest_windows(context: &Context) -> Option<Near> {
     let data = &context.data;
     let n_frames = data.n_frames;
     let touches: Vec<usize> = (context.sample.iter().copied())
@@ -210,7 +231,7 @@ fn nearest_windows(context: &Context) -> Option<(Vec<usize>, Vec<Vec<usize>>, Ve
             .map(|touch| touch * n_frames + n_frames / 2)
             .collect();
         let products = frames.select(Axis(0), &middle).dot(&frames.t());
-        let mut near: Near = (Vec::new(), Vec::new());
+        let mut near = Near::default();
         for (place, touch) in block.enumerate() {
             let row = products.slice(s![place, ..]);
             let least = |other: usize| {
@@ -222,9 +243,9 @@ fn nearest_windows(context: &Context) -> Option<(Vec<usize>, Vec<Vec<usize>>, Ve
             let mut others: Vec<(f64, usize)> = others.map(|other| (least(other), other)).collect();
             others.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             others.truncate(N_NEAREST);
-            near.0
+            near.neighbours
                 .push(others.iter().map(|&(_, other)| touches[other]).collect());
-            near.1.push(
+            near.distances.push(
                 others
                     .iter()
                     .map(|&(square, _)| square.max(0.0).sqrt())
@@ -233,12 +254,13 @@ fn nearest_windows(context: &Context) -> Option<(Vec<usize>, Vec<Vec<usize>>, Ve
         }
         near
     });
-    let mut near: Near = (Vec::new(), Vec::new());
+    let mut near = Near::default();
     for block in found.collect::<Vec<_>>() {
-        near.0.extend(block.0);
-        near.1.extend(block.1);
+        near.neighbours.extend(block.neighbours);
+        near.distances.extend(block.distances);
     }
-    Some((touches, near.0, near.1))
+    near.touches = touches;
+    Some(near)
 }
 
 fn run(context: &Context) -> Result<Vec<Finding>> {

@@ -8,6 +8,9 @@
 //! and rate b, fitted to the sums T of the gaps other than g_j: ln(T/m) of m gaps has the median ψ(m) − ln m − ψ(a) + ln b and the variance ψ′(m) + ψ′(a).
 //! Then P(g_j > x | T) = ((b + T) / (b + T + x))^{a + m}. The scale of g_j relative to other gaps is a power of j, because the dimension of the data depends on
 //! the scale of distances. The power is fitted to all gaps robustly, so that the gap of copies remains.
+//!
+//! The p-value of a row is the smallest p-value of its gaps after Bonferroni's correction with weights: the p-value of g_j is multiplied by j (j + 1). Pairs,
+//! which are the most frequent copies, are multiplied by two only.
 
 use crate::statistics::quantile::{of_sorted, quantile};
 use statrs::function::gamma::digamma;
@@ -121,7 +124,8 @@ fn test_gaps(gaps: &[Vec<f64>]) -> Vec<f64> {
         let b = (middle - digamma(m) + m.ln() + digamma(a)).exp();
         for ((row, rest), p_value) in gaps.iter().zip(rests).zip(&mut p_values) {
             let log_p = (a + m) * ((b + rest) / (b + rest + row[j])).ln();
-            *p_value = p_value.min(log_p.exp() * n_gaps as f64);
+            // Bonferroni's correction with the weight 1 / (j (j + 1)) of g_j. The weights of all gaps add up to less than one.
+            *p_value = p_value.min(log_p.exp() * ((j + 1) * (j + 2)) as f64);
         }
     }
     p_values
