@@ -10,11 +10,9 @@
 //! In a press from the front, each triangle counts. At a pose, a triangle counts for a taxel unless its far side is behind the taxel's substrate. Triangles
 //! whose near side is in front of the substrate count for each taxel; the rule is evaluated only for other triangles ([`stop_in_front`]).
 
-use super::block_search::{BlockSearch, Candidates, PlacedBlock, PlacedPairs, Tested};
+use super::block_search::{BlockSearch, Candidates, PlacedBlock, Tested};
 use super::lines::GridLines;
-use super::pair_batch::{
-    Column, EdgePairs, FacePairs, MAY_BE_BEHIND, PAIRS, Pair, PairList, Placement,
-};
+use super::pair_batch::{Column, EdgePairs, FacePairs, MAY_BE_BEHIND, PAIRS, Pair, Placement};
 use super::placed_objects::{PlacedObjects, TravelGoal};
 use crate::contact::instructions::{Instructions, for_instructions};
 use crate::contact::mesh::skin_mesh::{MeshAt, stop_in_front};
@@ -38,7 +36,7 @@ pub(crate) struct Envelope {
     /// Smallest of the heights, metres; infinite if the goal of the press does not depend on it.
     pub first: f64,
     /// Scratch memory of the search.
-    pairs: Option<Box<([PairList; 2], FacePairs, EdgePairs)>>,
+    pairs: Option<Box<(Vec<Pair>, FacePairs, EdgePairs)>>,
 }
 
 impl Envelope {
@@ -102,8 +100,6 @@ impl Envelope {
                 others: first,
                 bound: f64::INFINITY,
                 waiting: &mut *waiting,
-                beside: PlacedPairs::EMPTY,
-                is_in_front: false,
                 faces: &mut *faces,
                 edges: &mut *edges,
                 envelope: self,
@@ -191,12 +187,8 @@ struct Sweep<'a> {
     placement: Placement,
     /// Upper bound of the least height, metres.
     bound: f64,
-    /// Pairs of taxels and triangles that are not yet evaluated: pairs whose taxels are certainly under the faces, and other pairs.
-    waiting: &'a mut [PairList; 2],
-    /// Pairs whose taxels may be beside the faces of the triangles, and whose bounds are not yet computed.
-    beside: PlacedPairs,
-    /// Whether certainly no triangle is behind the substrate.
-    is_in_front: bool,
+    /// Pairs of taxels and triangles that are not yet evaluated.
+    waiting: &'a mut Vec<Pair>,
     /// Pairs of taxels and triangles that are evaluated next.
     faces: &'a mut FacePairs,
     /// Pairs of taxels and edges that are not yet evaluated.
@@ -223,7 +215,6 @@ for_instructions! {
 
 #[inline(always)]
 fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch) {
-    sweep.is_in_front = bounds.is_in_front(blocks);
     const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
     let mut stack = [(f32::NEG_INFINITY, 0_u32); STACK];
     let mut n_waiting = 1;
@@ -259,8 +250,8 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
                 }
             }
             for number in 0..placed.n_few {
-                let tested = bounds.test(block, &placed, (number, limit));
-                sweep.pair(bounds, (block.first, &placed), &tested);
+                let tested = bounds.test(block, &placed, number);
+                sweep.pair(block.first, &tested);
             }
             continue;
         }
@@ -283,7 +274,6 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
             n_waiting += 1;
         }
     }
-    sweep.bound_beside(bounds);
     sweep.evaluate_waiting();
 }
 
@@ -335,96 +325,44 @@ impl Sweep<'_> {
         }
     }
 
-    /// Adds the pairs of the triangles of a block, the first of which has the index `first`, and the tested taxels that are not stopped below. The loops have no
-    /// branches that depend on heights, because the processor cannot predict them.
+    /// Adds the pairs of the triangles of a block, the first of which has the index `first`, and the tested taxels that are not stopped below. The heights of the
+    /// taxels are lowered to the upper bounds of their exact heights.
     #[inline(always)]
-    fn pair(
-        &mut self,
-        bounds: &BlockSearch,
-        (first, placed): (u32, &PlacedBlock),
-        tested: &Tested,
-    ) {
-        self.waiting[0].reserve(LANES);
-        for lane in lanes(tested.lanes & tested.faces) {
-            self.wait(0, tested.pair(first, lane), tested.high[lane]);
-        }
-        for lane in lanes(tested.lanes & !tested.faces) {
-            let pair = tested.pair(first, lane);
-            let is_open = self.envelope.heights[pair.taxel as usize] > f64::from(pair.low);
-            self.beside.add((pair, is_open), (placed, tested), lane);
-            if self.beside.n == LANES {
-                self.bound_beside(bounds);
+    fn pair(&mut self, first: u32, tested: &Tested) {
+        for lane in lanes(tested.lanes) {
+            let (row, column) = (tested.rows[lane], tested.columns[lane]);
+            let taxel = row as usize * self.envelope.n_columns + column as usize;
+            let (low, high) = (f64::from(tested.low[lane]), f64::from(tested.high[lane]));
+            let height = &mut self.envelope.heights[taxel];
+            if *height <= low {
+                continue;
             }
+            *height = if high < *height { high } else { *height };
+            self.bound = if high < self.bound { high } else { self.bound };
+            self.waiting.push(Pair {
+                triangle: first + lane as u32,
+                taxel: taxel as u32,
+                row,
+                column,
+                low: tested.low[lane],
+            });
         }
-    }
-
-    /// Adds a pair to a list unless its taxel is stopped below. The height of the taxel is lowered to `high`, the upper bound of its exact height, metres.
-    #[inline(always)]
-    fn wait(&mut self, list: usize, pair: Pair, high: f32) {
-        let high = f64::from(high);
-        let height = &mut self.envelope.heights[pair.taxel as usize];
-        self.waiting[list].add(pair, *height > f64::from(pair.low));
-        *height = if high < *height { high } else { *height };
-        self.bound = if high < self.bound { high } else { self.bound };
-    }
-
-    /// Bounds the pairs whose taxels may be beside the faces of their triangles.
-    #[inline(always)]
-    fn bound_beside(&mut self, bounds: &BlockSearch) {
-        bounds.bound(&mut self.beside, self.is_in_front);
-        self.waiting[1].reserve(LANES);
-        let limit = self.limit();
-        for lane in 0..self.beside.n.min(LANES) {
-            let low = self.beside.low[lane];
-            let low = if f64::from(low) < limit {
-                low
-            } else {
-                f32::INFINITY
-            };
-            let pair = Pair {
-                low,
-                ..self.beside.pairs[lane]
-            };
-            self.wait(1, pair, self.beside.high[lane]);
-        }
-        self.beside.n = 0;
     }
 
     /// Evaluates the waiting pairs whose taxels are not certainly stopped by other triangles.
     #[inline(always)]
     fn evaluate_waiting(&mut self) {
-        for list in 0..2 {
-            for number in 0..self.waiting[list].n {
-                let pair = self.waiting[list].pairs[number];
-                let is_open = self.envelope.heights[pair.taxel as usize] > f64::from(pair.low);
-                self.faces.add(pair, is_open);
-                if self.faces.n == PAIRS {
-                    self.evaluate_batch(list);
-                }
+        for number in 0..self.waiting.len() {
+            let pair = self.waiting[number];
+            let is_open = self.envelope.heights[pair.taxel as usize] > f64::from(pair.low);
+            self.faces.add(pair, is_open);
+            if self.faces.n == PAIRS {
+                self.evaluate_faces();
             }
-            self.evaluate_batch(list);
-            self.waiting[list].n = 0;
         }
+        self.waiting.clear();
+        self.evaluate_faces();
         self.evaluate_edges();
-    }
-
-    #[inline(always)]
-    fn evaluate_batch(&mut self, list: usize) {
-        match list {
-            0 => self.evaluate_under(),
-            _ => self.evaluate_faces(),
-        }
-    }
-
-    /// Evaluates the faces of the waiting pairs whose taxels are certainly under the faces.
-    #[inline(always)]
-    fn evaluate_under(&mut self) {
-        self.faces
-            .evaluate_under((self.triangles, self.placement), self.lines);
-        let n = self.faces.n;
-        self.envelope
-            .lower_pairs(&self.faces.pairs, &self.faces.heights, n);
-        self.faces.n = 0;
     }
 
     /// Evaluates the waiting pairs of taxels and triangles.
