@@ -1,12 +1,14 @@
 //! Quantities that several checks of an audit need, computed once.
 
 use crate::audit::data::AuditData;
+use crate::audit::duplicate_pairs::DuplicatePairs;
 use crate::audit::scores::{Features, Scores, Tested, scores};
 use crate::audit::splits::{AuditSplit, splits, touches_of_classes};
 use crate::calibration::{RecordedSkin, plateau};
 use crate::error::Result;
 use crate::quantile::quantile;
 use crate::random::Seed;
+use bubbletouch_sim::audit::dependence::permutes_again;
 use bubbletouch_sim::audit::missing::{count_missing, fill_missing};
 use bubbletouch_sim::audit::pooled::{blocks_of, pooled, spans};
 use bubbletouch_sim::audit::taxels::{
@@ -20,6 +22,7 @@ use rand::seq::SliceRandom;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// Maximum number of touches in permutation tests and in statistics of taxels. More touches find smaller effects and take time in proportion to the square.
 const MAX_SAMPLE: usize = 1000;
@@ -93,6 +96,8 @@ pub struct Context {
     pub scores: Option<Scores>,
     /// Readability of the labels from sources other than the contact, by name of the source.
     pub readable: BTreeMap<&'static str, Readability>,
+    /// Near-duplicates, once they have been searched.
+    pub near_duplicates: OnceLock<Option<DuplicatePairs>>,
 }
 
 impl Context {
@@ -170,6 +175,7 @@ impl Context {
             splits,
             scores,
             readable: BTreeMap::new(),
+            near_duplicates: OnceLock::new(),
             data,
             options,
         })
@@ -182,10 +188,8 @@ impl Context {
 
     /// Returns whether a test needs another permutation after `n_done` permutations, of which `at_least` reach the observed value. If none of them does, more
     /// permutations resolve smaller p-values.
-    pub const fn permutes_again(&self, n_done: usize, at_least: usize) -> bool {
-        let n = self.options.n_permutations;
-        let extended = if n < 1000 { 4000 } else { 4 * n };
-        n_done < n || (at_least == 0 && n_done < extended)
+    pub fn permutes_again(&self, n_done: usize, at_least: usize) -> bool {
+        permutes_again(self.options.n_permutations, n_done, at_least)
     }
 
     /// Returns whether the labels contain at least two classes.

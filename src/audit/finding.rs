@@ -2,6 +2,7 @@
 
 use crate::statistics::many_tests::holm_of_some;
 use crate::table::short_number;
+use bubbletouch_svm::audit::Readability;
 
 /// Significance level of all tests of an audit together, after Holm's correction.
 pub const ALPHA: f64 = 0.05;
@@ -105,6 +106,14 @@ impl Finding {
             p_value: Some(p_value),
             ..Self::new(check, value, sentence, evidence)
         }
+    }
+
+    /// Creates a finding from the test whether the class can be read from a source other than the contact.
+    pub fn readable(found: &Readability, sentence: String, advice: &str) -> Self {
+        Self::tested("", found.accuracy, sentence, (found.p_value, true))
+            .against(found.chance)
+            .advice(advice)
+            .shown_in("confounds")
     }
 
     /// Creates a finding from a count.

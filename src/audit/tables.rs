@@ -255,8 +255,8 @@ fn doubtful_rows(context: &Context) -> Vec<DoubtfulRow> {
         class.cloned().unwrap_or_default()
     };
     let mut rows = Vec::new();
-    for (touch, other) in near_duplicates::pairs(context).map_or_else(Vec::new, |found| found.pairs)
-    {
+    let duplicates = near_duplicates::pairs(context).map_or(&[][..], |found| &found.pairs);
+    for &(touch, other) in duplicates {
         rows.push(DoubtfulRow {
             touch,
             class: name(touch),

@@ -134,12 +134,7 @@ fn at_rest(context: &Context) -> Option<Finding> {
         percent(found.chance)
     );
     let advice = "Leave frames without contact out of the labelled touches, subtract the level at rest of the session, and record the classes in random order.";
-    let finding = Finding::tested("", found.accuracy, sentence, (found.p_value, true))
-        .about("frames without contact")
-        .against(found.chance)
-        .advice(advice)
-        .shown_in("confounds");
-    Some(finding)
+    Some(Finding::readable(found, sentence, advice).about("frames without contact"))
 }
 
 /// Minimum number of frames at rest with which touches begin, and this number as a fraction of the frames. In recordings that begin with the contact, the
@@ -259,12 +254,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
             percent(found.chance)
         );
         let advice = "Align the touches at the beginning of the contact; otherwise the classifier may name how the recording was made.";
-        let finding = Finding::tested("", found.accuracy, sentence, (found.p_value, true))
-            .about("number of frames")
-            .against(found.chance)
-            .advice(advice)
-            .shown_in("confounds");
-        findings.push(finding);
+        findings.push(Finding::readable(found, sentence, advice).about("number of frames"));
     }
     let Some(found) = context.readable.get(SOURCE.name) else {
         let Some(quietest) = context.readable.get(QUIETEST.name) else {
@@ -291,10 +281,6 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         percent(found.chance)
     );
     let advice = "Subtract the frame before contact from each touch, or record the classes in random order; otherwise the classifier may name the session.";
-    let finding = Finding::tested("", found.accuracy, sentence, (found.p_value, true))
-        .against(found.chance)
-        .advice(advice)
-        .shown_in("confounds");
-    findings.push(finding);
+    findings.push(Finding::readable(found, sentence, advice));
     Ok(findings)
 }

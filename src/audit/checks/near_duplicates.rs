@@ -6,6 +6,7 @@
 
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::checks::mean_reading::shapes;
+use crate::audit::duplicate_pairs::{Comparison, DuplicatePairs};
 use crate::audit::finding::percent;
 use crate::audit::scores::{N_NEAREST, nearest};
 use bubbletouch_sim::audit::duplicates::test_duplicates;
@@ -36,31 +37,16 @@ pub const ABOUT: CheckAbout = CheckAbout {
 /// Display words of the comparison of touches as recorded.
 const AS_RECORDED: &str = "as recorded";
 
-/// Touches whose distances to other touches were tested.
-struct Comparison {
-    /// Display words of the comparison.
-    words: &'static str,
-    /// Number of tested touches.
-    n_tested: usize,
-    /// Probability of at least as many pairs by chance; for touches as recorded and for exact copies, the smallest p-value of a touch times the number of tested touches.
-    p_value: f64,
-    /// Touches with a near-duplicate, the nearest touch of each, and the p-value.
-    found: Vec<(usize, usize, f64)>,
-}
-
-/// Pairs of near-duplicates of an audit.
-pub struct Pairs {
-    /// Pairs of a touch and its near-duplicate, the pairs with the smallest p-values first.
-    pub pairs: Vec<(usize, usize)>,
-    /// p-value of the hypothesis that there are no near-duplicates.
-    p_value: f64,
-    /// Largest fraction of tested touches with a near-duplicate.
-    share: f64,
-    comparisons: Vec<Comparison>,
+/// Returns the near-duplicates, which are found at the first call; `None` if there are too few different touches.
+pub fn pairs(context: &Context) -> Option<&DuplicatePairs> {
+    context
+        .near_duplicates
+        .get_or_init(|| find(context))
+        .as_ref()
 }
 
 /// Finds near-duplicates. Returns `None` if there are too few different touches.
-pub fn pairs(context: &Context) -> Option<Pairs> {
+fn find(context: &Context) -> Option<DuplicatePairs> {
     let blocks = &context.features.blocks;
     // Rows with equal values of all blocks contain no contact.
     let has_contact: Vec<bool> = (blocks.std_axis(Axis(1), 0.0).iter())
@@ -134,7 +120,7 @@ pub fn pairs(context: &Context) -> Option<Pairs> {
         .map(|(row, (p, other))| (p, row, other))
         .collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    Some(Pairs {
+    Some(DuplicatePairs {
         pairs: found
             .into_iter()
             .map(|(_, row, other)| (row, other))

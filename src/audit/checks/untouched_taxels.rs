@@ -42,9 +42,5 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         percent(found.chance)
     );
     let advice = "Subtract the level of the untouched taxels from each frame, mask them, and record the classes in random order.";
-    let finding = Finding::tested("", found.accuracy, sentence, (found.p_value, true))
-        .against(found.chance)
-        .advice(advice)
-        .shown_in("confounds");
-    Ok(vec![finding])
+    Ok(vec![Finding::readable(found, sentence, advice)])
 }

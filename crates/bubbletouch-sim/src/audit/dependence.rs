@@ -12,7 +12,13 @@ use std::collections::BTreeMap;
 const MAX_LAG: usize = 10;
 
 /// Minimum number of permutations if none of fewer permutations reaches the observed value.
-const N_EXTENDED: u32 = 4000;
+const N_EXTENDED: usize = 4000;
+
+/// Returns whether a test of `n_permutations` permutations needs another one after `n_done` permutations, of which `at_least` reach the observed value. If none
+/// of them does, more permutations resolve smaller p-values.
+pub fn permutes_again(n_permutations: usize, n_done: usize, at_least: usize) -> bool {
+    n_done < n_permutations || (at_least == 0 && n_done < N_EXTENDED.max(4 * n_permutations))
+}
 
 /// Correlation of pairs of rows, and its permutation test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +88,6 @@ fn test(
     if pairs.is_empty() || scale <= 0.0 {
         return None;
     }
-    let n_permutations = u32::try_from(n_permutations).unwrap_or(u32::MAX / 4);
     let mut classes = BTreeMap::<usize, Vec<usize>>::new();
     for (row, &label) in labels.iter().enumerate() {
         classes.entry(label).or_default().push(row);
@@ -95,9 +100,7 @@ fn test(
     let observed = sum(&places);
     let mut rng = seed.named("dependence").rng();
     let (mut at_least, mut n_done) = (0, 0);
-    // More permutations resolve smaller p-values.
-    while n_done < n_permutations || (at_least == 0 && n_done < N_EXTENDED.max(4 * n_permutations))
-    {
+    while permutes_again(n_permutations, n_done, at_least) {
         n_done += 1;
         for rows in classes.values() {
             let mut shuffled = rows.clone();
@@ -107,11 +110,11 @@ fn test(
             }
         }
         // Equal sums in another order of addition differ by rounding.
-        at_least += u32::from(sum(&places) >= observed - 1e-9 * observed.abs());
+        at_least += usize::from(sum(&places) >= observed - 1e-9 * observed.abs());
     }
     Some(Dependence {
         correlation: observed / pairs.len() as f64 / scale,
-        p_value: f64::from(1 + at_least) / f64::from(1 + n_done),
+        p_value: (1 + at_least) as f64 / (1 + n_done) as f64,
     })
 }
 

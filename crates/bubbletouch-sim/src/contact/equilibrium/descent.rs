@@ -174,8 +174,7 @@ impl<'a, 'b> Descent<'a, 'b> {
                 (best, least) = (Some(self.scene.clone()), now);
             }
             if self.has_mesh {
-                let imbalances = self.imbalances(&self.workspace.now.pair_loads());
-                let imbalance = imbalances.into_iter().fold(change, f64::max);
+                let imbalance = self.largest_imbalance().max(change);
                 let unrest = (imbalance / ACCEPTED_IMBALANCE).max(now / ACCEPTED_RESIDUAL);
                 n_stagnant += 1;
                 if unrest < 0.5 * least_unrest {
@@ -215,10 +214,14 @@ impl<'a, 'b> Descent<'a, 'b> {
     }
 
     fn is_at_rest(&self, imbalance: f64, complementarity_residual: f64) -> bool {
-        let now = &self.workspace.now;
-        let imbalances = self.imbalances(&now.pair_loads()).into_iter();
-        imbalances.fold(0.0, f64::max) <= imbalance
+        self.largest_imbalance() <= imbalance
             && self.complementarity_residual() <= complementarity_residual
+    }
+
+    /// Returns the largest imbalance of all bodies.
+    fn largest_imbalance(&self) -> f64 {
+        let imbalances = self.imbalances(&self.workspace.now.pair_loads());
+        imbalances.into_iter().fold(0.0, f64::max)
     }
 
     /// Returns the largest complementarity residual of all islands, where an island is a group of bodies in contact.
