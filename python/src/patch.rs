@@ -2,7 +2,7 @@
 
 use crate::arrays::{each, points, to_column, to_rows, view, whole_number};
 use crate::batch::Spare;
-use crate::errors::{bad_input, check_folder, exception, guarded};
+use crate::errors::{bad_input, check_folder, check_readable, exception, guarded};
 use crate::mesh::Mesh;
 use crate::poses::Poses;
 use crate::press::output::Output;
@@ -56,17 +56,18 @@ impl Patch {
         Ok(Self::from_patch(patch.map_err(exception)?))
     }
 
-    /// Creates a patch with the taxels of a layout file. If no radius is given, the radii in the file are used, or else the default radius of the file.
+    /// Creates a patch with the taxels of a layout file. If no radius is given, the radii in the file are used, or else the default radius of the file. If no
+    /// stroke is given, it is the diameter of the taxel.
     fn from_file(
         file: LayoutFile,
-        stroke: f64,
+        stroke: Option<f64>,
         (taxel_radius, stiffness, damping): (Option<f64>, f64, f64),
     ) -> PyResult<Self> {
         let with_radius = |radius| Taxel {
             radius,
             stiffness,
             damping,
-            stroke,
+            stroke: stroke.unwrap_or(2.0 * radius),
         };
         let taxels = match (taxel_radius, &file.radii) {
             (None, Some(radii)) if radii.iter().any(|radius| *radius != radii[0]) => {
@@ -403,18 +404,19 @@ impl Patch {
     /// - .json: PaXini;
     /// - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
     ///
+    /// stroke: metres; None: the diameter of the taxel.
     /// mesh: surface that gives the normals, for files of iCub and PaXini without normals.
     /// taxel_radius: metres; None: the radius in the file, or half the median distance between neighbours.
     ///
     /// Frames have the shape (ny, nx) if the file numbers its taxels row by row in a complete image. Notes of the reader are issued as UserWarnings.
     /// Raises ValueError with the file and the row if the file is invalid, and OSError if it cannot be read.
     #[staticmethod]
-    #[pyo3(signature = (path, stroke, *, mesh=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    #[pyo3(signature = (path, stroke=None, *, mesh=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "a signature of Python")]
     fn read(
         py: Python,
         path: PathBuf,
-        stroke: f64,
+        stroke: Option<f64>,
         mesh: Option<&Mesh>,
         sensor: Option<&str>,
         taxel_radius: Option<f64>,
@@ -426,6 +428,7 @@ impl Patch {
                 mesh: mesh.map(Mesh::triangle_mesh),
                 sensor,
             };
+            check_readable(&path)?;
             let file = LayoutFile::read(&path, options).map_err(exception)?;
             warn(py, &file.notes)?;
             Self::from_file(file, stroke, (taxel_radius, stiffness, damping))
@@ -434,17 +437,18 @@ impl Patch {
 
     /// Returns a patch of taxels at given points, metres, (n, 3), with normals that point away from the substrate.
     ///
+    /// stroke: metres; None: the diameter of the taxel.
     /// normals: vectors of any length, (n, 3), or a Mesh whose surface gives the normals. Each point must be at most 5 mm from the mesh.
     /// taxel_radius: metres; None: half the median distance between neighbours.
     /// shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
     /// pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
     #[staticmethod]
-    #[pyo3(signature = (positions, normals, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0, shape=None, pixels=None))]
+    #[pyo3(signature = (positions, normals, stroke=None, *, taxel_radius=None, stiffness=100.0, damping=0.0, shape=None, pixels=None))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn from_points(
         positions: &Bound<PyAny>,
         normals: &Bound<PyAny>,
-        stroke: f64,
+        stroke: Option<f64>,
         taxel_radius: Option<f64>,
         stiffness: f64,
         damping: f64,
@@ -481,11 +485,12 @@ impl Patch {
     /// moves along −z of the pose to the first point of the mesh. Its axis is the outward normal of the triangle at this point. The centres and axes are
     /// in the frame of the mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
     ///
+    /// stroke: metres; None: the diameter of the taxel.
     /// missing: "error" raises ValueError if a taxel meets no outer face of the mesh. "drop" omits such taxels, and n_left_out counts them.
     ///
     /// Frames have the shape (ny, nx) if no taxel is omitted. `pixels` contains the row and column of each taxel in the grid.
     #[staticmethod]
-    #[pyo3(signature = (mesh, pose, ny, nx, pitch, stroke, *, missing="error", taxel_radius=None, stiffness=100.0, damping=0.0))]
+    #[pyo3(signature = (mesh, pose, ny, nx, pitch, stroke=None, *, missing="error", taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn projected(
         py: Python,
@@ -494,7 +499,7 @@ impl Patch {
         ny: i64,
         nx: i64,
         pitch: f64,
-        stroke: f64,
+        stroke: Option<f64>,
         missing: &str,
         taxel_radius: Option<f64>,
         stiffness: f64,
@@ -524,6 +529,7 @@ impl Patch {
             });
             let projected = projected.map_err(exception)?;
             mesh.warn_if_turned(py, &orientation)?;
+            let stroke = stroke.unwrap_or_else(|| 2.0 * taxel_radius.unwrap_or(0.5 * pitch));
             let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
             Ok(Self {
                 pixels: Some(projected.pixels),

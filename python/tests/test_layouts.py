@@ -248,3 +248,15 @@ def test_the_command_draws_and_converts(tmp_path: Path, command: Any) -> None:
         command("layout", tmp_path / "bad.csv", "--out", tmp_path / "bad.svg")
     assert caught.value.returncode == 2 and "bad.csv, row 2" in caught.value.stderr
     assert not (tmp_path / "bad.svg").exists()
+
+
+def test_the_default_stroke_is_the_diameter_of_a_taxel(tmp_path: Path, box: bt.Mesh) -> None:
+    points, normals = on_ball(9, 0.02)
+    assert bt.Patch.from_points(points, normals, taxel_radius=1e-3).stroke == 2e-3
+    assert bt.Patch.projected(box, [0, 0, 0.03, 1, 0, 0, 0], 3, 3, 4e-3).stroke == 4e-3
+    radii = np.linspace(0.8e-3, 1.2e-3, 9)
+    bt.Patch.from_arrays(points, normals, stroke=5e-3, taxel_radius=radii).write(tmp_path / "skin.csv")
+    np.testing.assert_array_equal(bt.Patch.read(tmp_path / "skin.csv").stroke, 2 * radii)
+    for name in ("no.csv", "no.npz", "no.urdf"):
+        with pytest.raises(FileNotFoundError, match=name):
+            bt.Patch.read(tmp_path / name)

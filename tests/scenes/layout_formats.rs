@@ -369,7 +369,7 @@ const KINDS: [Kind; 8] = [
         [
             Some("EOF"),
             Some("rotation: 2 matrices for 3 taxels; one matrix a taxel"),
-            Some("expected value at line 1"),
+            Some("row 2: `[\"NaN\""),
             Some("rotation, row 2: a matrix that is no rotation"),
             Some("rotation, row 2: a left-handed frame"),
         ],
@@ -561,4 +561,162 @@ fn an_array_of_a_robots_file_is_an_image_and_listed_taxels_may_have_radii() {
         (file.layout.n_taxels(), file.radii, file.pixels),
         (2, None, None)
     );
+}
+
+#[test]
+fn arrays_of_an_archive_may_have_other_usual_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let positions = Array2::from_shape_fn((6, 3), |(row, axis)| 1e-3 * (row * 3 + axis) as f64);
+    let normals = Array2::from_shape_fn((6, 3), |(_, axis)| f64::from(axis == 2));
+    let archive = |names: &[(&str, &Array2<f64>)]| {
+        let path = folder.path().join("skin.npz");
+        let mut npz = NpzWriter::new(File::create(&path).unwrap());
+        for (name, array) in names {
+            npz.add_array(*name, *array).unwrap();
+        }
+        npz.finish().unwrap();
+        read(&path)
+    };
+    let expected = archive(&[("positions", &positions), ("normals", &normals)]).unwrap();
+    for (one, other) in [
+        ("centers", "axes"),
+        ("points", "normals"),
+        ("xyz", "normal"),
+    ] {
+        let again = archive(&[(one, &positions), (other, &normals)]).unwrap();
+        assert_eq!(again.layout, expected.layout, "{one} {other}");
+    }
+    let twice = [
+        ("points", &positions),
+        ("xyz", &positions),
+        ("normals", &normals),
+    ];
+    let error = archive(&twice).unwrap_err().to_string();
+    assert!(
+        error.contains("the arrays points and xyz; one of them"),
+        "{error}"
+    );
+}
+
+#[test]
+fn every_changed_byte_of_an_archives_numbers_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("skin.npz");
+    layouts()[2].write(&path, None).unwrap();
+    let whole = fs::read(&path).unwrap();
+    let original = read(&path).unwrap();
+    for changed in (0..whole.len()).step_by(5) {
+        let mut bytes = whole.clone();
+        bytes[changed] ^= 0x55;
+        fs::write(&path, &bytes).unwrap();
+        if let Ok(again) = read(&path) {
+            assert_eq!(again.layout, original.layout, "byte {changed}");
+        }
+    }
+}
+
+#[test]
+fn a_fault_of_a_text_format_is_named_with_its_row_or_element() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |name: &str, text: &str, wanted: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains(wanted), "{error}");
+    };
+    let points = "{\"points\": [[1, 2, 3], [4, NaN, 6]], \"normals\": [[0, 0, 1], [0, 0, 1]]}";
+    refused("nan.json", points, "row 2: `[4,\"NaN\",6]`");
+    refused(
+        "inf.json",
+        &points.replace("NaN", "-Infinity"),
+        "row 2: `[4,\"infinite\",6]`",
+    );
+    let sensor = |inside: &str| {
+        format!(
+            "<robot name='r'>\n<link name='palm'/>\n<sensor name='s'><parent link='palm'/>\n\
+             <tactile>\n{inside}\n</tactile></sensor></robot>"
+        )
+    };
+    for (inside, wanted) in [
+        (
+            "<array rows='2' cols='2' size='-1 1' spacing='1 1'/>",
+            "line 5: `size` -1 1; positive",
+        ),
+        (
+            "<array rows='2' cols='2' size='1 1' spacing='0 0'/>",
+            "line 5: `spacing` 0 0; distances in metres, not zero",
+        ),
+        (
+            "<taxel idx='1' xyz='0 0 0'/>\n<taxel idx='1' xyz='1 0 0'/>",
+            "line 6: a second taxel with `idx` 1",
+        ),
+        (
+            "<taxel idx='-1' xyz='0 0 0'/>",
+            "line 5: `idx` -1; an integer from 0",
+        ),
+    ] {
+        refused("sensor.urdf", &sensor(inside), wanted);
+    }
+    let whole = sensor("<taxel idx='0' xyz='0 0 0'/>");
+    refused("cut.urdf", &whole[..whole.len() - 20], "cut.urdf, line 6: ");
+    // Three prismatic joints along left-handed axes.
+    let joint = |parent: &str, child: &str, axis: &str| {
+        format!(
+            "<link name='{child}'/><joint name='{child}' type='prismatic'><parent link='{parent}'/>\
+             <child link='{child}'/><axis xyz='{axis}'/></joint>\n"
+        )
+    };
+    let joints =
+        joint("palm", "x", "1 0 0") + &joint("x", "y", "0 1 0") + &joint("y", "z", "0 0 -1");
+    let left = format!("<robot name='r'><link name='palm'/>\n{joints}</robot>");
+    refused("left.urdf", &left, "joint `x`: a left-handed frame");
+}
+
+#[test]
+fn parts_that_are_left_out_are_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.urdf");
+    let sensor = |inside: &str| {
+        let text = format!(
+            "<robot name='r'><link name='palm'/><sensor name='s'><parent link='palm'/>\
+             <tactile>{inside}</tactile></sensor></robot>"
+        );
+        fs::write(&path, text).unwrap();
+        read(&path).unwrap()
+    };
+    let taxels = "<taxel idx='0' xyz='0 0 0'/><taxel idx='3' xyz='1 0 0'/>";
+    let file = sensor(taxels);
+    assert!(
+        file.notes[0].contains("2 taxels for 4 channels"),
+        "{:?}",
+        file.notes
+    );
+    let file = sensor(&format!("{taxels}<array rows='2' cols='2' size='1 1'/>"));
+    assert!(
+        file.notes[1].contains("<array> beside <taxel>s"),
+        "{:?}",
+        file.notes
+    );
+}
+
+#[test]
+fn rows_of_icub_without_a_section_and_points_with_named_coordinates_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        read(&path)
+    };
+    let icub = "name palm\nspatial_sampling taxel\ntaxel2Repr (0 1 2)\n0.001 0.002 0.003 0 0 1\n0 0 0 0 0 0\n-0.004 0.005 0.006 0 0 2\n";
+    let read = file("palm.txt", icub).unwrap();
+    assert_eq!(read.layout.centers()[1], DVec3::new(-4e-3, 5e-3, 6e-3));
+    assert_eq!(read.layout.axes()[1], DVec3::Z);
+    let error = file("cut.txt", &icub.replace(" 0 0 2", ""))
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("row 6: 3 numbers; six numbers"), "{error}");
+    let points = "[{\"x\": 1, \"y\": 2, \"z\": 3}, {\"z\": 6, \"y\": 5, \"x\": 4}]";
+    let text = format!("{{\"points\": {points}, \"normals\": [[0, 0, 1], [0, 1, 0]]}}");
+    let read = file("s.json", &text).unwrap();
+    assert_eq!(read.layout.centers()[1], DVec3::new(4e-3, 5e-3, 6e-3));
 }

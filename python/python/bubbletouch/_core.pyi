@@ -543,7 +543,7 @@ class Patch:
     def from_points(
         positions: ArrayLike,
         normals: ArrayLike | Mesh,
-        stroke: float,
+        stroke: float | None = None,
         *,
         taxel_radius: float | None = None,
         stiffness: float = 100.0,
@@ -553,6 +553,7 @@ class Patch:
     ) -> Patch:
         """Returns a patch of taxels at given points, metres, (n, 3), with normals that point away from the substrate.
 
+        stroke: metres; None: the diameter of the taxel.
         normals: vectors of any length, (n, 3), or a Mesh whose surface gives the normals. Each point must be at most 5 mm from the mesh.
         taxel_radius: metres; None: half the median distance between neighbours.
         shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
@@ -566,7 +567,7 @@ class Patch:
         ny: int,
         nx: int,
         pitch: float,
-        stroke: float,
+        stroke: float | None = None,
         *,
         missing: Literal["error", "drop"] = "error",
         taxel_radius: float | None = None,
@@ -579,6 +580,7 @@ class Patch:
         moves along −z of the pose to the first point of the mesh. Its axis is the outward normal of the triangle at this point. The centres and axes are
         in the frame of the mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
 
+        stroke: metres; None: the diameter of the taxel.
         missing: "error" raises ValueError if a taxel meets no outer face of the mesh. "drop" omits such taxels, and n_left_out counts them.
 
         Frames have the shape (ny, nx) if no taxel is omitted. `pixels` contains the row and column of each taxel in the grid.
@@ -587,7 +589,7 @@ class Patch:
     @staticmethod
     def read(
         path: str | PathLike[str],
-        stroke: float,
+        stroke: float | None = None,
         *,
         mesh: Mesh | None = None,
         sensor: str | None = None,
@@ -605,6 +607,7 @@ class Patch:
         - .json: PaXini;
         - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
 
+        stroke: metres; None: the diameter of the taxel.
         mesh: surface that gives the normals, for files of iCub and PaXini without normals.
         taxel_radius: metres; None: the radius in the file, or half the median distance between neighbours.
 

@@ -73,7 +73,7 @@ pub fn read_header(place: &str, reader: &mut (impl Read + ?Sized)) -> Result<Hea
 /// Reads an array in `.npy` format that occupies `length` bytes.
 ///
 /// # Errors
-/// If the header is damaged, the elements are neither numbers nor texts, or their number differs from the header.
+/// If the header is damaged, the elements are neither numbers nor texts, or their number differs from the header. If the checksum of an archive differs.
 pub fn read(place: &str, reader: &mut dyn Read, length: u64) -> Result<FileArray> {
     let header = read_header(place, reader)?;
     let size = header.elements.size;
@@ -103,6 +103,10 @@ pub fn read(place: &str, reader: &mut dyn Read, length: u64) -> Result<FileArray
         header.elements.decode(block, &mut elements);
         n_left -= block.len() / size;
     }
+    // At the end of a member, the archive reader compares the checksum.
+    let at_end = reader.read(&mut [0]);
+    at_end
+        .map_err(|error| Error::input(place, format!("damaged: {error}"), "a whole .npy file"))?;
     if size == 0 {
         elements = Elements::Texts(vec![String::new(); n]);
     }

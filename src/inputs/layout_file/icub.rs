@@ -1,5 +1,5 @@
 //! Position files of iCub's skin (`icub-main/app/skinGui/conf/positions`). A file has keys such as `name` and `taxel2Repr`, and a section `[calibration]` with
-//! one row `x y z nx ny nz` (positions in metres) for each taxel. Rows of zeros belong to channels without a taxel. Some files have positions only, with zeros
+//! one row `x y z nx ny nz` (positions in metres) for each taxel. In a file without sections, each line that begins with a number is a row. Rows of zeros belong to channels without a taxel. Some files have positions only, with zeros
 //! for all normals; a mesh then gives the normals.
 
 use super::LayoutFile;
@@ -13,6 +13,8 @@ use glam::DVec3;
 pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
     let (mut taxels, mut rows, mut n_unused) = (Vec::new(), Vec::new(), 0);
     let mut n_represented = None;
+    // In a file without sections, the rows begin with a number or a parenthesis.
+    let has_sections = text.lines().any(|line| line.trim_start().starts_with('['));
     let mut is_row = false;
     for (index, line) in text.lines().enumerate() {
         // YARP's comments begin with `#` or `//`.
@@ -26,6 +28,10 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
         if let Some(numbers) = line.strip_prefix("taxel2Repr") {
             let numbers = numbers.split(|c: char| c == '(' || c == ')' || c.is_whitespace());
             n_represented = Some(numbers.filter(|number| !number.is_empty()).count());
+        }
+        if !has_sections {
+            is_row =
+                line.starts_with(|first: char| first.is_ascii_digit() || "+-.(".contains(first));
         }
         if line.is_empty() || !is_row {
             continue;

@@ -132,6 +132,7 @@ impl LayoutFile {
         Ok(Self {
             link: Some(sensor.link.clone()),
             radii: sensor.radii.clone(),
+            notes: sensor.notes.clone(),
             ..match &sensor.pixels {
                 Some(pixels) => read.with_pixels(pixels.clone()),
                 None => read,

@@ -1,6 +1,6 @@
 //! Layouts stored as NumPy archives, in one of two forms. The first form has `positions` (n × 3, metres), `normals` (n × 3), and optionally `radii` (n, metres)
 //! and `pixels` (n × 2: row, column). The second form, used for Analog Devices' DEX-01, has `poses` (n × 3 × 4) and `taxel2pixel` (n × 2), and optionally
-//! `radii`. A pose is a rotation matrix, whose third column is the normal, followed by the position in metres.
+//! `radii`. A pose is a rotation matrix, whose third column is the normal, followed by the position in metres. [`NAMES`] lists other names of the arrays.
 
 use super::LayoutFile;
 use crate::error::{Error, Result};
@@ -12,20 +12,31 @@ use ndarray_npy::{NpzWriter, WriteNpzError};
 use std::io::Cursor;
 use std::path::Path;
 
+/// Names of the arrays. The first name of a row is the name that is written; the reader accepts all names of the row.
+const NAMES: [&[&str]; 5] = [
+    &["positions", "position", "points", "centers", "xyz"],
+    &["normals", "normal", "axes"],
+    &["radii", "radius", "taxel_radius"],
+    &["pixels", "taxel2pixel"],
+    &["poses"],
+];
+const ALLOWED: &str = "positions and normals, or poses";
+
 /// Reads a layout of taxels from a `.npz` archive of NumPy arrays.
 pub(super) fn read(path: &Path) -> Result<LayoutFile> {
     let place = path.display().to_string();
     let names = crate::inputs::arrays::member_names(path)?;
-    let has = |name: &str| names.iter().any(|known| known == name);
-    let read = |name: &str, shape: &[Option<usize>]| -> Result<ArrayD<f64>> {
-        if !has(name) {
-            let given = format!("no array {name} (the arrays {})", names.join(", "));
-            return Err(Error::input(
-                &place,
-                given,
-                "positions and normals, or poses",
-            ));
+    let mut found = [None; NAMES.len()];
+    for (found, known) in found.iter_mut().zip(NAMES) {
+        let mut same = names.iter().filter(|name| known.contains(&name.as_str()));
+        *found = same.next().map(String::as_str);
+        if let Some(second) = same.next() {
+            let given = format!("the arrays {} and {second}", found.unwrap_or_default());
+            return Err(Error::input(&place, given, "one of them"));
         }
+    }
+    let [positions, normals, radii, pixels, poses] = found;
+    let read = |name: &str, shape: &[Option<usize>]| -> Result<ArrayD<f64>> {
         let array = FileArray::read(path, name)?.into_numbers()?;
         let fits = |(length, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|w| w == *length);
         if array.ndim() == shape.len() && array.shape().iter().zip(shape).all(fits) {
@@ -40,21 +51,26 @@ pub(super) fn read(path: &Path) -> Result<LayoutFile> {
             allowed.join(" × "),
         ))
     };
-    let taxels = match (has("poses"), has("positions")) {
-        (true, false) => from_poses(&place, &read("poses", &[None, Some(3), Some(4)])?)?,
-        (false, true) => {
-            let positions = vectors(&read("positions", &[None, Some(3)])?);
-            let normals = vectors(&read("normals", &[Some(positions.len()), Some(3)])?);
+    let taxels = match (poses, positions, normals) {
+        (Some(poses), None, _) => from_poses(&place, &read(poses, &[None, Some(3), Some(4)])?)?,
+        (None, Some(positions), Some(normals)) => {
+            let positions = vectors(&read(positions, &[None, Some(3)])?);
+            let normals = vectors(&read(normals, &[Some(positions.len()), Some(3)])?);
             positions.into_iter().zip(normals).collect()
         }
+        (None, Some(_), None) => {
+            let given = format!("no array normals (the arrays {})", names.join(", "));
+            return Err(Error::input(place, given, ALLOWED));
+        }
         _ => {
-            let given = format!("the arrays {}", names.join(", "));
-            let allowed = "positions and normals, or poses";
-            return Err(Error::input(place, given, allowed));
+            let given = match names.is_empty() {
+                true => "no arrays".to_owned(),
+                false => format!("the arrays {}", names.join(", ")),
+            };
+            return Err(Error::input(place, given, ALLOWED));
         }
     };
     let n = taxels.len();
-    let pixels = ["pixels", "taxel2pixel"].into_iter().find(|name| has(name));
     let pixels = pixels.map(|name| -> Result<_> {
         let pixels = read(name, &[Some(n), Some(2)])?;
         let whole = |(row, number): (usize, &f64)| {
@@ -71,14 +87,14 @@ pub(super) fn read(path: &Path) -> Result<LayoutFile> {
             .map(|pixel| [pixel[0], pixel[1]])
             .collect())
     });
-    let radii = has("radii").then(|| {
-        let radii = read("radii", &[Some(n)])?.into_iter().collect::<Vec<f64>>();
+    let radii = radii.map(|name| {
+        let radii = read(name, &[Some(n)])?.into_iter().collect::<Vec<f64>>();
         match radii
             .iter()
             .position(|radius| !(radius.is_finite() && *radius > 0.0))
         {
             Some(row) => {
-                let place = format!("{place}, radii, row {}", row + 1);
+                let place = format!("{place}, {name}, row {}", row + 1);
                 Err(Error::input(
                     place,
                     radii[row],

@@ -14,7 +14,10 @@ const ALLOWED: &str = "points [x, y, z] in mm: a list, or the member taxels_mm, 
 
 /// Reads a layout of taxels from the text of a PaXini JSON file. If the file has no normals, they are computed from the mesh.
 pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
-    let json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
+    let text = text.trim_start_matches('\u{feff}');
+    // Python writes NaN and Infinity, which are not JSON. As texts, they are refused with their row.
+    let json: Value = serde_json::from_str(text)
+        .or_else(|error| serde_json::from_str(&quoted_not_finite(text)).map_err(|_| error))
         .map_err(|e| Error::input(place, e, ALLOWED))?;
     let units = json.get("units").or_else(|| json.get("unit"));
     let exponent = match units.map(|units| units.as_str().unwrap_or_default().to_lowercase()) {
@@ -33,11 +36,18 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
     let points = points.unwrap_or(&json).as_array();
     let points = points.ok_or_else(|| Error::input(place, "no list of points", ALLOWED))?;
     let row_numbers = |what: &str, row: usize, value: &Value, allowed: &str| {
-        let numbers = value.as_array().map(|numbers| {
-            let numbers = numbers.iter().map(Value::as_f64);
-            numbers.collect::<Option<Vec<f64>>>()
-        });
-        numbers.flatten().ok_or_else(|| {
+        // A vector is a list, or an object with the members x, y and z.
+        let numbers = match value {
+            Value::Object(members) if members.len() == 3 => {
+                let numbers = ["x", "y", "z"].map(|axis| members.get(axis)?.as_f64());
+                numbers.into_iter().collect::<Option<Vec<f64>>>()
+            }
+            _ => value.as_array().and_then(|numbers| {
+                let numbers = numbers.iter().map(Value::as_f64);
+                numbers.collect::<Option<Vec<f64>>>()
+            }),
+        };
+        numbers.ok_or_else(|| {
             let place = format!("{place}, {what}row {}", row + 1);
             Error::input(place, format!("`{value}`"), allowed)
         })
@@ -127,6 +137,13 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
             Err(Error::input(place, "points without normals", allowed))
         }
     }
+}
+
+/// Returns the text with quotation marks around the words NaN and Infinity.
+fn quoted_not_finite(text: &str) -> String {
+    let text = text.replace("-Infinity", "Infinity");
+    let text = text.replace("Infinity", "\"infinite\"");
+    text.replace("NaN", "\"NaN\"")
 }
 
 /// Returns the layout as the text of a PaXini JSON file with rotations.

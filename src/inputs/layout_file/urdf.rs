@@ -17,7 +17,8 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
     for sensor in robot.tactile_sensors() {
         all.insert(sensor.name.clone(), LayoutFile::of_sensor(place, sensor));
     }
-    for (link, taxels) in prismatic_taxels(place, &robot) {
+    let (prismatic, fault) = prismatic_taxels(place, &robot);
+    for (link, taxels) in prismatic {
         if let Entry::Vacant(place_of_link) = all.entry(link.clone()) {
             let file = taxels.and_then(|taxels| LayoutFile::in_order(place, taxels));
             place_of_link.insert(file.map(|file| LayoutFile {
@@ -31,6 +32,10 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
         Err(fault) => fault,
         Ok(()) => Error::input(place, given, allowed),
     };
+    if let (true, Some(fault)) = (all.is_empty(), fault) {
+        Robot::check_tactile_sensors(place, text)?;
+        return Err(fault);
+    }
     let names = all.keys().map(String::as_str);
     let names = names.collect::<Vec<_>>().join(", ");
     let name = match (sensor, all.len()) {
@@ -62,13 +67,18 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
 type Taxel = (DVec3, DVec3);
 
 /// Returns the taxels of each link in file order. Three prismatic joints along x, y and z connect a taxel to its link. The normal of a taxel is the axis of the
-/// third joint. If one chain of prismatic joints on a link is a taxel and another chain is not, the link has an error.
-fn prismatic_taxels(place: &str, robot: &Robot) -> BTreeMap<String, Result<Vec<Taxel>>> {
+/// third joint. If one chain of prismatic joints on a link is a taxel and another chain is not, the link has an error. Also returns the first fault of a chain of
+/// three joints.
+fn prismatic_taxels(
+    place: &str,
+    robot: &Robot,
+) -> (BTreeMap<String, Result<Vec<Taxel>>>, Option<Error>) {
     let joints = robot.joints();
     let is_slide = |kind: JointKind| kind == JointKind::Prismatic;
     let below = |link: usize| joints.iter().filter(move |joint| joint.parent == link);
     let mut taxels: BTreeMap<String, Vec<Taxel>> = BTreeMap::new();
     let mut faults: BTreeMap<String, Error> = BTreeMap::new();
+    let mut first_fault = None;
     for first in joints.iter().filter(|joint| is_slide(joint.kind)) {
         // The parent link of the first prismatic joint of a chain is not moved by another prismatic joint.
         if joints
@@ -89,8 +99,11 @@ fn prismatic_taxels(place: &str, robot: &Robot) -> BTreeMap<String, Result<Vec<T
             Err(given) => {
                 let place = format!("{place}, joint `{}`", first.name);
                 let allowed = "three joints of a taxel, along right-handed axes x, y and z";
-                let fault = Error::input(place, given, allowed);
-                faults.entry(link).or_insert(fault);
+                let fault = || Error::input(&place, &given, allowed);
+                if chain.len() == 3 {
+                    first_fault.get_or_insert_with(fault);
+                }
+                faults.entry(link).or_insert_with(fault);
             }
         }
     }
@@ -98,7 +111,7 @@ fn prismatic_taxels(place: &str, robot: &Robot) -> BTreeMap<String, Result<Vec<T
         let fault = faults.remove(&link);
         (link, fault.map_or(Ok(taxels), Err))
     };
-    taxels.into_iter().map(of_link).collect()
+    (taxels.into_iter().map(of_link).collect(), first_fault)
 }
 
 /// Returns the taxel at the end of a chain of prismatic joints, in the frame of the chain's link. If the chain moves no taxel, returns a description of the

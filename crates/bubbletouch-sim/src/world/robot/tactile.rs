@@ -21,6 +21,8 @@ pub struct TactileSensor {
     pub radii: Option<Vec<f64>>,
     /// Row and column of each taxel of an array, shape (n_taxels,). `None` for taxels that are listed one by one.
     pub pixels: Option<Vec<[usize; 2]>>,
+    /// Notes on parts of the sensor that are not read, or on channels without a taxel.
+    pub notes: Vec<String>,
 }
 
 /// Largest allowed number of taxels of an array. A larger number indicates a mistake in the file.
@@ -39,6 +41,9 @@ pub(super) fn read_tactile_sensors(robot: Element) -> Vec<TactileSensor> {
             place.link.unwrap_or("without a name"),
         );
         let sensor = read_sensor(tactile, &place);
+        for note in sensor.iter().flat_map(|sensor| &sensor.notes) {
+            tactile.lines.note(note.clone());
+        }
         tactile.or_note(sensor.map(Some), None, &consequence)
     });
     sensors.collect()
@@ -102,14 +107,28 @@ fn read_sensor(tactile: Element, place: &Place) -> Result<TactileSensor> {
         .enumerate()
         .map(|(number, taxel)| {
             let index = taxel.number("idx")?.unwrap_or(number as f64);
+            if index < 0.0 || index.fract() != 0.0 || index >= MAX_TAXELS as f64 {
+                return Err(taxel.refuse(format!("`idx` {index}"), "an integer from 0"));
+            }
             let xyz = taxel.numbers("xyz")?.unwrap_or([0.0; 3]);
             let rpy = taxel.numbers("rpy")?.unwrap_or([0.0; 3]);
             let pose = Pose::new(rotation_from_rpy(DVec3::from(rpy)), DVec3::from(xyz));
-            Ok((index, pose, sphere_radius(taxel)?))
+            Ok((index, pose, sphere_radius(taxel)?, taxel))
         })
         .collect::<Result<Vec<_>>>()?;
     listed.sort_by(|one, other| one.0.total_cmp(&other.0));
-    let radii = listed.iter().map(|(_, _, radius)| *radius).collect();
+    if let Some(twice) = listed.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        let given = format!("a second taxel with `idx` {}", twice[1].0);
+        return Err(twice[1].3.refuse(given, "one taxel for each channel"));
+    }
+    let mut notes = Vec::new();
+    let n_channels = listed.last().map_or(0, |(index, ..)| *index as usize + 1);
+    if n_channels > listed.len() {
+        let given = format!("{} taxels for {n_channels} channels", listed.len());
+        let allowed = "channels without a taxel are left out";
+        notes.push(tactile.refuse(given, allowed).to_string());
+    }
+    let radii = listed.iter().map(|(_, _, radius, _)| *radius).collect();
     let (taxels, radii, pixels) = match (listed.is_empty(), tactile.child("array")?) {
         (true, Some(array)) => {
             let taxels = array_taxels(array)?;
@@ -124,10 +143,10 @@ fn read_sensor(tactile: Element, place: &Place) -> Result<TactileSensor> {
                 // urdf_tactile ignores the array, too.
                 let given = "<array> beside <taxel>s";
                 let note = tactile.refuse(given, "one of them: the array is not read");
-                tactile.lines.note(note.to_string());
+                notes.push(note.to_string());
             }
             (
-                listed.into_iter().map(|(_, pose, _)| pose).collect(),
+                listed.into_iter().map(|(_, pose, ..)| pose).collect(),
                 radii,
                 None,
             )
@@ -140,6 +159,7 @@ fn read_sensor(tactile: Element, place: &Place) -> Result<TactileSensor> {
         taxels,
         radii,
         pixels,
+        notes,
     })
 }
 
@@ -175,10 +195,19 @@ fn array_taxels(array: Element) -> Result<Vec<(Pose, [usize; 2])>> {
         return Err(array.refuse(given, format!("at most {MAX_TAXELS}")));
     }
     let size = array.numbers::<2>("size")?;
+    if let Some(size) = size.filter(|size| size.iter().any(|length| *length <= 0.0)) {
+        let given = format!("`size` {} {}", size[0], size[1]);
+        return Err(array.refuse(given, "positive lengths in metres"));
+    }
     let spacing = array.numbers::<2>("spacing")?.or(size);
     let Some([along_x, along_y]) = spacing else {
         return Err(array.refuse("<array> without size and spacing", "one of them"));
     };
+    if (rows > 1 && along_x == 0.0) || (columns > 1 && along_y == 0.0) {
+        let given = format!("`spacing` {along_x} {along_y}");
+        let allowed = "distances in metres, not zero; without spacing, the size";
+        return Err(array.refuse(given, allowed));
+    }
     let [x, y] = array.numbers::<2>("offset")?.unwrap_or([0.0; 2]);
     let is_by_rows = match array.node.attribute("order") {
         None | Some("row-major") => true,

@@ -86,7 +86,12 @@ pub(super) fn unreadable(place: &str, text: &str, error: &Error, format: &str) -
     let given = said
         .rsplit_once(" at ")
         .map_or(said.as_str(), |(given, _)| given);
-    let place = format!("{place}, line {}", error.pos().row);
+    // The XML reader has no position for the end of the text.
+    let line = match error {
+        Error::UnexpectedEndOfStream | Error::UnclosedRootNode => text.lines().count() as u32,
+        _ => error.pos().row,
+    };
+    let place = format!("{place}, line {line}");
     InputError::input(place, given, format!("{format}: well-formed XML"))
 }
 
