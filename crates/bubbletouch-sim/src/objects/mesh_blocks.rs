@@ -66,6 +66,9 @@ pub(crate) struct Block {
     pub normal: [Lane; 3],
     /// Largest distances of the directions of contact from the normals.
     pub spread: Lane,
+    /// Bits of the sides beyond which a triangle can stop balls: the side or a corner of the side is evaluated for the triangle. Bit [`ALL_SIDES`] + k is for
+    /// side k; bit [`OUTER_SIDES`] + k and [`INNER_SIDES`] + k are for contact from the side of the normal and from the other side, if the directions are certain.
+    pub sides: [u32; LANES],
     /// Index of the first triangle; the triangles of the other lanes follow.
     pub first: u32,
     /// One bit for each lane that contains a triangle.
@@ -81,6 +84,15 @@ pub(crate) struct ContactTriangle {
     pub corners: [DVec3; 3],
     pub face: ContactFace,
 }
+
+/// First bits of [`Block::sides`].
+pub(crate) const ALL_SIDES: u32 = 0;
+pub(crate) const OUTER_SIDES: u32 = 3;
+pub(crate) const INNER_SIDES: u32 = 6;
+
+/// Sine of the angle between two triangles from which their common edge counts as convex or concave. If smaller, the rounding of the evaluation may decide; if
+/// larger, more pairs are evaluated needlessly.
+const BENT: f64 = 1e-2;
 
 const UNUSED: Lane = [0.0; LANES];
 
@@ -211,6 +223,7 @@ impl Builder<'_> {
             corners: [[UNUSED; 3]; 3],
             normal: [UNUSED; 3],
             spread: UNUSED,
+            sides: [0; LANES],
             first: self.built.triangles.len() as u32,
             used: 0,
         };
@@ -224,10 +237,27 @@ impl Builder<'_> {
                 block.normal[k][lane] = face.normal[k] as f32;
             }
             block.spread[lane] = face.spread as f32;
+            block.sides[lane] = sides(&face, &corners);
             block.used |= 1 << lane;
             self.built.triangles.push(ContactTriangle { corners, face });
         }
         self.built.blocks.push(block);
         (self.built.blocks.len() - 1) as u32
     }
+}
+
+/// Returns the bits of [`Block::sides`] of a triangle. Balls touch a convex edge from the side of the normals only, and a concave edge from the other side only.
+fn sides(face: &ContactFace, corners: &[DVec3; 3]) -> u32 {
+    (0..3).fold(0, |bits, k| {
+        let next = (k + 1) % 3;
+        let outward = (corners[next] - corners[k]).cross(face.normal);
+        // Zero if the neighbour is unknown.
+        let rise = -face.across[k].dot(outward.normalize_or_zero());
+        let has_corner = face.has_corner(k) || face.has_corner(next);
+        let bit =
+            |is_open: bool, first: u32| u32::from(is_open || has_corner) << (first + k as u32);
+        bits | bit(face.has_edge(k), ALL_SIDES)
+            | bit(face.has_edge(k) && rise > -BENT, OUTER_SIDES)
+            | bit(face.has_edge(k) && rise < BENT, INNER_SIDES)
+    })
 }

@@ -14,8 +14,11 @@
 )]
 
 use super::lines::{GridLines, Lines};
+use super::pair_batch::Pair;
 use crate::geometry::Pose;
-use crate::objects::mesh_blocks::{Block, BlockNode, LANES, Lane, MeshBlocks};
+use crate::objects::mesh_blocks::{
+    ALL_SIDES, Block, BlockNode, INNER_SIDES, LANES, Lane, MAX_DEPTH, MeshBlocks, OUTER_SIDES,
+};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
@@ -76,6 +79,9 @@ impl LaneLines {
         self.first + line * self.pitch
     }
 }
+
+/// Bit of a triangle whose parts may all stop taxels at any place.
+const ANY_PART: u32 = 1 << 3;
 
 /// Number 2²³, from which numbers in single precision have no fractions.
 const WHOLE: f32 = 8_388_608.0;
@@ -148,17 +154,21 @@ pub(super) struct PlacedBlock {
     /// Numbers of columns and rows of the candidates of triangles with few candidates; no rows for other triangles.
     n_columns: Lane,
     n_rows: Lane,
-    /// Corners (x, y), moved by the radius along the directions of contact, metres.
-    corners: [[Lane; 2]; 3],
+    /// Corners, metres.
+    corners: [[Lane; 3]; 3],
+    /// Vector (x, y) by which the face is moved, metres: the radius along the normal that points down; zero if the triangle is steep.
+    moved: [Lane; 2],
     /// −1 if the triangle is clockwise seen from above, otherwise 1.
     sign: Lane,
-    /// Distance beside the triangle, metres, from which taxels are not stopped.
+    /// Bits of the sides beyond which the triangle may stop taxels, or [`ANY_PART`].
+    sides: [u32; LANES],
+    /// Distance beside the moved triangle, metres, from which taxels are not stopped.
     wide: Lane,
-    /// Height at which the plane of the face stops a taxel at the first corner, metres, and its slope along x and y.
+    /// Height at which the plane of the face stops a taxel at the first corner of the moved triangle, metres, and its slope along x and y.
     height: Lane,
     slope: [Lane; 2],
-    /// Distances of the lower and the upper bound of a taxel's height from this height, metres; infinite if the triangle is steep, or if the directions of contact
-    /// are not certain. The upper bound is valid for taxels under the face.
+    /// Distances of the lower and the upper bound of a taxel's height from this height, metres; infinite if the triangle is steep. The upper bound is valid for
+    /// taxels under the face, and is infinite if the triangle may be behind the substrate.
     below: Lane,
     above: Lane,
 }
@@ -169,8 +179,10 @@ impl PlacedBlock {
         n_few: 0,
         n_columns: [0.0; LANES],
         n_rows: [0.0; LANES],
-        corners: [[[0.0; LANES]; 2]; 3],
+        corners: [[[0.0; LANES]; 3]; 3],
+        moved: [[0.0; LANES]; 2],
         sign: [0.0; LANES],
+        sides: [0; LANES],
         wide: [0.0; LANES],
         height: [0.0; LANES],
         slope: [[0.0; LANES]; 2],
@@ -185,12 +197,86 @@ impl PlacedBlock {
 pub(super) struct Tested {
     pub columns: [u32; LANES],
     pub rows: [u32; LANES],
+    pub taxels: [u32; LANES],
+    pub x: Lane,
+    pub y: Lane,
     /// Lower bounds of the heights at which the triangles stop the taxels, metres.
     pub low: Lane,
     /// Upper bounds of these heights, metres; infinite if a triangle may not stop the taxel.
     pub high: Lane,
     /// One bit for each triangle that may stop the taxel.
     pub lanes: u32,
+    /// One bit for each triangle whose face certainly stops the taxel.
+    pub faces: u32,
+}
+
+impl Tested {
+    /// Returns the pair of the triangle in a lane and its taxel. The first triangle of the block has the index `first`.
+    #[inline(always)]
+    pub fn pair(&self, first: u32, lane: usize) -> Pair {
+        Pair {
+            triangle: first + lane as u32,
+            taxel: self.taxels[lane],
+            row: self.rows[lane],
+            column: self.columns[lane],
+            low: self.low[lane],
+        }
+    }
+}
+
+/// Pairs of taxels and triangles in the frame of the grid.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(super) struct PlacedPairs {
+    /// Corners of the triangles, metres, and the vectors by which the faces are moved.
+    corners: [[Lane; 3]; 3],
+    moved: [Lane; 2],
+    sign: Lane,
+    /// Positions of the taxels, metres.
+    x: Lane,
+    y: Lane,
+    /// Bounds of the heights at which the triangles stop the taxels, metres.
+    pub low: Lane,
+    pub high: Lane,
+    pub pairs: [Pair; LANES],
+    pub n: usize,
+}
+
+impl PlacedPairs {
+    pub const EMPTY: Self = Self {
+        corners: [[[0.0; LANES]; 3]; 3],
+        moved: [[0.0; LANES]; 2],
+        sign: [0.0; LANES],
+        x: [0.0; LANES],
+        y: [0.0; LANES],
+        low: [0.0; LANES],
+        high: [0.0; LANES],
+        pairs: [Pair::NONE; LANES],
+        n: 0,
+    };
+
+    /// Adds the pair of the triangle in a lane of a block and its tested taxel if `is_wanted`, without a branch, because the processor cannot predict it.
+    #[inline(always)]
+    pub fn add(
+        &mut self,
+        (pair, is_wanted): (Pair, bool),
+        (placed, tested): (&PlacedBlock, &Tested),
+        lane: usize,
+    ) {
+        let to = self.n % LANES;
+        for k in 0..3 {
+            for axis in 0..3 {
+                self.corners[k][axis][to] = placed.corners[k][axis][lane];
+            }
+        }
+        self.moved[0][to] = placed.moved[0][lane];
+        self.moved[1][to] = placed.moved[1][lane];
+        self.sign[to] = placed.sign[lane];
+        (self.x[to], self.y[to]) = (tested.x[lane], tested.y[lane]);
+        self.low[to] = pair.low;
+        self.pairs[to] = pair;
+        self.n += usize::from(is_wanted);
+    }
 }
 
 /// Bounds of the centres of taxels that the triangles of one lane stop.
@@ -238,6 +324,38 @@ impl BlockSearch {
         }
     }
 
+    /// Returns whether certainly no triangle of the mesh is behind the substrate.
+    #[inline(always)]
+    pub fn is_in_front(&self, blocks: &MeshBlocks) -> bool {
+        let behind = self.behind + self.reach + 2.0 * self.slack;
+        let [_, _, up] = self.rows;
+        let mut stack = [0_u32; (LANES - 1) * MAX_DEPTH + 1];
+        let mut n_waiting = usize::from(behind > f32::NEG_INFINITY);
+        while n_waiting > 0 {
+            n_waiting -= 1;
+            let node = &blocks.nodes[(stack[n_waiting] / 2) as usize];
+            let mut lanes = 0;
+            for lane in 0..LANES {
+                let [x, y, z] = get(&node.center, lane);
+                let [a, b, c] = get(&node.half, lane);
+                let half = up[0].abs() * a + up[1].abs() * b + up[2].abs() * c;
+                let low = self.center[2] + up[0] * x + up[1] * y + up[2] * z - half;
+                lanes |= u32::from(low < behind) << lane;
+            }
+            lanes &= node.used;
+            while lanes != 0 {
+                let child = node.children[lanes.trailing_zeros() as usize];
+                lanes &= lanes - 1;
+                if child % 2 == 1 {
+                    return false;
+                }
+                stack[n_waiting] = child;
+                n_waiting += 1;
+            }
+        }
+        true
+    }
+
     /// Returns the candidates of the children of a node below a limit, metres.
     #[inline(always)]
     pub fn node(&self, node: &BlockNode, limit: f32) -> Candidates {
@@ -253,7 +371,8 @@ impl BlockSearch {
                 let [a, b, c] = self.rows[k];
                 half[k] = a.abs() * own[0] + b.abs() * own[1] + c.abs() * own[2];
             }
-            let (shift, spread) = self.directions(axis[2], node.spread[lane], center[2] - half[2]);
+            let (shift, spread, _) =
+                self.directions(axis[2], node.spread[lane], center[2] - half[2]);
             let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
             let mut middle = [0.0; 3];
             for k in 0..3 {
@@ -308,7 +427,7 @@ impl BlockSearch {
             let b = self.placed(get(b, lane));
             let c = self.placed(get(c, lane));
             let bottom = least(least(a[2], b[2]), c[2]);
-            let (shift, spread) = self.directions(normal[2], block.spread[lane], bottom);
+            let (shift, spread, is_low) = self.directions(normal[2], block.spread[lane], bottom);
             let wide = spread + self.slack;
             // No direction is longer than one.
             let far = self.reach + self.slack;
@@ -328,38 +447,54 @@ impl BlockSearch {
             };
             let found = self.find(&bounds, limit);
             let corners = [a, b, c];
-            for k in 0..2 {
-                let moved = shift * normal[k];
+            for k in 0..3 {
                 for corner in 0..3 {
-                    placed.corners[corner][k][lane] = corners[corner][k] + moved;
+                    placed.corners[corner][k][lane] = corners[corner][k];
                 }
             }
-            let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-            placed.sign[lane] = if area > 0.0 { 1.0 } else { -1.0 };
+            placed.sign[lane] = if normal[2] > 0.0 { 1.0 } else { -1.0 };
             let is_certain = shift != 0.0;
-            placed.wide[lane] = spread + 2.0 * self.slack;
             // A ball that touches the triangle at a point is at most as far from the plane of the triangle as from the point. Its centre is therefore not below
             // the plane moved down by the radius.
             let steepness = 1.0 / normal[2];
             let is_flat = normal[2].abs() > 1e-3;
-            let down = if is_certain {
-                normal[2].abs()
+            // Without certain directions, the distance from the moved triangle is at most the diameter of a taxel.
+            let wide = if is_certain & is_flat {
+                spread
             } else {
-                steepness.abs()
+                2.0 * self.reach
             };
-            placed.height[lane] = a[2] - self.reach * down;
+            placed.wide[lane] = wide + 2.0 * self.slack;
+            placed.height[lane] = a[2] - self.reach * normal[2].abs();
+            let side = if normal[2] < 0.0 {
+                self.reach
+            } else {
+                -self.reach
+            };
             for k in 0..2 {
                 let slope = -normal[k] * steepness;
                 placed.slope[k][lane] = if is_flat { slope } else { 0.0 };
+                placed.moved[k][lane] = if is_flat { side * normal[k] } else { 0.0 };
             }
             // The plane is evaluated at most this far from the first corner. The rounding of the normal tilts the plane by up to 1e-6 |1/n_z|.
-            let far = (high[0] - low[0]) + (high[1] - low[1]) + 2.0 * self.reach;
+            let far = (high[0] - low[0]) + (high[1] - low[1]) + 4.0 * self.reach;
             let error = (4.0 * self.slack + 1e-6 * far * steepness.abs()) * steepness.abs();
             placed.below[lane] = if is_flat { error } else { f32::INFINITY };
-            placed.above[lane] = if is_flat & is_certain {
+            placed.above[lane] = if is_flat & !is_low {
                 error
             } else {
                 f32::INFINITY
+            };
+            let side = if normal[2] < 0.0 {
+                OUTER_SIDES
+            } else {
+                INNER_SIDES
+            };
+            let sides = block.sides[lane] >> if is_certain { side } else { ALL_SIDES };
+            placed.sides[lane] = if is_flat & !is_low {
+                sides & 7
+            } else {
+                ANY_PART
             };
             let n_columns = found.columns[1] - found.columns[0];
             let n_rows = found.rows[1] - found.rows[0];
@@ -381,19 +516,24 @@ impl BlockSearch {
         placed.candidates.behind = behind & block.used;
     }
 
-    /// Tests candidate `number` of each triangle with few candidates. The taxel may be beside the triangle, moved by `shift` along its normal and widened by
-    /// `spread`.
+    /// Tests candidate `number` of each triangle with few candidates. The triangle may stop the taxel below `limit`, metres, if the taxel is under the face, moved by
+    /// the radius, or at most `wide` beyond a side that the triangle evaluates.
     #[inline(always)]
-    pub fn test(&self, block: &Block, placed: &PlacedBlock, number: u32) -> Tested {
+    pub fn test(&self, block: &Block, placed: &PlacedBlock, (number, limit): (u32, f32)) -> Tested {
         let mut tested = Tested {
             columns: [0; LANES],
             rows: [0; LANES],
+            taxels: [0; LANES],
+            x: [0.0; LANES],
+            y: [0.0; LANES],
             low: [0.0; LANES],
             high: [0.0; LANES],
             lanes: 0,
+            faces: 0,
         };
-        let mut lanes = 0;
+        let (mut lanes, mut faces) = (0, 0);
         let number = number as f32;
+        let n_of_row = self.columns.n as u32;
         for lane in 0..LANES {
             let n_columns = placed.n_columns[lane];
             // Rounded down; numbers below zero are not rounded to whole numbers.
@@ -402,9 +542,14 @@ impl BlockSearch {
             let column = placed.candidates.columns[0][lane] + (number - row * n_columns);
             let row = placed.candidates.rows[0][lane] + row;
             let (x, y) = (self.columns.at(column), self.rows_of_taxels.at(row));
+            (tested.x[lane], tested.y[lane]) = (x, y);
+            let (x, y) = (x - placed.moved[0][lane], y - placed.moved[1][lane]);
             let (mut gap, mut outside) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
+            let mut beyond_one = f32::NEG_INFINITY;
+            let sides = placed.sides[lane];
+            let mut is_open = sides & ANY_PART != 0;
             for k in 0..3 {
-                let ([x0, y0], [x1, y1]) = (&placed.corners[k], &placed.corners[(k + 1) % 3]);
+                let ([x0, y0, _], [x1, y1, _]) = (&placed.corners[k], &placed.corners[(k + 1) % 3]);
                 let (from_x, from_y) = (x0[lane], y0[lane]);
                 let (ex, ey) = (x1[lane] - from_x, y1[lane] - from_y);
                 let side = ey * (x - from_x) - ex * (y - from_y);
@@ -412,25 +557,98 @@ impl BlockSearch {
                 let length = ex.abs() + ey.abs();
                 let beyond = placed.sign[lane] * side;
                 gap = most(gap, beyond - placed.wide[lane] * length);
-                outside = most(outside, beyond + 2.0 * self.slack * length);
+                let slack = 2.0 * self.slack * length;
+                outside = most(outside, beyond + slack);
+                beyond_one = most(beyond_one, beyond - slack);
+                is_open |= (beyond + slack >= 0.0) & (sides >> k & 1 != 0);
             }
             let [first, _, _] = &placed.corners;
             let height = placed.height[lane]
                 + placed.slope[0][lane] * (x - first[0][lane])
                 + placed.slope[1][lane] * (y - first[1][lane]);
-            let above = if outside < 0.0 {
+            let is_face = (outside < 0.0) & (placed.above[lane] < f32::INFINITY);
+            let above = if is_face {
                 placed.above[lane]
             } else {
                 f32::INFINITY
             };
-            tested.low[lane] = most(placed.candidates.low[lane], height - placed.below[lane]);
+            let low = most(placed.candidates.low[lane], height - placed.below[lane]);
+            tested.low[lane] = low;
             tested.high[lane] = height + above;
             tested.columns[lane] = integer(column);
             tested.rows[lane] = integer(row);
-            lanes |= u32::from(is_candidate & (gap <= 0.0)) << lane;
+            tested.taxels[lane] = integer(row) * n_of_row + integer(column);
+            is_open |= beyond_one <= 0.0;
+            lanes |= u32::from(is_candidate & is_open & (gap <= 0.0) & (low < limit)) << lane;
+            faces |= u32::from(is_face) << lane;
         }
         tested.lanes = lanes & block.used;
+        tested.faces = faces;
         tested
+    }
+
+    /// Bounds the heights at which triangles stop taxels that are not certainly under their faces.
+    ///
+    /// The point p of the farthest side at which the taxel touches the side gives both bounds. A ball that rises cannot pass p. The triangle is on one side of
+    /// the plane that touches the ball at p, up to the distance of a corner behind this plane. The plane, moved by this distance, stops the ball first. Both
+    /// bounds are valid for any point p of the triangle.
+    #[inline(always)]
+    pub fn bound(&self, batch: &mut PlacedPairs, is_in_front: bool) {
+        let reach2 = self.reach * self.reach;
+        let error = 4.0 * self.reach * self.slack;
+        for lane in 0..LANES {
+            let (x, y) = (batch.x[lane], batch.y[lane]);
+            let (mut from, mut edge) = ([0.0; 3], [0.0; 3]);
+            let (mut farthest, mut ground2) = (0.0, 0.0);
+            for k in 0..3 {
+                let a = get(&batch.corners[k], lane);
+                let b = get(&batch.corners[(k + 1) % 3], lane);
+                let e = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+                let beyond = e[1] * (x - batch.moved[0][lane] - a[0])
+                    - e[0] * (y - batch.moved[1][lane] - a[1]);
+                // Squares of distances are compared, because they need no square roots.
+                let distance2 = batch.sign[lane] * beyond * beyond.abs();
+                let length2 = e[0] * e[0] + e[1] * e[1];
+                let is_farther = (k == 0) | (distance2 * ground2 > farthest * length2);
+                farthest = if is_farther { distance2 } else { farthest };
+                ground2 = if is_farther { length2 } else { ground2 };
+                for axis in 0..3 {
+                    from[axis] = if is_farther { a[axis] } else { from[axis] };
+                    edge[axis] = if is_farther { e[axis] } else { edge[axis] };
+                }
+            }
+            // A vertical side is treated as slightly inclined.
+            let whole2 = ground2 + edge[2] * edge[2];
+            let ground2 = ground2 + 1e-7 * whole2;
+            let (to_x, to_y) = (x - from[0], y - from[1]);
+            let cross = edge[0] * to_y - edge[1] * to_x;
+            let along = edge[0] * to_x + edge[1] * to_y;
+            let inverse = 1.0 / (ground2 * whole2);
+            let inverse2 = whole2 * inverse;
+            let r2 = most(reach2 - cross * cross * inverse2, 0.0);
+            let ahead = edge[2] * (r2 * ground2 * ground2 * inverse).sqrt();
+            // Not a number for a side without length; then the first corner.
+            let part = least(most((along - ahead) * inverse2, 0.0), 1.0);
+            let height = from[2] + part * edge[2];
+            let (dx, dy) = (part * edge[0] - to_x, part * edge[1] - to_y);
+            let beside2 = dx * dx + dy * dy;
+            let q = reach2 - beside2;
+            let r = most(q, error).sqrt();
+            let mut lowest = f32::INFINITY;
+            for k in 0..3 {
+                let c = get(&batch.corners[k], lane);
+                lowest = least(lowest, (c[0] - x) * dx + (c[1] - y) * dy + c[2] * r);
+            }
+            // The length of (dx, dy, r) times the radius is at most the mean of their squares.
+            let far =
+                0.5 * (reach2 + beside2 + r * r) + 3.0 * self.slack * (dx.abs() + dy.abs() + r);
+            let low = most(batch.low[lane], (lowest - far) / r);
+            batch.low[lane] = low;
+            let is_stopped = (q > error) & is_in_front;
+            // The lower bound may exclude a contact that belongs to a neighbour.
+            let high = most(height + self.slack + error / r - r, low + self.slack);
+            batch.high[lane] = if is_stopped { high } else { f32::INFINITY };
+        }
     }
 
     /// Turns a vector from the frame of the mesh to the frame of the grid.
@@ -456,13 +674,14 @@ impl BlockSearch {
     /// component of the axis, `bottom` the lowest point of the triangles. Triangles that may be behind the substrate are enlarged by the whole radius, because the
     /// search then evaluates all their parts.
     #[inline(always)]
-    fn directions(&self, up: f32, spread: f32, bottom: f32) -> (f32, f32) {
+    fn directions(&self, up: f32, spread: f32, bottom: f32) -> (f32, f32, bool) {
         let is_low = bottom - self.reach - self.slack < self.behind;
         let is_certain = (up.abs() > spread + 1e-5) & !is_low;
         let side = if up < 0.0 { self.reach } else { -self.reach };
         (
             if is_certain { side } else { 0.0 },
             self.reach * (if is_certain { spread } else { 1.0 }),
+            is_low,
         )
     }
 

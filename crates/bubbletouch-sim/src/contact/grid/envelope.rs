@@ -10,16 +10,18 @@
 //! In a press from the front, each triangle counts. At a pose, a triangle counts for a taxel unless its far side is behind the taxel's substrate. Triangles
 //! whose near side is in front of the substrate count for each taxel; the rule is evaluated only for other triangles ([`stop_in_front`]).
 
-use super::block_search::{BlockSearch, Candidates, PlacedBlock, Tested};
+use super::block_search::{BlockSearch, Candidates, PlacedBlock, PlacedPairs, Tested};
 use super::lines::GridLines;
-use super::pair_batch::{Column, EdgePairs, FacePairs, MAY_BE_BEHIND, PAIRS, Pair, Placement};
+use super::pair_batch::{
+    Column, EdgePairs, FacePairs, MAY_BE_BEHIND, PAIRS, Pair, PairList, Placement,
+};
 use super::placed_objects::{PlacedObjects, TravelGoal};
 use crate::contact::instructions::{Instructions, for_instructions};
 use crate::contact::mesh::skin_mesh::{MeshAt, stop_in_front};
 use crate::contact::mesh::swept_triangle::{FACE_SLACK, SweptEdge, SweptFace, corner_height};
 use crate::mesh::Triangle;
 use crate::objects::Model;
-use crate::objects::mesh_blocks::{ContactTriangle, LANES, MAX_DEPTH, MeshBlocks};
+use crate::objects::mesh_blocks::{ContactTriangle, LANES, Lane, MAX_DEPTH, MeshBlocks};
 use glam::{DMat3, DVec2, DVec3};
 use std::ops::Range;
 
@@ -36,7 +38,7 @@ pub(crate) struct Envelope {
     /// Smallest of the heights, metres; infinite if the goal of the press does not depend on it.
     pub first: f64,
     /// Scratch memory of the search.
-    pairs: Option<Box<(Vec<Pair>, FacePairs, EdgePairs)>>,
+    pairs: Option<Box<([PairList; 2], FacePairs, EdgePairs)>>,
 }
 
 impl Envelope {
@@ -100,6 +102,8 @@ impl Envelope {
                 others: first,
                 bound: f64::INFINITY,
                 waiting: &mut *waiting,
+                beside: PlacedPairs::EMPTY,
+                is_in_front: false,
                 faces: &mut *faces,
                 edges: &mut *edges,
                 envelope: self,
@@ -115,17 +119,17 @@ impl Envelope {
         has_meshes
     }
 
-    /// Lowers the heights of the taxels of `n` pairs. The loop has no branches, because the processor cannot predict them.
+    /// Lowers the heights of the taxels of `n` pairs. The rectangle of finite heights then contains all these taxels: the height of a taxel may be an upper bound
+    /// even if no pair lowers it. The loop has no branches, because the processor cannot predict them.
     #[inline(always)]
     fn lower_pairs(&mut self, pairs: &[Pair; PAIRS], heights: &Column, n: usize) {
         let (mut first, mut last) = ([u32::MAX; 2], [0; 2]);
         for (pair, &height) in pairs.iter().zip(heights).take(n) {
             let lowest = &mut self.heights[pair.taxel as usize];
-            let is_lower = height < *lowest;
-            *lowest = if is_lower { height } else { *lowest };
+            *lowest = if height < *lowest { height } else { *lowest };
             for (k, line) in [pair.row, pair.column].into_iter().enumerate() {
-                first[k] = first[k].min(if is_lower { line } else { u32::MAX });
-                last[k] = last[k].max(if is_lower { line + 1 } else { 0 });
+                first[k] = first[k].min(line);
+                last[k] = last[k].max(line + 1);
             }
             self.first = if height < self.first {
                 height
@@ -133,7 +137,7 @@ impl Envelope {
                 self.first
             };
         }
-        if last[0] > 0 {
+        if n > 0 {
             cover(&mut self.rows, first[0] as usize..last[0] as usize);
             cover(&mut self.columns, first[1] as usize..last[1] as usize);
         }
@@ -187,8 +191,12 @@ struct Sweep<'a> {
     placement: Placement,
     /// Upper bound of the least height, metres.
     bound: f64,
-    /// Pairs of taxels and triangles that are not yet evaluated.
-    waiting: &'a mut Vec<Pair>,
+    /// Pairs of taxels and triangles that are not yet evaluated: pairs whose taxels are certainly under the faces, and other pairs.
+    waiting: &'a mut [PairList; 2],
+    /// Pairs whose taxels may be beside the faces of the triangles, and whose bounds are not yet computed.
+    beside: PlacedPairs,
+    /// Whether certainly no triangle is behind the substrate.
+    is_in_front: bool,
     /// Pairs of taxels and triangles that are evaluated next.
     faces: &'a mut FacePairs,
     /// Pairs of taxels and edges that are not yet evaluated.
@@ -215,6 +223,7 @@ for_instructions! {
 
 #[inline(always)]
 fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch) {
+    sweep.is_in_front = bounds.is_in_front(blocks);
     const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
     let mut stack = [(f32::NEG_INFINITY, 0_u32); STACK];
     let mut n_waiting = 1;
@@ -250,8 +259,8 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
                 }
             }
             for number in 0..placed.n_few {
-                let tested = bounds.test(block, &placed, number);
-                sweep.pair(block.first, &tested);
+                let tested = bounds.test(block, &placed, (number, limit));
+                sweep.pair(bounds, (block.first, &placed), &tested);
             }
             continue;
         }
@@ -274,6 +283,7 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
             n_waiting += 1;
         }
     }
+    sweep.bound_beside(bounds);
     sweep.evaluate_waiting();
 }
 
@@ -325,44 +335,93 @@ impl Sweep<'_> {
         }
     }
 
-    /// Adds the pairs of the triangles of a block, the first of which has the index `first`, and the tested taxels that are not stopped below. The heights of the
-    /// taxels are lowered to the upper bounds of their exact heights.
+    /// Adds the pairs of the triangles of a block, the first of which has the index `first`, and the tested taxels that are not stopped below. The loops have no
+    /// branches that depend on heights, because the processor cannot predict them.
     #[inline(always)]
-    fn pair(&mut self, first: u32, tested: &Tested) {
-        for lane in lanes(tested.lanes) {
-            let (row, column) = (tested.rows[lane], tested.columns[lane]);
-            let taxel = row as usize * self.envelope.n_columns + column as usize;
-            let (low, high) = (f64::from(tested.low[lane]), f64::from(tested.high[lane]));
-            let height = &mut self.envelope.heights[taxel];
-            if *height <= low {
-                continue;
-            }
-            *height = if high < *height { high } else { *height };
-            self.bound = if high < self.bound { high } else { self.bound };
-            self.waiting.push(Pair {
-                triangle: first + lane as u32,
-                taxel: taxel as u32,
-                row,
-                column,
-                low: tested.low[lane],
-            });
+    fn pair(
+        &mut self,
+        bounds: &BlockSearch,
+        (first, placed): (u32, &PlacedBlock),
+        tested: &Tested,
+    ) {
+        self.waiting[0].reserve(LANES);
+        for lane in lanes(tested.lanes & tested.faces) {
+            self.wait(0, tested.pair(first, lane), tested.high[lane]);
         }
+        for lane in lanes(tested.lanes & !tested.faces) {
+            let pair = tested.pair(first, lane);
+            let is_open = self.envelope.heights[pair.taxel as usize] > f64::from(pair.low);
+            self.beside.add((pair, is_open), (placed, tested), lane);
+            if self.beside.n == LANES {
+                self.bound_beside(bounds);
+            }
+        }
+    }
+
+    /// Adds a pair to a list unless its taxel is stopped below. The height of the taxel is lowered to `high`, the upper bound of its exact height, metres, above
+    /// `pair.low`. A height is only lowered if the pair is added: the evaluation of the pair adds the taxel to the rectangle of finite heights.
+    #[inline(always)]
+    fn wait(&mut self, list: usize, pair: Pair, high: f32) {
+        let high = f64::from(high);
+        let height = &mut self.envelope.heights[pair.taxel as usize];
+        self.waiting[list].add(pair, *height > f64::from(pair.low));
+        *height = if high < *height { high } else { *height };
+        self.bound = if high < self.bound { high } else { self.bound };
+    }
+
+    /// Bounds the pairs whose taxels may be beside the faces of their triangles.
+    #[inline(always)]
+    fn bound_beside(&mut self, bounds: &BlockSearch) {
+        bounds.bound(&mut self.beside, self.is_in_front);
+        self.waiting[1].reserve(LANES);
+        let limit = self.limit();
+        for lane in 0..self.beside.n.min(LANES) {
+            let is_below = f64::from(self.beside.low[lane]) < limit;
+            let bound = |bound: &Lane| if is_below { bound[lane] } else { f32::INFINITY };
+            let pair = Pair {
+                low: bound(&self.beside.low),
+                ..self.beside.pairs[lane]
+            };
+            self.wait(1, pair, bound(&self.beside.high));
+        }
+        self.beside.n = 0;
     }
 
     /// Evaluates the waiting pairs whose taxels are not certainly stopped by other triangles.
     #[inline(always)]
     fn evaluate_waiting(&mut self) {
-        for number in 0..self.waiting.len() {
-            let pair = self.waiting[number];
-            let is_open = self.envelope.heights[pair.taxel as usize] > f64::from(pair.low);
-            self.faces.add(pair, is_open);
-            if self.faces.n == PAIRS {
-                self.evaluate_faces();
+        for list in 0..2 {
+            for number in 0..self.waiting[list].n {
+                let pair = self.waiting[list].pairs[number];
+                let is_open = self.envelope.heights[pair.taxel as usize] > f64::from(pair.low);
+                self.faces.add(pair, is_open);
+                if self.faces.n == PAIRS {
+                    self.evaluate_batch(list);
+                }
             }
+            self.evaluate_batch(list);
+            self.waiting[list].n = 0;
         }
-        self.waiting.clear();
-        self.evaluate_faces();
         self.evaluate_edges();
+    }
+
+    #[inline(always)]
+    fn evaluate_batch(&mut self, list: usize) {
+        match list {
+            0 => self.evaluate_under(),
+            _ => self.evaluate_faces(),
+        }
+    }
+
+    /// Evaluates the faces of the waiting pairs whose taxels are certainly under the faces.
+    #[inline(always)]
+    fn evaluate_under(&mut self) {
+        self.faces
+            .evaluate_under((self.triangles, self.placement), self.lines);
+        let n = self.faces.n;
+        self.envelope
+            .lower_pairs(&self.faces.pairs, &self.faces.heights, n);
+        self.faces.n = 0;
     }
 
     /// Evaluates the waiting pairs of taxels and triangles.

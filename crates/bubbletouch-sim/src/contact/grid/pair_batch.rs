@@ -34,6 +34,41 @@ pub(super) struct Pair {
     pub low: f32,
 }
 
+impl Pair {
+    pub const NONE: Self = Self {
+        triangle: 0,
+        taxel: 0,
+        row: 0,
+        column: 0,
+        low: 0.0,
+    };
+}
+
+/// List of pairs to which pairs are added without branches, because the processor cannot predict them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PairList {
+    /// Pairs of the list, and memory for more pairs.
+    pub pairs: Vec<Pair>,
+    pub n: usize,
+}
+
+impl PairList {
+    /// Allocates memory for `n` more pairs.
+    #[inline(always)]
+    pub fn reserve(&mut self, n: usize) {
+        if self.pairs.len() < self.n + n {
+            self.pairs.resize(2 * (self.n + n), Pair::NONE);
+        }
+    }
+
+    /// Adds a pair if `is_wanted`; memory for the pair must be reserved.
+    #[inline(always)]
+    pub fn add(&mut self, pair: Pair, is_wanted: bool) {
+        self.pairs[self.n] = pair;
+        self.n += usize::from(is_wanted);
+    }
+}
+
 /// Pose of a mesh in the frame of the grid, and the radius of the swept ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placement {
@@ -123,6 +158,30 @@ impl FacePairs {
         }
     }
 
+    /// Evaluates the faces of pairs whose taxels are certainly under the faces.
+    #[inline(always)]
+    pub fn evaluate_under(
+        &mut self,
+        (triangles, placement): (&[ContactTriangle], Placement),
+        lines: &GridLines,
+    ) {
+        for lane in 0..self.n.min(PAIRS) {
+            let pair = self.pairs[lane];
+            let triangle = &triangles[pair.triangle as usize];
+            set(&mut self.corners[0], lane, triangle.corners[0]);
+            set(&mut self.normal, lane, triangle.face.normal);
+            self.x[lane] = lines.x.positions[pair.column as usize];
+            self.y[lane] = lines.y.positions[pair.row as usize];
+        }
+        let n = self.n.next_multiple_of(WIDTH).min(PAIRS);
+        for lane in 0..n {
+            let corner = placement.place(get(&self.corners[0], lane));
+            let normal = placement.turn(get(&self.normal, lane));
+            let at = DVec2::new(self.x[lane], self.y[lane]);
+            self.heights[lane] = face_height(corner, normal, placement.reach, at);
+        }
+    }
+
     /// Evaluates the faces of all pairs. If a taxel is under the face, no edge or corner is lower. Otherwise edges and corners that have the taxel on their outer
     /// side remain in `parts`.
     ///
@@ -175,8 +234,7 @@ impl FacePairs {
             let beside = outside | (corners << 3);
 
             let lowest = least(least(a.z, b.z), c.z);
-            let rise = normal.truncate().dot(at - swept[0]);
-            let height = a.z + shift.z - rise / normal.z;
+            let height = face_height(a, normal, reach, at);
             // No contact with the triangle is below the plane of the face, moved down by the radius.
             let is_lower = height - slack / slope < self.limit[lane];
             let is_wanted = (is_near & is_lower) | is_steep;
@@ -191,6 +249,15 @@ impl FacePairs {
             self.heights[lane] = if is_under { height } else { f64::INFINITY };
         }
     }
+}
+
+/// Returns the height at which the face with the corner `corner` and the unit normal `normal` stops a taxel, metres.
+#[inline(always)]
+fn face_height(corner: DVec3, normal: DVec3, reach: f64, at: DVec2) -> f64 {
+    let sign = if normal.z > 0.0 { 1.0 } else { -1.0 };
+    let shift = -(sign * reach) * normal;
+    let rise = normal.truncate().dot(at - (corner + shift).truncate());
+    corner.z + shift.z - rise / normal.z
 }
 
 /// Pairs of taxels and edges of triangles.

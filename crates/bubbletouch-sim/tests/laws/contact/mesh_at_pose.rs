@@ -179,7 +179,7 @@ fn a_grid_on_a_rough_scan_equals_a_cast_for_each_taxel() {
 }
 
 /// Returns the deflection that the documented rule gives a taxel at `at`, evaluated over all triangles.
-fn by_every_triangle(surface: &Surface, reach: f64, taxel: &Taxel, at: DVec2) -> f64 {
+pub(super) fn by_every_triangle(surface: &Surface, reach: f64, taxel: &Taxel, at: DVec2) -> f64 {
     let behind = taxel.substrate();
     let mesh = surface.mesh();
     let mut lowest = f64::INFINITY;

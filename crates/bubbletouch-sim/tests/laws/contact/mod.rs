@@ -13,6 +13,7 @@ mod limits;
 mod many_bodies;
 mod mesh;
 mod mesh_at_pose;
+mod mesh_sequences;
 mod press_variants;
 mod reference_scenes;
 mod rounded;
