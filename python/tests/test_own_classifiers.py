@@ -176,6 +176,89 @@ def test_a_version_follows_code_and_parameters() -> None:
         return lambda frames: by * frames
 
     assert function(scaled(1.0)) == function(scaled(1.0)) != function(scaled(2.0)) != function(noisy)
+    # Lambdas on one line have one source text.
+    first, second, third = (lambda frames: frames[:, :3]), (lambda frames: frames[:, :4]), (lambda frames: frames[:, :3])
+    assert function(first) == function(third) != function(second)
+
+    def itself(frames: Any) -> Any:
+        return frames if itself else frames
+
+    assert function(itself) == function(itself)
+
+
+def trained_with(c: float) -> Any:
+    """Returns a classifier whose methods depend on a variable around the class."""
+
+    class Trained:
+        def fit(self, rows: Any, labels: Any) -> None:
+            from sklearn.svm import SVC
+
+            self.fitted = SVC(C=c).fit(rows, labels)
+
+        def predict(self, rows: Any) -> Any:
+            return self.fitted.predict(rows)
+
+    return Trained()
+
+
+class Base:
+    """First form of a base class."""
+
+    def fit(self, rows: Any, labels: Any) -> None:
+        """Does nothing."""
+
+    def predict(self, rows: Any) -> Any:
+        return np.zeros(len(rows))
+
+
+def test_a_version_follows_bases_and_variables_around_a_class() -> None:
+    def version(thing: Any) -> str:
+        return bt._foreign.identified({"mine": thing}, None)[0][0][1]
+
+    assert version(trained_with(1.0)) == version(trained_with(1.0)) != version(trained_with(2.0))
+    derived = type("Derived", (Base,), {"__module__": __name__})
+    other = type("Derived", (Nearest,), {"__module__": __name__})
+    assert version(derived()) == version(derived()) != version(other())
+
+
+def test_a_version_is_equal_in_all_processes() -> None:
+    program = """
+import bubbletouch as bt
+function = lambda frames: frames if "a" in {"a", "b", "c", "d"} else -frames
+print(bt._foreign.identified(None, {"mine": function})[1][0][1])
+"""
+    found = set()
+    for seed in ("1", "2", "3"):
+        run = subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, check=True, env=os.environ | {"PYTHONHASHSEED": seed}
+        )
+        found.add(run.stdout)
+    assert len(found) == 1
+
+
+def test_classes_of_the_main_program_run_in_processes(tmp_path: Path) -> None:
+    study = with_keys(classifier="mine") | {"trials": 1, "signal": {"noise_std_full_scale": 0.0}, "sensing": {"ratio": 4}}
+    program = tmp_path / "main.py"
+    program.write_text(f"""
+import bubbletouch as bt
+import numpy as np
+
+class Mine:
+    def fit(self, rows, labels):
+        self.classes = np.unique(labels)
+        self.means = [rows[labels == label].mean(axis=0) for label in self.classes]
+
+    def predict(self, rows):
+        return self.classes[np.argmin([((rows - mean) ** 2).sum(axis=1) for mean in self.means], axis=0)]
+
+if __name__ == "__main__":
+    for processes in (0, 2):
+        print(list(bt.run({study!r}, classifiers={{"mine": Mine()}}, processes=processes)["summary"].columns["accuracy"]))
+""")
+    run = subprocess.run([sys.executable, str(program)], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    first, second = run.stdout.splitlines()
+    assert first == second
 
 
 def test_decisions_on_several_touches_add_probabilities_or_votes() -> None:
@@ -263,6 +346,8 @@ def test_what_is_no_classifier_is_refused(tmp_path: Path) -> None:
         ({"classifiers": {"linear_svm": Nearest()}}, "linear_svm.*; a name that no other classifier has"),
         ({"classifiers": {"a b": Nearest()}}, "a b.*letters, digits"),
         ({"features": {"mine": 3}}, "features mine: int; a function"),
+        ({"classifiers": [Nearest()]}, "classifier: list; a dict of names"),
+        ({"features": {"mine": lambda frames: frames + 1j}}, "the function returned complex128; real numbers"),
         ({"features": {"raw": np.sqrt}}, "raw.*; a name that no other features have"),
         ({"processes": -1}, "processes: -1; zero or"),
     ]:

@@ -417,3 +417,61 @@ def test_wrong_attached_models_are_named(tmp_path: Path) -> None:
         file.write_text(f"<mujoco><asset>{models}</asset><worldbody>{attach}</worldbody></mujoco>")
         with pytest.raises(ValueError, match=words):
             bt.Robot.read(file)
+
+
+COPIED = """
+<default><default class="c"><joint axis="0 1 0" range="-1 1"/><site pos="0 0 0.3"/></default></default>
+<worldbody>
+  <frame name="f" pos="0 0 1" euler="0.1 0.2 0.3" childclass="c">
+    <body name="b" pos="1 0 0"><joint name="j"/><geom size="0.1"/><site name="s"/>
+      <body name="b2" pos="0 1 0" euler="0 0 1"><joint name="j2" axis="1 0 0"/><geom size="0.1"/></body>
+    </body>
+  </frame>
+  BODIES
+</worldbody>
+<equality><joint joint1="j" joint2="j2" polycoef="0.1 0.5 0 0 0"/></equality>"""
+
+
+@pytest.mark.parametrize(
+    "bodies",
+    [
+        '<frame pos="0 2 0" euler="0 0.5 0"><attach frame="f" prefix="p_"/></frame>',
+        '<frame pos="0 2 0" euler="0 0.5 0"><attach body="b" prefix="p_"/></frame>',
+        '<body name="o" pos="0 2 0"><joint name="jo"/><geom size="0.1"/><attach body="b2" prefix="p_"/></body>',
+        '<replicate count="2" offset="1 0 0"><attach body="b" prefix="p_"/></replicate>',
+        '<frame pos="3 0 0"><attach model="Named" frame="f" prefix="p_"/></frame><attach model="Named" body="b2" prefix="q_"/>',
+    ],
+)
+def test_attached_parts_of_the_same_model_and_frames_stand_where_mujocos_do(bodies: str, tmp_path: Path) -> None:
+    asset = '<compiler angle="radian"/><asset><model file="sub.xml"/></asset>' if "model=" in bodies else '<compiler angle="radian"/>'
+    (tmp_path / "sub.xml").write_text(f'<mujoco model="Named"><compiler angle="radian"/>{COPIED.replace("BODIES", "")}</mujoco>')
+    file = tmp_path / "main.xml"
+    file.write_text(f"<mujoco>{asset}{COPIED.replace('BODIES', bodies)}</mujoco>")
+    model = mujoco.MjModel.from_xml_path(str(file))
+    data = mujoco.MjData(model)
+    robot = bt.Robot.read(file)
+    assert robot.links[: model.nbody] == [name_of(model, mujoco.mjtObj.mjOBJ_BODY, i) for i in range(model.nbody)]
+    followers = {int(model.eq_obj1id[constraint]) for constraint in range(model.neq)}
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        q = random_positions(model, data, rng)
+        for follower in followers:
+            q.pop(name_of(model, mujoco.mjtObj.mjOBJ_JOINT, follower))
+        for constraint in range(model.neq):
+            at, of = model.jnt_qposadr[model.eq_obj1id[constraint]], model.jnt_qposadr[model.eq_obj2id[constraint]]
+            data.qpos[at] = 0.1 + 0.5 * data.qpos[of]
+        assert largest_difference(model, data, robot, q) < TOLERANCE
+
+
+def test_wrong_copies_within_a_model_are_named(tmp_path: Path) -> None:
+    file = tmp_path / "main.xml"
+    for attach, words in [
+        ('<attach prefix="p_"/>', "<attach> without `model`; the attribute `model`, or one of `body` and `frame`"),
+        ('<attach body="b3" prefix="p_"/>', "`body` .b3., which is no body of the model"),
+        ('<attach frame="g" prefix="p_"/>', "`frame` .g., which is no frame of the model; perhaps `f`"),
+        ('<attach body="b"/>', "a second body `b`"),
+        ('<body name="x"><attach body="x" prefix="p_"/></body>', "elements inside each other, 500 deep"),
+    ]:
+        file.write_text(f"<mujoco>{COPIED.replace('BODIES', attach)}</mujoco>")
+        with pytest.raises(ValueError, match=words):
+            bt.Robot.read(file)

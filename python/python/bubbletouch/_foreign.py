@@ -15,7 +15,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from importlib import import_module
 from multiprocessing import get_context
-from types import FunctionType
+from types import CodeType, FunctionType
 from typing import Any
 
 import numpy as np
@@ -31,40 +31,69 @@ _DIGITS = 12
 _LOCK = threading.RLock()
 
 
-def _described(thing: Any) -> str:
-    """Returns a text that depends only on the code and the parameters of an estimator or a function; equal in all processes."""
+def _described(thing: Any, above: tuple[Any, ...] = ()) -> str:
+    """Returns a text that depends only on the code and the parameters of an estimator or a function; equal in all processes.
+
+    above: things that contain this thing; a thing that contains itself is described once.
+    """
+    if any(thing is other for other in above):
+        return "itself"
+    inside = (*above, thing)
     if isinstance(thing, np.ndarray):
         return f"array {thing.dtype} {thing.shape} {hashlib.sha256(thing.tobytes()).hexdigest()}"
     if isinstance(thing, dict):
-        return "{" + ", ".join(f"{key}: {_described(value)}" for key, value in sorted(thing.items(), key=lambda item: str(item[0]))) + "}"
+        return "{" + ", ".join(f"{key}: {_described(value, inside)}" for key, value in sorted(thing.items(), key=lambda item: str(item[0]))) + "}"
     if isinstance(thing, list | tuple):
-        return "[" + ", ".join(map(_described, thing)) + "]"
+        return "[" + ", ".join(_described(item, inside) for item in thing) + "]"
+    if isinstance(thing, set | frozenset):
+        # The order of a set differs between processes.
+        return "{" + ", ".join(sorted(_described(item, inside) for item in thing)) + "}"
+    if isinstance(thing, CodeType):
+        return f"{thing.co_code.hex()} {_described(thing.co_consts, inside)} {thing.co_names!r} {thing.co_freevars!r}"
     if isinstance(thing, FunctionType):
-        cells = [cell.cell_contents for cell in thing.__closure__ or ()]
-        return f"{_source(thing)} {_described(cells)} {_described(thing.__defaults__ or ())}"
+        return f"{_source(thing)} {_cells(thing, inside)} {_described(thing.__defaults__ or (), inside)}"
     if isinstance(thing, type):
-        return f"{thing.__module__}.{thing.__qualname__} {_source(thing)}"
+        # A class depends on its bases in the same module, and on the variables around its methods.
+        own = [base for base in thing.__mro__ if base.__module__ == thing.__module__ and base is not object]
+        cells = [_cells(method, inside) for base in own for method in vars(base).values() if isinstance(method, FunctionType) and method.__closure__]
+        bases = " ".join(map(_source, own[1:]))
+        return " ".join(filter(None, [f"{thing.__module__}.{thing.__qualname__} {_source(thing)}", bases, *cells]))
     if hasattr(thing, "func") and hasattr(thing, "args"):
-        return f"{_described(thing.func)} {_described(thing.args)} {_described(getattr(thing, 'keywords', {}))}"
+        return f"{_described(thing.func, inside)} {_described(thing.args, inside)} {_described(getattr(thing, 'keywords', {}), inside)}"
     if hasattr(thing, "get_params") and not isinstance(thing, type):
-        return f"{_described(type(thing))} {_described(thing.get_params(deep=False))}"
+        return f"{_described(type(thing), inside)} {_described(thing.get_params(deep=False), inside)}"
     if hasattr(thing, "__dict__") and getattr(type(thing), "__repr__", None) is getattr(object, "__repr__", None):
-        return f"{_described(type(thing))} {_described(vars(thing))}"
+        return f"{_described(type(thing), inside)} {_described(vars(thing), inside)}"
     # The address of an object differs between processes.
     return re.sub(r" at 0x[0-9a-fA-F]+", "", repr(thing))
 
 
+def _cells(function: FunctionType, above: tuple[Any, ...]) -> str:
+    """Returns a text of the variables around a function, without the class of a method."""
+    described = []
+    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+        try:
+            described.append("class" if name == "__class__" else _described(cell.cell_contents, above))
+        except ValueError:
+            described.append("no value")
+    return "[" + ", ".join(described) + "]"
+
+
 def _source(code: Any) -> str:
     """Returns the source text of a function or a class, or its bytecode if there is no source."""
+    found = getattr(code, "__code__", None)
     try:
-        return inspect.getsource(code)
+        source = inspect.getsource(code)
     except (OSError, TypeError):
-        found = getattr(code, "__code__", None)
-        return f"{code.__qualname__}" if found is None else f"{found.co_code.hex()} {found.co_consts!r} {found.co_names!r}"
+        return f"{code.__qualname__}" if found is None else _described(found)
+    # The source of a lambda is the whole line, which may contain several.
+    return f"{source} {_described(found)}" if found is not None and found.co_name == "<lambda>" else source
 
 
 def _named(what: str, given: Mapping[str, Any] | None, is_right: Callable[[Any], bool], allowed: str) -> Iterator[Given]:
     """Yields name, version and object of each given classifier or function."""
+    if given is not None and not isinstance(given, Mapping):
+        raise ValueError(f"{what}: {type(given).__name__}; a dict of names")
     for name, thing in (given or {}).items():
         version = None
         if isinstance(thing, tuple):
@@ -143,7 +172,10 @@ def _log_probabilities(model: Any, rows: Rows) -> Rows | None:
 
 def _compute(function: Callable[[Rows], Any], frames: Rows) -> Rows:
     with _LOCK, _seeded(0):
-        made = np.ascontiguousarray(function(frames), dtype=np.float64)
+        given = np.asarray(function(frames))
+    if np.iscomplexobj(given):
+        raise ValueError(f"the function returned {given.dtype}; real numbers are allowed")
+    made = np.ascontiguousarray(given, dtype=np.float64)
     if made.ndim != 2 or len(made) != len(frames) or not made.size:
         raise ValueError(f"the function returned shape {made.shape} for {len(frames)} frames; ({len(frames)}, n_features) is allowed")
     return made
@@ -152,7 +184,9 @@ def _compute(function: Callable[[Rows], Any], frames: Rows) -> Rows:
 def _pickled(call: bytes) -> bytes:
     """Runs a pickled call in a process of the pool."""
     function, arguments = pickle.loads(call)
-    return pickle.dumps(function(*arguments))
+    # The classes of the main program are other objects in this process.
+    answer: bytes = pickler().dumps(function(*arguments))
+    return answer
 
 
 def pickler() -> Any:

@@ -1,6 +1,6 @@
-//! Models in other files that `<attach>` adds to a body: `<asset><model name file/></asset>` and `<attach model body prefix/>`.
+//! Models in other files that `<attach>` adds to a body: `<asset><model name file/></asset>` and `<attach model body prefix/>` or `<attach model frame prefix/>`.
 
-use super::equality::read_equalities;
+use super::equality::{copy_equalities, read_equalities};
 use super::frames::Placed;
 use super::model::Parts;
 use super::source::Source;
@@ -33,7 +33,7 @@ impl<'a> Parts<'a> {
     /// If the model or the body does not exist, or a name is taken.
     pub fn attach(&mut self, attach: &Placed<'a>, index: usize) -> Result<()> {
         let element = attach.element;
-        element.check_attributes(&["model", "body", "prefix"])?;
+        element.check_attributes(&["model", "body", "frame", "prefix"])?;
         let name = element.text("model")?;
         let Some(path) = self.models.paths.get(name).cloned() else {
             let known = self.models.paths.keys().map(String::as_str);
@@ -49,8 +49,15 @@ impl<'a> Parts<'a> {
             let given = format!("more than {MAX_MODELS} attached models");
             return Err(element.refuse(given, "fewer"));
         }
-        let mut other = read_model(element, &path, &self.models)?;
-        let start = match element.node.attribute("body") {
+        let (body, frame) = (
+            element.node.attribute("body"),
+            element.node.attribute("frame"),
+        );
+        if body.is_some() && frame.is_some() {
+            return Err(element.refuse("`body` and `frame`", "one of them"));
+        }
+        let mut other = read_model((element, frame), &path, &self.models)?;
+        let start = match body {
             None => 0,
             Some(body) => {
                 let mut names = other.links.iter().map(|link| link.name.as_str());
@@ -62,7 +69,7 @@ impl<'a> Parts<'a> {
             }
         };
         let prefix = element.node.attribute("prefix").unwrap_or_default();
-        let renamed = |name: &str| format!("{prefix}{name}{}", attach.suffix);
+        let renamed = |name: &str| format!("{}{prefix}{name}{}", attach.prefix, attach.suffix);
         // Index of each body in this model; `None` for bodies that are not attached.
         let mut at: Vec<Option<usize>> = vec![None; other.links.len()];
         if start == 0 {
@@ -147,8 +154,12 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// Reads the bodies of a model. Notes on the file are added to the notes of the attaching model.
-fn read_model(element: Element, path: &Path, around: &SubModels) -> Result<Attached> {
+/// Reads the bodies of a model, or of a frame of the model. Notes on the file are added to the notes of the attaching model.
+fn read_model(
+    (element, frame): (Element, Option<&str>),
+    path: &Path,
+    around: &SubModels,
+) -> Result<Attached> {
     let place = path.display().to_string();
     let bytes = crate::files::read(path).map_err(|error| {
         let given = format!("{place}: cannot be read ({error})");
@@ -163,8 +174,9 @@ fn read_model(element: Element, path: &Path, around: &SubModels) -> Result<Attac
             node: document.root_element(),
             lines: &source.lines,
         };
-        let mut parts = Parts::read(root, &place, around)?;
-        read_equalities(root, &mut parts.joints)?;
+        let mut parts = Parts::read(root, &place, (around, frame))?;
+        read_equalities(root, &mut parts.joints, frame.is_some())?;
+        copy_equalities(root, &mut parts.joints, &parts.elements);
         let sites = parts.named_sites();
         (parts.links, parts.body_poses, parts.joints, sites)
     };

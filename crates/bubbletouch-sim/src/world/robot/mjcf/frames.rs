@@ -5,8 +5,10 @@ use super::compiler::Compiler;
 use super::orientation::{from_euler, pose_of};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::text::spelling::nearest_names;
 use crate::world::robot::xml::Element;
 use glam::DVec3;
+use roxmltree::Node;
 use std::cell::Cell;
 
 /// Largest number of copies of one `<replicate>`. A larger number indicates a mistake in the file.
@@ -27,6 +29,8 @@ pub(super) struct Placed<'a> {
     pub frame: Pose,
     /// Index of the default class of the element, unless the element names another.
     pub class: usize,
+    /// Text before the names of elements that `<attach>` copies within the model.
+    pub prefix: String,
     /// Text that `<replicate>` appends to the names of its copies.
     pub suffix: String,
     /// Number of elements around the element.
@@ -34,15 +38,27 @@ pub(super) struct Placed<'a> {
 }
 
 impl<'a> Placed<'a> {
+    /// Creates an element in the frame of the body around it.
+    pub fn new(element: Element<'a>) -> Self {
+        Self {
+            element,
+            frame: Pose::IDENTITY,
+            class: 0,
+            prefix: String::new(),
+            suffix: String::new(),
+            depth: 0,
+        }
+    }
+
     /// Returns the tag of the element.
     pub fn tag(&self) -> &'a str {
         self.element.node.tag_name().name()
     }
 
-    /// Returns the name of the element with the suffix of its copy; `None` if the element has no name.
+    /// Returns the name of the element with the prefix and the suffix of its copy; `None` if the element has no name.
     pub fn name(&self) -> Option<String> {
         let name = self.element.node.attribute("name")?;
-        Some(format!("{name}{}", self.suffix))
+        Some(format!("{}{name}{}", self.prefix, self.suffix))
     }
 }
 
@@ -91,6 +107,10 @@ pub(super) fn children_of<'a>(
             depth: body.depth + 1,
             ..body.clone()
         };
+        let child = match (child.tag(), node.attribute("model")) {
+            ("attach", None) => copied_within_model(&child, classes, n_copies)?,
+            _ => child,
+        };
         match child.tag() {
             "frame" => {
                 let class = classes.class_of(child.element, "childclass")?;
@@ -122,6 +142,64 @@ pub(super) fn children_of<'a>(
         }
     }
     Ok(all)
+}
+
+/// Returns the body or the frame of the same model that `<attach body prefix/>` or `<attach frame prefix/>` copies, in the frame of `<attach>`.
+fn copied_within_model<'a>(
+    attach: &Placed<'a>,
+    classes: &Classes<'a>,
+    n_copies: &Cell<usize>,
+) -> Result<Placed<'a>> {
+    let element = attach.element;
+    element.check_attributes(&["body", "frame", "prefix"])?;
+    let (tag, name) = match (
+        element.node.attribute("body"),
+        element.node.attribute("frame"),
+    ) {
+        (Some(name), None) => ("body", name),
+        (None, Some(name)) => ("frame", name),
+        _ => {
+            let allowed = "the attribute `model`, or one of `body` and `frame`";
+            return Err(element.refuse("<attach> without `model`", allowed));
+        }
+    };
+    n_copies.set(n_copies.get() + 1);
+    if n_copies.get() > MAX_ALL_COPIES {
+        let allowed = format!("at most {MAX_ALL_COPIES} copies in a model");
+        return Err(element.refuse("too many copies of all <attach>", allowed));
+    }
+    let (copied, class) = named_part(element, classes, (tag, name))?;
+    Ok(Placed {
+        element: copied,
+        class,
+        prefix: attach.prefix.clone() + element.node.attribute("prefix").unwrap_or_default(),
+        ..attach.clone()
+    })
+}
+
+/// Returns the `<body>` or `<frame>` with a name in the model of `element`, and the index of its default class.
+///
+/// # Errors
+/// If there is no such part; the error has the line of `element`.
+pub(super) fn named_part<'a>(
+    element: Element<'a>,
+    classes: &Classes<'a>,
+    (tag, name): (&str, &str),
+) -> Result<(Element<'a>, usize)> {
+    let all = element.node.document().root_element().descendants();
+    let all: Vec<Node> = all.filter(|node| node.tag_name().name() == tag).collect();
+    let is_it = |node: &&Node| node.attribute("name") == Some(name);
+    let Some(node) = all.iter().find(is_it).copied() else {
+        let known = all.iter().filter_map(|node| node.attribute("name"));
+        let given = format!("`{tag}` \"{name}\", which is no {tag} of the model");
+        return Err(element.refuse(given, nearest_names(name, known)));
+    };
+    let mut around = node.ancestors().skip(1).filter(|node| node.is_element());
+    let class = around.try_fold(None, |class: Option<usize>, node| match class {
+        Some(class) => Ok(Some(class)),
+        None => classes.class_of(Element { node, ..element }, "childclass"),
+    })?;
+    Ok((Element { node, ..element }, class.unwrap_or(0)))
 }
 
 /// Returns the frames of the copies of `<replicate count euler offset sep>`. The i-th copy is rotated by i times the angles. Each copy is shifted from the

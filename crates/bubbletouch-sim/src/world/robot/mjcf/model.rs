@@ -2,8 +2,8 @@
 
 use super::classes::Classes;
 use super::compiler::Compiler;
-use super::equality::read_equalities;
-use super::frames::{Placed, children_of};
+use super::equality::{copy_equalities, read_equalities};
+use super::frames::{Placed, children_of, named_part};
 use super::geom::{Meshes, extent, read_geom, read_meshes};
 use super::joint::{JointPlace, read_joint, rest_of};
 use super::orientation::pose_of;
@@ -35,7 +35,7 @@ pub(in crate::world::robot) fn read_mjcf(place: &str, text: &str) -> Result<Robo
         node: document.root_element(),
         lines: &source.lines,
     };
-    let parts = Parts::read(root, place, &SubModels::default())?;
+    let parts = Parts::read(root, place, (&SubModels::default(), None))?;
     let Parts {
         mut links,
         mut joints,
@@ -46,7 +46,8 @@ pub(in crate::world::robot) fn read_mjcf(place: &str, text: &str) -> Result<Robo
         ..
     } = parts;
     add_sites(root, sites, &mut links, &mut joints, &mut elements)?;
-    read_equalities(root, &mut joints)?;
+    read_equalities(root, &mut joints, false)?;
+    copy_equalities(root, &mut joints, &elements);
     let drives = drives(&joints, &elements)?;
     if !ignored.is_empty() {
         let kinds: Vec<String> = ignored
@@ -107,8 +108,12 @@ struct Site<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// Reads the bodies of the model in the file `place`; `around` are the models of the file that attaches it.
-    pub fn read(root: Element<'a>, place: &str, around: &SubModels) -> Result<Self> {
+    /// Reads the bodies of the model in the file `place`, or of a frame of the model; `around` are the models of the file that attaches it.
+    pub fn read(
+        root: Element<'a>,
+        place: &str,
+        (around, frame): (&SubModels, Option<&str>),
+    ) -> Result<Self> {
         if root.node.tag_name().name() != "mujoco" {
             return Err(root.refuse(format!("{} as the root", root.called()), "MJCF: a <mujoco>"));
         }
@@ -137,18 +142,26 @@ impl<'a> Parts<'a> {
             ignored: BTreeMap::new(),
             n_copies: Cell::new(0),
         };
+        if let Some(name) = frame {
+            let (element, class) = named_part(root, &parts.classes, ("frame", name))?;
+            let item = parts.classes.item(element, 0)?;
+            let frame = pose_of(&item, &parts.compiler)?;
+            let own_class = parts.classes.class_of(element, "childclass")?;
+            let class = own_class.unwrap_or(class);
+            let inside = Placed {
+                frame,
+                class,
+                ..Placed::new(element)
+            };
+            parts.add_children(&inside, 0)?;
+            return Ok(parts);
+        }
         let sections = root.node.children().filter(|node| node.is_element());
         for node in sections {
             match node.tag_name().name() {
                 "worldbody" => {
-                    let world = Placed {
-                        element: Element { node, ..root },
-                        frame: Pose::IDENTITY,
-                        class: 0,
-                        suffix: String::new(),
-                        depth: 0,
-                    };
-                    parts.add_children(&world, 0)?;
+                    let world = Element { node, ..root };
+                    parts.add_children(&Placed::new(world), 0)?;
                 }
                 "compiler" | "default" => {}
                 "asset" | "equality" => parts.ignore_children(node, &["mesh", "joint", "model"]),

@@ -2,7 +2,8 @@
 
 use crate::error::Result;
 use crate::world::robot::mesh_folders::spellings;
-use crate::world::robot::xml::Element;
+use crate::world::robot::text::{decoded, parsed, repaired};
+use crate::world::robot::xml::{Element, Lines};
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -36,9 +37,10 @@ impl SubModels {
                 .collect();
             let found = tried.iter().find(|path| path.is_file());
             let path = found.unwrap_or(&tried[0]).clone();
-            let stem = path.file_stem().and_then(|stem| stem.to_str());
-            let name = element.node.attribute("name").or(stem).unwrap_or(file);
-            paths.insert(name.to_owned(), path);
+            let name = element.node.attribute("name").map(str::to_owned);
+            let stem = || Some(path.file_stem()?.to_str()?.to_owned());
+            let name = name.or_else(|| model_name(&path)).or_else(stem);
+            paths.insert(name.unwrap_or_else(|| file.to_owned()), path);
         }
         Ok(Self {
             paths,
@@ -46,4 +48,14 @@ impl SubModels {
             n_read: around.n_read.clone(),
         })
     }
+}
+
+/// Returns the name in `<mujoco model="…">` of a file; `None` if the file cannot be read or has no name.
+fn model_name(path: &Path) -> Option<String> {
+    let place = path.display().to_string();
+    let (text, _) = decoded(&place, &crate::files::read(path).ok()?);
+    let text = repaired(&place, &text, &Lines::new(&place, &text));
+    let document = parsed(&text).ok()?;
+    let name = document.root_element().attribute("model")?;
+    Some(name.to_owned())
 }
