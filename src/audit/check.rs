@@ -23,6 +23,8 @@ pub struct Source {
     pub rows: fn(&Context) -> Option<Array2<f64>>,
     /// Whether the label of a touch is read from the touches of other groups.
     pub holds_out_groups: bool,
+    /// Whether the p-value decides about a finding. Otherwise the source is a comparison, with few permutations and without a p-value.
+    pub is_tested: bool,
 }
 
 /// Reason for an omitted check that needs labels.

@@ -1,6 +1,7 @@
 //! Quantities that several checks of an audit need, computed once.
 
 use crate::audit::data::AuditData;
+use crate::audit::deep_touches::DeepTouches;
 use crate::audit::duplicate_pairs::DuplicatePairs;
 use crate::audit::scores::{Features, Scores, Tested, scores};
 use crate::audit::splits::{AuditSplit, splits, touches_of_classes};
@@ -8,7 +9,7 @@ use crate::calibration::{RecordedSkin, plateau};
 use crate::error::Result;
 use crate::quantile::quantile;
 use crate::random::Seed;
-use bubbletouch_sim::audit::dependence::permutes_again;
+use bubbletouch_sim::audit::dependence::{max_permutations, permutes_again};
 use bubbletouch_sim::audit::missing::{count_missing, fill_missing};
 use bubbletouch_sim::audit::pooled::{blocks_of, pooled, spans};
 use bubbletouch_sim::audit::taxels::{
@@ -30,6 +31,9 @@ const MAX_SAMPLE: usize = 1000;
 const MAX_BLOCKS: [usize; 2] = [256, 512];
 /// Maximum number of pixels of the image from which shift-invariant features are computed.
 const MAX_PIXELS: usize = 1024;
+
+/// Number of permutations for a source without a p-value: they resolve the 95 % quantile of the accuracy.
+const N_UNTESTED: usize = 99;
 
 /// Options of an audit.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,6 +102,8 @@ pub struct Context {
     pub readable: BTreeMap<&'static str, Readability>,
     /// Near-duplicates, once they have been searched.
     pub near_duplicates: OnceLock<Option<DuplicatePairs>>,
+    /// Touches that lie deep in a class, once they have been searched.
+    pub deep_touches: OnceLock<Option<DeepTouches>>,
 }
 
 impl Context {
@@ -123,8 +129,12 @@ impl Context {
         let residuals = without_class_means(sample_rows.view(), &sample_labels);
         let active_std = active_std(residuals.view());
         let contact = contact_sums(residuals.view(), active_std);
-        let mut is_untouched =
-            untouched_taxels(sample_rows.view(), residuals.view(), &contact, active_std);
+        let mut is_untouched = untouched_taxels(
+            (sample_rows.view(), residuals.view()),
+            None,
+            &contact,
+            active_std,
+        );
         let is_pressed =
             constant_contact(sample_rows.view(), &sample_labels, data.grid, active_std);
         // Touches of many frames need no more frames than touches of one. Equal steps could omit the same frames of all touches.
@@ -176,6 +186,7 @@ impl Context {
             scores,
             readable: BTreeMap::new(),
             near_duplicates: OnceLock::new(),
+            deep_touches: OnceLock::new(),
             data,
             options,
         })
@@ -198,12 +209,14 @@ impl Context {
     }
 
     /// Tests whether the labels of the sampled touches can be read from some features. With `holds_out_groups`, the label of a touch is read from the touches
-    /// of other groups, if at least two classes have touches in several groups. Rows that begin with NaN are omitted.
+    /// of other groups, if at least two classes have touches in several groups. Rows that begin with NaN are omitted. If `is_tested` is
+    /// false, few permutations are made, which do not resolve a p-value.
     pub fn readability(
         &self,
         rows: ArrayView2<f64>,
         name: &str,
         holds_out_groups: bool,
+        is_tested: bool,
     ) -> Option<Readability> {
         let seed = self.seed(name);
         let places = (0..rows.nrows()).filter(|&place| !rows[(place, 0)].is_nan());
@@ -212,7 +225,8 @@ impl Context {
             .iter()
             .map(|&place| self.sample_labels[place])
             .collect();
-        let groups = self.data.groups.as_ref().filter(|_| holds_out_groups);
+        let groups = self.data.groups.as_ref();
+        let groups = groups.filter(|_| holds_out_groups);
         let groups = groups.map(|groups| {
             let of_places = places.iter().map(|&place| groups[self.sample[place]]);
             of_places.collect::<Vec<usize>>()
@@ -225,11 +239,16 @@ impl Context {
             }
             n_groups.into_values().filter(|&n| n > 1).count() > 1
         };
+        let n_permutations = self.options.n_permutations;
+        let n_permutations = match is_tested {
+            true => n_permutations..=max_permutations(n_permutations),
+            false => N_UNTESTED..=N_UNTESTED,
+        };
         readability(
             rows.select(Axis(0), &places).view(),
             &labels,
             groups.filter(is_held_out).as_deref(),
-            self.options.n_permutations,
+            n_permutations,
             &seed,
         )
     }

@@ -26,6 +26,8 @@ pub struct AuditData {
     pub full_scale: Option<f64>,
     /// Whether the touches are known to be in the order of their times.
     pub is_in_order_of_time: bool,
+    /// Number of each touch in its file, if the touches were sorted; otherwise `None`.
+    pub numbers: Option<Vec<usize>>,
 }
 
 impl AuditData {
@@ -34,7 +36,7 @@ impl AuditData {
         self.frames.nrows() / self.n_frames.max(1)
     }
 
-    /// Sorts the touches by their times, and marks their order as the order of recording.
+    /// Sorts the touches by their times, and marks their order as the order of recording. Tables still contain the numbers of the touches in the file.
     ///
     /// # Panics
     /// If there are fewer times than touches.
@@ -52,7 +54,18 @@ impl AuditData {
         if let Some(is_test) = &mut self.is_test {
             *is_test = order.iter().map(|&touch| is_test[touch]).collect();
         }
+        self.numbers = Some(match &self.numbers {
+            Some(numbers) => order.iter().map(|&touch| numbers[touch]).collect(),
+            None => order,
+        });
         self.is_in_order_of_time = true;
+    }
+
+    /// Returns the number of a touch in its file, from 0.
+    pub fn number_in_file(&self, touch: usize) -> usize {
+        self.numbers
+            .as_ref()
+            .map_or(touch, |numbers| numbers[touch])
     }
 
     /// Checks that frames, labels, groups and sessions belong together.

@@ -10,6 +10,7 @@ mod check;
 pub mod checks;
 mod context;
 mod data;
+mod deep_touches;
 mod duplicate_pairs;
 mod finding;
 mod pictures;

@@ -59,7 +59,7 @@ pub fn pictures(context: &Context, findings: &[Finding]) -> Result<Vec<NamedPict
             ("near_duplicates", title),
         )?);
     }
-    let doubtful = label_noise::deep_touches(context).map_or_else(Vec::new, |found| found.doubtful);
+    let doubtful = label_noise::deep_touches(context).map_or(&[][..], |found| &found.doubtful);
     let typical = |class: usize| {
         let best = context.best_at_random()?;
         let touches = 0..context.labels.len();

@@ -363,7 +363,7 @@ fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
         sessions,
         full_scale,
         is_in_order_of_time: times.is_some(),
-        is_test: None,
+        ..AuditData::default()
     };
     if let Some(times) = times {
         data.sort_by_time(&times);

@@ -30,8 +30,10 @@ pub fn audit(data: AuditData, options: AuditOptions) -> Result<Audit> {
         let sources = checks::SOURCES.par_iter();
         let read = sources.filter_map(|source| {
             let rows = (source.rows)(&context)?;
-            let found = context.readability(rows.view(), source.name, source.holds_out_groups)?;
-            Some((source.name, found))
+            let (name, is_tested) = (source.name, source.is_tested);
+            let found =
+                context.readability(rows.view(), name, source.holds_out_groups, is_tested)?;
+            Some((name, found))
         });
         context.readable = read.collect();
     }

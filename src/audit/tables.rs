@@ -1,6 +1,6 @@
 //! Tables and charts of an audit.
 
-use crate::audit::checks::{dead_taxels, drift, hot_taxels, label_noise, near_duplicates};
+use crate::audit::checks::{SOURCES, dead_taxels, drift, hot_taxels, label_noise, near_duplicates};
 use crate::audit::context::Context;
 use crate::audit::finding::{Finding, Verdict};
 use crate::audit::scores::METHODS;
@@ -80,7 +80,7 @@ pub struct ConfoundRow {
     accuracy_low: f64 => Note: Share;
     /// Accuracy; for permuted labels, the 95 % quantile of the accuracy.
     accuracy_high: f64 => Note: Share;
-    /// Probability of at least this accuracy if source and label are independent.
+    /// Probability of at least this accuracy if source and label are independent; empty for sources without a finding of their own.
     p_value: Option<f64> => Note "p": Log;
 } }
 
@@ -117,7 +117,8 @@ pub struct ClassRow {
 row! {
 /// Touch to inspect: a near-duplicate, or a touch with a doubtful label.
 pub struct DoubtfulRow {
-    /// Number of the touch in the file, from 0.
+    /// Number of the touch in the file of the frames, from 0, also if the audit sorts the touches by time. The touches of a given test set, and of further files
+    /// of a folder in the order of their names, follow.
     touch: usize => Subject: Linear;
     /// Class of the touch.
     class: String => Subject;
@@ -225,8 +226,10 @@ fn confound_rows(context: &Context) -> Vec<ConfoundRow> {
             accuracy_high: high,
             p_value,
         };
+        let is_tested = SOURCES.iter().any(|of| of.name == *source && of.is_tested);
+        let p_value = is_tested.then_some(found.p_value);
         [
-            row("given", found.accuracy, found.accuracy, Some(found.p_value)),
+            row("given", found.accuracy, found.accuracy, p_value),
             row("permuted", found.chance, found.bound, None),
         ]
     });
@@ -258,17 +261,17 @@ fn doubtful_rows(context: &Context) -> Vec<DoubtfulRow> {
     let duplicates = near_duplicates::pairs(context).map_or(&[][..], |found| &found.pairs);
     for &(touch, other) in duplicates {
         rows.push(DoubtfulRow {
-            touch,
+            touch: context.data.number_in_file(touch),
             class: name(touch),
             reason: "near_duplicate".to_owned(),
-            other_touch: Some(other),
+            other_touch: Some(context.data.number_in_file(other)),
             other_class: name(other),
         });
     }
-    for doubtful in label_noise::deep_touches(context).map_or_else(Vec::new, |found| found.doubtful)
-    {
+    let doubtful = label_noise::deep_touches(context).map_or(&[][..], |found| &found.doubtful);
+    for doubtful in doubtful {
         rows.push(DoubtfulRow {
-            touch: doubtful.touch,
+            touch: context.data.number_in_file(doubtful.touch),
             class: name(doubtful.touch),
             reason: "doubtful_label".to_owned(),
             other_touch: None,

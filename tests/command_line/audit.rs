@@ -208,3 +208,23 @@ fn a_given_test_set_is_read_from_the_folder_or_from_recorded_toml() {
     let error = said(&["other"]);
     assert!(error.contains("u.npy") && error.contains("64"), "{error}");
 }
+
+/// The file lists the touches from the last to the first in time.
+#[test]
+fn touches_to_look_at_have_their_numbers_in_the_file() {
+    let case = with_recording();
+    let mut frames = frames();
+    // Touch 68 is a copy of touch 5 and has the same label.
+    let copy = frames.slice(s![5, .., ..]).to_owned();
+    frames.slice_mut(s![68, .., ..]).assign(&copy);
+    write_npy(&case.path("skin/frames.npy"), &frames).unwrap();
+    let times = ndarray::Array1::from_iter((0..N).map(|touch| -(touch as f64)));
+    write_npy(&case.path("skin/times.npy"), &times).unwrap();
+    case.succeeds(&audit(&["skin"]));
+    let rows = std::fs::read_to_string(case.path("results/skin_audit/rows.csv")).unwrap();
+    let (five, copy) = (
+        "5,class 2,near_duplicate,68,",
+        "68,class 2,near_duplicate,5,",
+    );
+    assert!(rows.contains(five) && rows.contains(copy), "{rows}");
+}

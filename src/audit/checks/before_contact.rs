@@ -20,6 +20,7 @@ pub const SOURCE: Source = Source {
     name: "before_contact",
     rows,
     holds_out_groups: true,
+    is_tested: true,
 };
 
 /// Readings of all taxels in the first or the last frame, whichever varies less within classes; the frame may contain contact.
@@ -27,6 +28,7 @@ pub const QUIETEST: Source = Source {
     name: "quietest_frame",
     rows: |context| Some(some_columns(&quietest_frame(context)?.0, |_| true)),
     holds_out_groups: true,
+    is_tested: false,
 };
 
 /// Number of frames before the contact of each touch, if all touches begin at rest.
@@ -34,6 +36,7 @@ pub const ONSET: Source = Source {
     name: "contact_onset",
     rows: onset,
     holds_out_groups: true,
+    is_tested: true,
 };
 
 /// Frames without contact at any place of the recording: touches that consist of such a frame, or the first such frame of each touch.
@@ -41,7 +44,59 @@ pub const AT_REST: Source = Source {
     name: "frames_without_contact",
     rows: frames_without_contact,
     holds_out_groups: true,
+    is_tested: true,
 };
+
+/// Number of frames without change at the end of each touch, as after padding to the longest touch.
+pub const PADDING: Source = Source {
+    name: "frames_of_padding",
+    rows: padding,
+    holds_out_groups: true,
+    is_tested: true,
+};
+
+/// Returns the number of frames at the end of each sampled touch that equal the last frame, shape (n_sample, 1). Returns `None` if these numbers are equal.
+fn padding(context: &Context) -> Option<Array2<f64>> {
+    let n_frames = context.data.n_frames;
+    let numbers = context.sample.iter().map(|touch| {
+        let last = touch * n_frames + n_frames - 1;
+        let frames = (touch * n_frames..last).rev();
+        let equal =
+            frames.take_while(|&row| context.data.frames.row(row) == context.data.frames.row(last));
+        equal.count() as f64
+    });
+    let numbers: Vec<f64> = numbers.collect();
+    if numbers.iter().all(|&number| number == numbers[0]) {
+        return None;
+    }
+    Array2::from_shape_vec((numbers.len(), 1), numbers).ok()
+}
+
+/// Noise of the readings before the contact, or in frames without contact at any place.
+pub const NOISE: Source = Source {
+    name: "noise_before_contact",
+    rows: |context| noise_levels(&rows(context).or_else(|| frames_without_contact(context))?),
+    holds_out_groups: true,
+    is_tested: true,
+};
+
+/// Minimum number of readings of a touch from which a noise level is computed. With fewer readings, its relative error exceeds 20 %.
+const MIN_OF_NOISE: usize = 12;
+
+/// Returns the noise level of each row of readings at rest, shape (n, 1): the standard deviation over taxels of the readings less their means over all rows.
+/// Rows that begin with NaN have the level NaN. Returns `None` for fewer than [`MIN_OF_NOISE`] taxels, or readings without
+/// noise.
+pub fn noise_levels(readings: &Array2<f64>) -> Option<Array2<f64>> {
+    if readings.ncols() < MIN_OF_NOISE {
+        return None;
+    }
+    let known = (0..readings.nrows()).filter(|&row| !readings[(row, 0)].is_nan());
+    let known = readings.select(Axis(0), &known.collect::<Vec<_>>());
+    let mean = known.mean_axis(Axis(0))?;
+    let levels = (readings - &mean).std_axis(Axis(1), 1.0);
+    let is_noisy = levels.iter().any(|&level| level > 0.0);
+    is_noisy.then(|| levels.insert_axis(Axis(1)))
+}
 
 /// Quantile of the contact of all frames, and the largest contact of a frame without contact relative to this quantile. At least 5 % of the frames must be
 /// without contact; their readings may have levels that depend on the class.
@@ -107,7 +162,8 @@ fn frames_without_contact(context: &Context) -> Option<Array2<f64>> {
     let quiet = context.data.frames.select(Axis(0), &quiet);
     let residuals = without_class_means(quiet.view(), &labels);
     let sums = contact_sums(residuals.view(), context.active_std);
-    let is_untouched = untouched_taxels(quiet.view(), residuals.view(), &sums, context.active_std);
+    let rows = (quiet.view(), residuals.view());
+    let is_untouched = untouched_taxels(rows, Some(&labels), &sums, context.active_std);
     let n_untouched = active.iter().filter(|&&taxel| is_untouched[taxel]).count();
     if (n_untouched as f64) < MIN_UNTOUCHED * active.len() as f64 {
         return None;
@@ -199,8 +255,8 @@ fn rows(context: &Context) -> Option<Array2<f64>> {
     }
     let (rows, residuals) = quietest_frame(context)?;
     let is_untouched = untouched_taxels(
-        rows.view(),
-        residuals.view(),
+        (rows.view(), residuals.view()),
+        Some(&context.sample_labels),
         &context.contact,
         context.active_std,
     );
@@ -247,6 +303,24 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         return Ok(vec![Finding::not_checked("", NO_LABELS)]);
     }
     let mut findings: Vec<Finding> = at_rest(context).into_iter().collect();
+    if let Some(found) = context.readable.get(PADDING.name) {
+        let sentence = format!(
+            "The number of equal frames at the end names the class of {} of the touches; permuted labels give {}.",
+            percent(found.accuracy),
+            percent(found.chance)
+        );
+        let advice = "Record all touches with the same length, or cut them to the shortest; otherwise the classifier may name the length of the recording.";
+        findings.push(Finding::readable(found, sentence, advice).about("padding"));
+    }
+    if let Some(found) = context.readable.get(NOISE.name) {
+        let sentence = format!(
+            "The noise of readings without contact names the class of {} of the touches; permuted labels give {}.",
+            percent(found.accuracy),
+            percent(found.chance)
+        );
+        let advice = "Record the classes in random order and with the same settings of the sensor; otherwise the classifier may name the session by its noise.";
+        findings.push(Finding::readable(found, sentence, advice).about("noise"));
+    }
     if let Some(found) = context.readable.get(ONSET.name) {
         let sentence = format!(
             "The number of frames before the contact names the class of {} of the touches; permuted labels give {}.",

@@ -19,26 +19,39 @@ const ANY: f64 = 0.001;
 /// Minimum number of frames in which a constant taxel lies between two touched taxels.
 const MIN_FRAMES: usize = 3;
 
-/// Returns the faulty taxels. On a grid, a fault counts only if the taxel lies between two touched taxels in some frames. Outside the contact area, a faultless
-/// taxel is constant, too.
+/// Returns the faulty taxels. On a grid, a fault counts only if the taxel lies between two touched taxels in some frames; other faulty taxels between them, as in
+/// faulty rows side by side, are skipped. Outside the contact area, a faultless taxel is constant, too.
 pub fn found(context: &Context) -> Vec<Fault> {
-    let faults = faults::find(&context.skin).faults.into_iter();
+    let faults = faults::find(&context.skin);
     let Some((rows, columns)) = context.data.grid else {
-        return faults.collect();
+        return faults.faults;
+    };
+    let working = |mut taxels: std::ops::Range<usize>, y: Option<usize>, x: usize| {
+        let place = |at: usize| y.map_or(at * columns + x, |y| y * columns + at);
+        let first = taxels
+            .clone()
+            .map(place)
+            .find(|&taxel| faults.is_sound[taxel]);
+        let last = taxels.rfind(|&at| faults.is_sound[place(at)]).map(place);
+        [first, last]
     };
     let is_between = |fault: &Fault| {
         let (y, x) = (fault.taxel / columns, fault.taxel % columns);
-        let pairs = [
-            (x > 0 && x + 1 < columns).then(|| [fault.taxel - 1, fault.taxel + 1]),
-            (y > 0 && y + 1 < rows).then(|| [fault.taxel - columns, fault.taxel + columns]),
+        // The nearest working taxels to the left and right, and below and above.
+        let across = [
+            working(0..x, Some(y), x)[1],
+            working(x + 1..columns, Some(y), x)[0],
         ];
+        let along = [working(0..y, None, x)[1], working(y + 1..rows, None, x)[0]];
+        let pairs = [across, along].map(|[first, last]| Some([first?, last?]));
         let frames = context.skin.touched.outer_iter().filter(|frame| {
             let mut pairs = pairs.iter().flatten();
             pairs.any(|pair| pair.iter().all(|&taxel| frame[taxel] > TOUCHED))
         });
         frames.take(MIN_FRAMES).count() == MIN_FRAMES
     };
-    faults.filter(|fault| is_between(fault)).collect()
+    let found = faults.faults.iter().filter(|fault| is_between(fault));
+    found.copied().collect()
 }
 
 fn run(context: &Context) -> Result<Vec<Finding>> {

@@ -6,12 +6,18 @@
 //! label, although all labels are right. A larger number of touches with another label indicates wrong labels; the test is binomial. Real classes can also
 //! overlap otherwise, so the nearest touches must confirm the class: a touch counts only if four of its five nearest touches have the label of the class.
 //! Classes of which less than 70 % are recognised do not count, neither as labels nor as predictions.
+//!
+//! Wrong labels may concentrate in one pair of classes. The test is therefore also made for each label and each other class in which its touches lie, with the
+//! accuracy of these two classes. The p-value is twice the smaller of the p-value of all touches and the smallest p-value of a pair times the number of pairs.
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result};
+use crate::audit::deep_touches::{DeepTouches, Doubtful, DoubtfulPair};
 use crate::audit::finding::percent;
 use crate::statistics::interval::Interval;
 use crate::statistics::p_status::CONFIDENCE;
+use ndarray::Array2;
 use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal};
+use std::collections::BTreeMap;
 
 /// Minimum relevant fraction of wrong labels.
 const TOLERATED: f64 = 0.005;
@@ -29,26 +35,13 @@ pub const ABOUT: CheckAbout = CheckAbout {
     run,
 };
 
-/// Touch with a doubtful label.
-pub struct Doubtful {
-    /// Index of the touch.
-    pub touch: usize,
-    /// Class that the classifier predicts.
-    pub class: usize,
-}
-
-/// Touches that lie deep in a class.
-pub struct DeepTouches {
-    /// Touches with another label than the class in which they lie, the deepest first.
-    pub doubtful: Vec<Doubtful>,
-    /// Number of touches that lie deep in a class, with any label.
-    pub n_deep: usize,
-    /// Fraction of the touches of the tested classes that the classifier recognises.
-    pub accuracy: f64,
+/// Returns the touches that lie deep in a class, which are searched at the first call; `None` if no classifier is accurate enough.
+pub fn deep_touches(context: &Context) -> Option<&DeepTouches> {
+    context.deep_touches.get_or_init(|| find(context)).as_ref()
 }
 
 /// Finds touches that lie deep in a class by the margins of the best classifier with scores. Returns `None` if no classifier is accurate enough.
-pub fn deep_touches(context: &Context) -> Option<DeepTouches> {
+fn find(context: &Context) -> Option<DeepTouches> {
     let scored = context.tested(0).filter(|tested| tested.scores.is_some());
     let best = scored.max_by(|a, b| a.accuracy().total_cmp(&b.accuracy()))?;
     let scores = best.scores.as_ref()?;
@@ -93,7 +86,14 @@ pub fn deep_touches(context: &Context) -> Option<DeepTouches> {
         doubtful: Vec::new(),
         n_deep: 0,
         accuracy,
+        pairs: Vec::new(),
+        n_pairs: known.len() * (known.len() - 1),
     };
+    // Number of touches of each label with each prediction.
+    let mut predicted = Array2::<usize>::zeros((n_classes, n_classes));
+    for &(touch, class, _) in &touches {
+        predicted[(context.labels[touch], class)] += 1;
+    }
     let mut doubtful = Vec::new();
     for class in (0..n_classes).filter(|&class| is_known(class)) {
         let is_right = |touch: usize| context.labels[touch] == class;
@@ -109,15 +109,38 @@ pub fn deep_touches(context: &Context) -> Option<DeepTouches> {
         let least = crate::quantile::quantile(&mut margins, DEEP);
         let deep =
             within.filter(|(touch, _, margin)| *margin >= least && is_confirmed(*touch, class));
+        let mut n_deep = 0;
+        let mut n_doubtful = BTreeMap::<usize, usize>::new();
         for &(touch, _, margin) in deep {
-            found.n_deep += 1;
+            n_deep += 1;
             if !is_right(touch) {
+                *n_doubtful.entry(context.labels[touch]).or_default() += 1;
                 doubtful.push((
                     margin / median.abs().max(f64::MIN_POSITIVE),
                     Doubtful { touch, class },
                 ));
             }
         }
+        found.n_deep += n_deep;
+        n_deep -= n_doubtful.values().sum::<usize>();
+        let pairs = n_doubtful.into_iter().map(|(label, n_doubtful)| {
+            let n = |of: [(usize, usize); 2]| of.map(|pair| predicted[pair] as f64).iter().sum();
+            let n_exchanged: f64 = n([(label, class), (class, label)]);
+            let n_correct: f64 = n([(label, label), (class, class)]);
+            let n_within: f64 = n([(label, class), (class, class)]);
+            let n_deep = n_deep + n_doubtful;
+            // If the doubtful labels are wrong, an equal fraction of all touches that are predicted as the class has wrong labels.
+            let n_wrong = n_within * n_doubtful as f64 / n_deep as f64;
+            let n_exchanged = (n_exchanged - n_wrong).max(0.0);
+            DoubtfulPair {
+                label,
+                class,
+                n_doubtful,
+                n_deep,
+                accuracy: n_correct / (n_correct + n_exchanged),
+            }
+        });
+        found.pairs.extend(pairs);
     }
     doubtful.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.touch.cmp(&b.1.touch)));
     found.doubtful = doubtful.into_iter().map(|(_, touch)| touch).collect();
@@ -138,6 +161,20 @@ fn neighbours(context: &Context) -> Option<&Vec<Vec<usize>>> {
     }
 }
 
+/// Tests whether overlapping classes explain the number of doubtful touches among the touches deep in a class. `accuracy` is the fraction of the touches with
+/// right labels that the classifier recognises, and `n` is the number of all touches. Returns the expected fraction and the p-value.
+fn test((n_doubtful, n_deep): (usize, usize), accuracy: f64, n: f64) -> (f64, f64) {
+    let normal = Normal::standard();
+    let mean = normal.inverse_cdf(accuracy.min(1.0 - 0.5 / n));
+    let beyond = normal.cdf(-2.0 * mean - normal.inverse_cdf(DEEP));
+    let expected = (beyond / (1.0 - DEEP + beyond)).max(TOLERATED);
+    let p_value = match (n_doubtful, Binomial::new(expected, n_deep as u64)) {
+        (1.., Ok(binomial)) => binomial.sf(n_doubtful as u64 - 1),
+        _ => 1.0,
+    };
+    (expected, p_value)
+}
+
 fn run(context: &Context) -> Result<Vec<Finding>> {
     if !context.has_classes() {
         return Ok(vec![Finding::not_checked("", NO_LABELS)]);
@@ -150,25 +187,35 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         return Ok(vec![Finding::not_checked("", why)]);
     };
     let n = context.labels.len() as f64;
-    let normal = Normal::standard();
     let n_doubtful = found.doubtful.len();
     let share = n_doubtful as f64 / found.n_deep as f64;
+    let of_all = (n_doubtful, found.n_deep);
     // Wrong labels reduce the accuracy, too.
-    let accuracy = (found.accuracy / (1.0 - share)).min(1.0 - 0.5 / n);
-    let mean = normal.inverse_cdf(accuracy);
-    let beyond = normal.cdf(-2.0 * mean - normal.inverse_cdf(DEEP));
-    let expected = (beyond / (1.0 - DEEP + beyond)).max(TOLERATED);
-    let p_value = match (n_doubtful, Binomial::new(expected, found.n_deep as u64)) {
-        (1.., Ok(binomial)) => binomial.sf(n_doubtful as u64 - 1),
-        _ => 1.0,
-    };
+    let (expected, p_of_all) = test(of_all, found.accuracy / (1.0 - share).max(0.5), n);
+    let pairs = found.pairs.iter().map(|pair| {
+        let (_, p) = test((pair.n_doubtful, pair.n_deep), pair.accuracy, n);
+        (p * found.n_pairs as f64, pair)
+    });
+    let pair = pairs.min_by(|a, b| a.0.total_cmp(&b.0));
+    let p_of_pair = pair.as_ref().map_or(1.0, |(p, _)| *p);
+    let p_value = (2.0 * p_of_all.min(p_of_pair)).min(1.0);
     let interval = Interval::wilson(n_doubtful, found.n_deep, CONFIDENCE)?;
-    let sentence = format!(
+    let mut sentence = format!(
         "Of {} touches that lie deep in a class and whose nearest touches confirm it, {n_doubtful} ({}) have another label; overlapping classes explain {}.",
         found.n_deep,
         percent(share),
         percent(expected)
     );
+    if let Some((_, pair)) = pair.filter(|(p, _)| *p < p_of_all) {
+        let name = |class: usize| &context.data.classes[class];
+        sentence += &format!(
+            " Most conspicuous are {} of {} touches deep in {}, which have the label {}.",
+            pair.n_doubtful,
+            pair.n_deep,
+            name(pair.class),
+            name(pair.label)
+        );
+    }
     let finding = Finding::tested("", share, sentence, (p_value, true))
         .within([interval.low, interval.high])
         .against(expected)

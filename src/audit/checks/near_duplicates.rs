@@ -1,14 +1,16 @@
 //! Touches that are nearer to another touch than chance explains, such as copies and neighbouring frames of one recording.
 //!
-//! Touches are compared as recorded, without mean and scale, by features that do not depend on place and mirroring, and, if touches have several frames, by
-//! their middle frame with all frames of other touches. Copies with another gain or offset, moved, mirrored or turned copies, and overlapping windows of one
-//! recording are near-duplicates, too.
+//! Touches are compared as recorded, without mean and scale, with the mirrored and turned frames of other touches, by features that do not depend on place and
+//! mirroring, and, if touches have several frames, by their middle frame with all frames of other touches. Copies with another gain or offset, moved, mirrored or
+//! turned copies, and overlapping windows of one recording are near-duplicates, too.
 
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::checks::mean_reading::shapes;
+use crate::audit::checks::quantisation::are_counts;
 use crate::audit::duplicate_pairs::{Comparison, DuplicatePairs};
 use crate::audit::finding::percent;
 use crate::audit::scores::{N_NEAREST, nearest};
+use crate::quantile::quantile;
 use bubbletouch_sim::audit::duplicates::test_duplicates;
 use bubbletouch_sim::audit::pooled::{pooled, symmetrised};
 use bubbletouch_svm::audit::nearest_rows;
@@ -37,6 +39,10 @@ pub const ABOUT: CheckAbout = CheckAbout {
 /// Display words of the comparison of touches as recorded.
 const AS_RECORDED: &str = "as recorded";
 
+/// Maximum median distance between the further neighbours of a near-duplicate, relative to its median distance from them, at which they form a cluster away from
+/// it. Neighbours in a smooth density are at least as far from each other as from the row.
+const CLUSTER: f64 = 0.5;
+
 /// Returns the near-duplicates, which are found at the first call; `None` if there are too few different touches.
 pub fn pairs(context: &Context) -> Option<&DuplicatePairs> {
     context
@@ -62,31 +68,57 @@ fn find(context: &Context) -> Option<DuplicatePairs> {
         (None, None) => return None,
     };
     let all: Vec<usize> = (0..context.labels.len()).collect();
-    let compared = |words, rows: &[usize], neighbours: &[Vec<usize>], distances: &[Vec<f64>]| {
-        let of = |list: &[usize]| -> Vec<usize> { rows.iter().map(|&row| list[row]).collect() };
-        let is_tested: Vec<bool> = rows.iter().map(|&row| has_contact[row]).collect();
-        let p_values = test_duplicates(distances, &is_tested, &of(&context.labels))?;
-        let n = rows.len() as f64;
-        let found = p_values.iter().enumerate().filter(|(_, p)| **p * n <= ANY);
-        let found = found.map(|(place, &p)| (rows[place], neighbours[place][0], p));
-        let found: Vec<(usize, usize, f64)> = found.collect();
-        // Few pairs of derived features can be near by chance of the derivation, unless they are exact copies.
-        let is_decisive = |place: &usize| {
-            words == AS_RECORDED || (distances[*place].first() == Some(&0.0) && is_tested[*place])
+    let compared =
+        |words, values: &Array2<f64>, rows: &[usize], near: (&[Vec<usize>], &[Vec<f64>])| {
+            let (neighbours, distances) = near;
+            let of = |list: &[usize]| -> Vec<usize> { rows.iter().map(|&row| list[row]).collect() };
+            let is_tested: Vec<bool> = rows.iter().map(|&row| has_contact[row]).collect();
+            let mut p_values = test_duplicates(distances, &is_tested, &of(&context.labels))?;
+            let n = rows.len() as f64;
+            for (place, p_value) in p_values.iter_mut().enumerate() {
+                if *p_value * n <= ANY
+                    && is_beside_cluster(&neighbours[place], &distances[place], values)
+                {
+                    *p_value = 1.0;
+                }
+            }
+            let found = p_values.iter().enumerate().filter(|(_, p)| **p * n <= ANY);
+            let found = found.map(|(place, &p)| (rows[place], neighbours[place][0], p));
+            let found: Vec<(usize, usize, f64)> = found.collect();
+            // Few pairs of derived features can be near by chance of the derivation, unless they are exact copies.
+            let is_decisive = |place: &usize| {
+                words == AS_RECORDED
+                    || (distances[*place].first() == Some(&0.0) && is_tested[*place])
+            };
+            let single = (0..rows.len()).filter(is_decisive);
+            let single = single.map(|place| p_values[place] * n);
+            Some(Comparison {
+                words,
+                n_tested: rows.len(),
+                p_value: single.fold(p_value_of_pairs(&found, rows, neighbours), f64::min),
+                found,
+            })
         };
-        let single = (0..rows.len()).filter(is_decisive);
-        let single = single.map(|place| p_values[place] * n);
-        Some(Comparison {
+    let mut comparisons = vec![compared(
+        AS_RECORDED,
+        blocks,
+        &all,
+        (neighbours, distances),
+    )?];
+    let of_near = |words, values: &Array2<f64>, near: &Near| {
+        compared(
             words,
-            n_tested: rows.len(),
-            p_value: single.fold(p_value_of_pairs(&found, rows, neighbours), f64::min),
-            found,
-        })
+            values,
+            &near.touches,
+            (&near.neighbours, &near.distances),
+        )
     };
-    let mut comparisons = vec![compared(AS_RECORDED, &all, neighbours, distances)?];
     let by_features = |words, rows: &Array2<f64>| {
-        let near = nearest_of_sample(rows.view(), &context.sample);
-        compared(words, &near.touches, &near.neighbours, &near.distances)
+        of_near(
+            words,
+            rows,
+            &nearest_of_sample(rows.view(), &context.sample),
+        )
     };
     comparisons.extend(by_features(
         "without mean and scale",
@@ -96,13 +128,11 @@ fn find(context: &Context) -> Option<DuplicatePairs> {
         let rows = symmetrised(invariant.view(), context.features.image);
         comparisons.extend(by_features("moved, mirrored or turned", &rows));
     }
+    if let Some(near) = nearest_turned(context) {
+        comparisons.extend(of_near("mirrored or turned", blocks, &near));
+    }
     if let Some(near) = nearest_windows(context) {
-        comparisons.extend(compared(
-            "shifted in time",
-            &near.touches,
-            &near.neighbours,
-            &near.distances,
-        ));
+        comparisons.extend(of_near("shifted in time", blocks, &near));
     }
     let n_comparisons = comparisons.len() as f64;
     let least = comparisons.iter().map(|c| c.p_value).fold(1.0, f64::min);
@@ -129,6 +159,21 @@ fn find(context: &Context) -> Option<DuplicatePairs> {
         share,
         comparisons,
     })
+}
+
+/// Returns whether the further half of the nearest rows form a cluster away from a row. Then the distances of the row do not show the density around it: a few
+/// rows beside a cluster, such as touches at the border of a skin beside frames without contact, have a gap to the cluster although they are no copies.
+fn is_beside_cluster(neighbours: &[usize], distances: &[f64], rows: &Array2<f64>) -> bool {
+    let further = &neighbours[neighbours.len() / 2..];
+    let mut away = distances[neighbours.len() / 2..].to_vec();
+    let mut between = Vec::new();
+    for (place, &first) in further.iter().enumerate() {
+        between.extend(further[place + 1..].iter().map(|&second| {
+            let difference = &rows.row(first) - &rows.row(second);
+            difference.dot(&difference).sqrt()
+        }));
+    }
+    !between.is_empty() && quantile(&mut between, 0.5) < CLUSTER * quantile(&mut away, 0.5)
 }
 
 /// Returns the probability of at least as many pairs by chance. A pair counts if both touches are near-duplicates of each other, or if the other touch was not
@@ -193,14 +238,15 @@ fn nearest_of_sample(rows: ArrayView2<f64>, sample: &[usize]) -> Near {
 }
 
 /// Finds the nearest touches of the middle frames of sampled touches, compared with all frames of other touches. Returns `None` if touches have fewer than
-/// three frames.
+/// three frames, or readings are counts of events.
 fn nearest_windows(context: &Context) -> Option<Near> {
     let data = &context.data;
     let n_frames = data.n_frames;
     let touches: Vec<usize> = (context.sample.iter().copied())
         .take((MAX_FRAMES / n_frames).max(1))
         .collect();
-    if n_frames < 3 || touches.len() < 2 * N_NEAREST {
+    // Single frames of few events are equal by chance.
+    if n_frames < 3 || touches.len() < 2 * N_NEAREST || are_counts(context) {
         return None;
     }
     let frames = touches
@@ -208,22 +254,62 @@ fn nearest_windows(context: &Context) -> Option<Near> {
         .flat_map(|&touch| touch * n_frames..(touch + 1) * n_frames);
     let frames = data.frames.select(Axis(0), &frames.collect::<Vec<_>>());
     let frames = pooled(frames.view(), 1, data.grid, MAX_BLOCKS);
-    let squares: Vec<f64> = frames.rows().into_iter().map(|row| row.dot(&row)).collect();
+    let middle: Vec<usize> = (0..touches.len())
+        .map(|touch| touch * n_frames + n_frames / 2)
+        .collect();
+    let middle = frames.select(Axis(0), &middle);
+    Some(nearest_variants(touches, &middle, &frames))
+}
+
+/// Finds the nearest touches of the mean frames of sampled touches, compared with the mirrored and turned mean frames of other touches. Returns `None` without
+/// a grid.
+fn nearest_turned(context: &Context) -> Option<Near> {
+    let (rows, columns) = context.data.grid.filter(|grid| grid.0.min(grid.1) > 1)?;
+    let frames = &context.sample_rows;
+    let at = |y: usize, x: usize| y * columns + x;
+    let mut turns: Vec<Vec<usize>> = vec![Vec::new(); if rows == columns { 7 } else { 3 }];
+    for (y, x) in (0..rows).flat_map(|y| (0..columns).map(move |x| (y, x))) {
+        let (below, left) = (rows - 1 - y, columns - 1 - x);
+        let mirrored = [at(y, left), at(below, x), at(below, left)];
+        // Only a square skin reads all taxels of a frame that was turned by 90°.
+        let square = [(x, y), (x, below), (left, y), (left, below)];
+        let turned = square.into_iter().map(|(y, x)| at(y, x));
+        for (turn, taxel) in turns.iter_mut().zip(mirrored.into_iter().chain(turned)) {
+            turn.push(taxel);
+        }
+    }
+    let pool = |frames: &Array2<f64>| {
+        let frames = frames.as_standard_layout();
+        pooled(frames.view(), 1, context.data.grid, MAX_BLOCKS)
+    };
+    let own = pool(frames);
+    let mut variants = Array2::zeros((frames.nrows() * turns.len(), own.ncols()));
+    for (turn, taxels) in turns.iter().enumerate() {
+        let mut of_turn = variants.slice_mut(s![turn..;turns.len(), ..]);
+        of_turn.assign(&pool(&frames.select(Axis(1), taxels)));
+    }
+    Some(nearest_variants(context.sample.clone(), &own, &variants))
+}
+
+/// Finds the nearest other touches of each touch. `own` contains a row for each of `touches`, and `variants` contains an equal number of rows for each touch;
+/// the distance to another touch is the least distance to one of its variants.
+fn nearest_variants(touches: Vec<usize>, own: &Array2<f64>, variants: &Array2<f64>) -> Near {
+    let n_variants = variants.nrows() / touches.len();
+    let squared = |rows: &Array2<f64>| -> Vec<f64> {
+        rows.rows().into_iter().map(|row| row.dot(&row)).collect()
+    };
+    let (own_squares, squares) = (squared(own), squared(variants));
     let starts: Vec<usize> = (0..touches.len()).step_by(BLOCK).collect();
     let found = starts.into_par_iter().map(|start| {
         let block = start..(start + BLOCK).min(touches.len());
-        let middle: Vec<usize> = block
-            .clone()
-            .map(|touch| touch * n_frames + n_frames / 2)
-            .collect();
-        let products = frames.select(Axis(0), &middle).dot(&frames.t());
+        let products = own.slice(s![block.clone(), ..]).dot(&variants.t());
         let mut near = Near::default();
         for (place, touch) in block.enumerate() {
             let row = products.slice(s![place, ..]);
             let least = |other: usize| {
-                let own = other * n_frames..(other + 1) * n_frames;
-                let squared = own.map(|frame| squares[frame] - 2.0 * row[frame]);
-                squared.fold(f64::INFINITY, f64::min) + squares[middle[place]]
+                let of_other = other * n_variants..(other + 1) * n_variants;
+                let squared = of_other.map(|variant| squares[variant] - 2.0 * row[variant]);
+                squared.fold(f64::INFINITY, f64::min) + own_squares[touch]
             };
             let others = (0..touches.len()).filter(|&other| other != touch);
             let mut others: Vec<(f64, usize)> = others.map(|other| (least(other), other)).collect();
@@ -246,7 +332,7 @@ fn nearest_windows(context: &Context) -> Option<Near> {
         near.distances.extend(block.distances);
     }
     near.touches = touches;
-    Some(near)
+    near
 }
 
 fn run(context: &Context) -> Result<Vec<Finding>> {

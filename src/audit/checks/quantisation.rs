@@ -22,7 +22,7 @@ pub const ABOUT: CheckAbout = CheckAbout {
 };
 
 /// Returns whether the readings are counts of events: integers from 0 whose variance is at least their mean.
-fn are_counts(context: &Context) -> bool {
+pub fn are_counts(context: &Context) -> bool {
     let (zero, full_scale) = context.scale;
     let raw = (context.skin.touched.view()).mapv(|reading| zero + reading * (full_scale - zero));
     let tolerance = 1e-6 * full_scale.abs().max(1.0);

@@ -22,6 +22,7 @@ pub const SOURCE: Source = Source {
         .ok()
     },
     holds_out_groups: true,
+    is_tested: true,
 };
 
 /// Minimum number of touches that follow a touch of their class, in parts with several classes. Fewer touches may be sorted by chance.

@@ -2,6 +2,7 @@
 
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
+use crate::calibration::plateau;
 use crate::table::short_number;
 use bubbletouch_sim::audit::clipped::clipped_at;
 use ndarray::ArrayView1;
@@ -10,6 +11,8 @@ use ndarray::ArrayView1;
 const ANY: f64 = 0.001;
 /// Minimum fraction of frames with a single largest reading, from which the frames count as scaled to their largest reading.
 const MIN_SCALED: f64 = 0.99;
+
+const ADVICE: &str = "Press less, reduce the gain of the readout, or state the limit: forces above it are not recorded.";
 
 pub const ABOUT: CheckAbout = CheckAbout {
     name: "saturation",
@@ -50,7 +53,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     );
     let finding = Finding::counted("", share, sentence, n_saturated > 0)
         .against(0.0)
-        .advice("Press less, reduce the gain of the readout, or state the limit: forces above it are not recorded.")
+        .advice(ADVICE)
         .shown_in("taxels");
     Ok(vec![finding])
 }
@@ -61,6 +64,25 @@ fn is_normalised(context: &Context, level: f64) -> bool {
     let is_single = |frame: &ArrayView1<f64>| frame.iter().filter(|&&x| x >= level).count() == 1;
     let n_single = frames.filter(is_single).count();
     n_single as f64 >= MIN_SCALED * context.skin.touched.nrows() as f64
+}
+
+/// Returns the fraction of frames with a taxel at the smallest reading, and this reading, if several taxels share it in many frames.
+fn lower_plateau(context: &Context) -> Option<(f64, f64)> {
+    let frames = || context.skin.touched.outer_iter();
+    let negative = |(taxel, &reading): (usize, &f64)| match context.taxels[taxel].is_constant() {
+        true => f64::NAN,
+        false => -reading,
+    };
+    let level = -plateau(|| frames().map(|frame| frame.into_iter().enumerate().map(negative)))?;
+    let is_clipped = |frame: &ArrayView1<f64>| {
+        let mut readings = frame.iter().enumerate();
+        readings.any(|(taxel, &x)| x <= level && !context.taxels[taxel].is_constant())
+    };
+    let n_clipped = frames().filter(is_clipped).count();
+    Some((
+        n_clipped as f64 / context.skin.touched.nrows() as f64,
+        level,
+    ))
 }
 
 /// Looks for taxels that are clipped at levels of their own. If contact reduces the readings, the smallest readings are clipped.
@@ -84,6 +106,20 @@ fn of_taxels(context: &Context) -> Finding {
     };
     let skewness: f64 = active.iter().map(cubes).sum();
     let sign = if skewness < 0.0 { -1.0 } else { 1.0 };
+    if sign < 0.0
+        && let Some((share, level)) = lower_plateau(context)
+    {
+        let reading = context.scale.0 + level * (context.scale.1 - context.scale.0);
+        let sentence = format!(
+            "{} of the frames contain a taxel at {}, the smallest reading, which several taxels share.",
+            percent(share),
+            short_number(reading)
+        );
+        return Finding::counted("", share, sentence, true)
+            .against(0.0)
+            .advice(ADVICE)
+            .shown_in("taxels");
+    }
     let significance = ANY / active.len().max(1) as f64;
     let clipped = active.iter().filter_map(|&taxel| {
         let mut readings: Vec<f64> = frames.column(taxel).iter().map(|x| sign * x).collect();
@@ -105,6 +141,6 @@ fn of_taxels(context: &Context) -> Finding {
     };
     Finding::counted("", share, sentence, !clipped.is_empty())
         .against(0.0)
-        .advice("Press less, reduce the gain of the readout, or state the limit: forces above it are not recorded.")
+        .advice(ADVICE)
         .shown_in("taxels")
 }

@@ -18,6 +18,7 @@ pub const SOURCE: Source = Source {
     name: "session",
     rows: |context| one_column_per_unit(context, context.data.sessions.as_ref()?),
     holds_out_groups: false,
+    is_tested: false,
 };
 
 pub const GROUPS: Source = Source {
@@ -28,6 +29,7 @@ pub const GROUPS: Source = Source {
         one_column_per_unit(context, groups)
     },
     holds_out_groups: false,
+    is_tested: false,
 };
 
 /// Returns one column per session or group with 1 for its touches.

@@ -1,7 +1,7 @@
 //! Labels that can be read from taxels that are never touched.
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result, Source};
-use crate::audit::checks::before_contact::some_columns;
+use crate::audit::checks::before_contact::{noise_levels, some_columns};
 use crate::audit::finding::percent;
 use ndarray::Array2;
 
@@ -15,6 +15,15 @@ pub const SOURCE: Source = Source {
     name: "untouched_taxels",
     rows,
     holds_out_groups: true,
+    is_tested: true,
+};
+
+/// Noise of the taxels that are never touched.
+pub const NOISE: Source = Source {
+    name: "noise_of_untouched_taxels",
+    rows: |context| noise_levels(&rows(context)?),
+    holds_out_groups: true,
+    is_tested: true,
 };
 
 fn rows(context: &Context) -> Option<Array2<f64>> {
@@ -42,5 +51,15 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         percent(found.chance)
     );
     let advice = "Subtract the level of the untouched taxels from each frame, mask them, and record the classes in random order.";
-    Ok(vec![Finding::readable(found, sentence, advice)])
+    let mut findings = vec![Finding::readable(found, sentence, advice)];
+    if let Some(found) = context.readable.get(NOISE.name) {
+        let sentence = format!(
+            "The noise of the taxels that nothing touches names the class of {} of the touches; permuted labels give {}.",
+            percent(found.accuracy),
+            percent(found.chance)
+        );
+        let advice = "Mask the untouched taxels, and record the classes in random order and with the same settings of the sensor.";
+        findings.push(Finding::readable(found, sentence, advice).about("noise"));
+    }
+    Ok(findings)
 }

@@ -11,6 +11,7 @@
 //! | [`duplicates`] | Which rows are nearer to another row than chance explains? |
 //! | [`counts`] | How many levels do the readings of a taxel have, and are they counts of events? |
 //! | [`dependence`] | Are rows that are neighbours in time, or members of a group, more alike than other rows of their class? |
+//! | [`gain`] | Which gain has a row, compared with rows of equal shape? |
 //! | [`hot`] | Which taxels read a pressure or noise while the taxels around them are at rest? |
 //!
 //! Faults of taxels, saturation and converters are found by [`calibration`](crate::calibration). Rows are touches in the order of recording.
@@ -20,6 +21,7 @@ pub mod counts;
 pub mod dependence;
 pub mod duplicates;
 pub mod frozen;
+pub mod gain;
 pub mod hot;
 pub mod missing;
 pub mod placeholders;

@@ -5,7 +5,8 @@
 //!
 //! - Skewness and excess kurtosis exceed the values of a normal distribution by at most five standard errors (√(6/n), √(24/n)). If readings are clipped at
 //!   zero, a clipped normal distribution with an equal fraction of clipped readings replaces the normal distribution. This fraction must be 30 to 70 %, because
-//!   contact in few rows resembles strongly clipped noise.
+//!   contact in few rows resembles strongly clipped noise. If the noise may depend on the class, the condition is also fulfilled if residuals divided by the noise
+//!   of their class fulfil it.
 //! - The correlation with the sum of the more active taxels is within four standard errors (1/√n).
 //! - The correlation with each of the more active taxels is at most 0.5 (six standard errors for few rows). Electrodes that read contact in both directions
 //!   have a sum that hardly depends on the contact. If readings are clipped, the same holds for the taxels before and after the taxel: light contact that is
@@ -18,6 +19,7 @@
 use crate::statistics::quantile::{of_sorted, quantile};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
+use std::collections::BTreeMap;
 
 /// Bound of skewness and kurtosis in standard errors. With 4,096 taxels, noise exceeds the bound at no taxel with a probability of 99.8 %.
 const MOMENT_ERRORS: f64 = 5.0;
@@ -38,6 +40,9 @@ const CLIPPED: f64 = 0.05;
 const CLIPPED_NOISE: [f64; 2] = [0.3, 0.7];
 /// Maximum standard deviation of an untouched taxel with clipped readings, relative to active taxels.
 const MAX_CLIPPED_STD: f64 = 0.25;
+
+/// Minimum number of rows of each class from which the noise of the classes is compared. With fewer rows, errors of the noise resemble heavy tails.
+const MIN_OF_CLASS: usize = 30;
 
 /// Mean, spread and range of the readings of a taxel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -127,16 +132,18 @@ pub fn without_class_means(rows: ArrayView2<f64>, labels: &[usize]) -> Array2<f6
 
 /// Returns for each taxel whether it is never touched.
 ///
-/// `rows` are the readings, one row per touch. `residuals` are the readings without the means of their classes ([`without_class_means`]). `contact` is a number
-/// per row that grows with the contact, such as the sum of the readings of the active taxels in this row. `active_std` is the standard deviation of active
+/// `rows` are the readings, one row per touch, and the readings without the means of their classes ([`without_class_means`]). If the class
+/// of each row is given in `labels`, the noise may depend on the class. This is for rows most of whose taxels are untouched: frequent light contact with one class
+/// can resemble noise of this class. `contact` is a number per row that grows with the contact, such as the sum of the readings of the active taxels in this row. `active_std` is the standard deviation of active
 /// taxels.
 pub fn untouched_taxels(
-    rows: ArrayView2<f64>,
-    residuals: ArrayView2<f64>,
+    (rows, residuals): (ArrayView2<f64>, ArrayView2<f64>),
+    labels: Option<&[usize]>,
     contact: &[f64],
     active_std: f64,
 ) -> Vec<bool> {
     let n = rows.nrows();
+    let classes = labels.map_or_else(Vec::new, rows_of_large_classes);
     let contact = standardised(contact);
     let taxels = 0..rows.ncols();
     let mut is_untouched: Vec<bool> = taxels
@@ -159,8 +166,15 @@ pub fn untouched_taxels(
                 return false;
             }
             let correlation = residuals.dot(&contact) / (n as f64 * std);
-            correlation.abs() * (n as f64).sqrt() <= CORRELATION_ERRORS
-                && has_light_tails(residuals, std, if is_clipped { clipped } else { 0.0 })
+            let has_light_tails = || match is_clipped {
+                true => has_light_tails(residuals, std, clipped),
+                false => {
+                    has_light_tails(residuals, std, 0.0)
+                        || (with_equal_noise(residuals, &classes))
+                            .is_some_and(|equal| has_light_tails(equal.view(), 1.0, 0.0))
+                }
+            };
+            correlation.abs() * (n as f64).sqrt() <= CORRELATION_ERRORS && has_light_tails()
         })
         .collect();
     let found = (0..rows.ncols()).filter(|&taxel| is_untouched[taxel]);
@@ -268,6 +282,34 @@ fn standardised(values: &[f64]) -> Array1<f64> {
     values.mapv(|x| if std > 0.0 { (x - mean) / std } else { 0.0 })
 }
 
+/// Returns the rows of each class, if each class has [`MIN_OF_CLASS`] rows; otherwise nothing.
+fn rows_of_large_classes(labels: &[usize]) -> Vec<Vec<usize>> {
+    let mut classes = BTreeMap::<usize, Vec<usize>>::new();
+    for (row, &label) in labels.iter().enumerate() {
+        classes.entry(label).or_default().push(row);
+    }
+    match classes.values().all(|rows| rows.len() >= MIN_OF_CLASS) {
+        true => classes.into_values().collect(),
+        false => Vec::new(),
+    }
+}
+
+/// Returns residuals divided by the noise of their class, with standard deviation 1. The noise is the median of the absolute residuals, which contact in fewer
+/// than half of the rows hardly changes. Returns `None` without classes, or if a class has no noise.
+fn with_equal_noise(residuals: ArrayView1<f64>, classes: &[Vec<usize>]) -> Option<Array1<f64>> {
+    let mut equal = residuals.to_owned();
+    for rows in classes {
+        let mut sizes: Vec<f64> = rows.iter().map(|&row| residuals[row].abs()).collect();
+        let noise = quantile(&mut sizes, 0.5);
+        if noise <= 0.0 {
+            return None;
+        }
+        rows.iter().for_each(|&row| equal[row] /= noise);
+    }
+    let std = equal.std(0.0);
+    (!classes.is_empty()).then(|| equal / std)
+}
+
 /// Returns the fraction of readings that equal the least reading.
 fn clipped_share(readings: ArrayView1<f64>) -> f64 {
     let least = readings.iter().copied().fold(f64::INFINITY, f64::min);
@@ -346,7 +388,12 @@ mod tests {
         let residuals = without_class_means(rows.view(), &labels);
         let active = active_std(residuals.view());
         let contact = contact_sums(residuals.view(), active);
-        let found = untouched_taxels(rows.view(), residuals.view(), &contact, active);
+        let found = untouched_taxels(
+            (rows.view(), residuals.view()),
+            Some(&labels),
+            &contact,
+            active,
+        );
         assert_eq!(found, [true, true, true, false, false, false]);
     }
 
@@ -366,7 +413,12 @@ mod tests {
         let residuals = without_class_means(rows.view(), &labels);
         let active = active_std(residuals.view());
         let contact = contact_sums(residuals.view(), active);
-        let found = untouched_taxels(rows.view(), residuals.view(), &contact, active);
+        let found = untouched_taxels(
+            (rows.view(), residuals.view()),
+            Some(&labels),
+            &contact,
+            active,
+        );
         let expected = [false, false, false, false, false, false, true, true];
         assert_eq!(found, expected);
     }

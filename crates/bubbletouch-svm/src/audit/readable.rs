@@ -11,12 +11,10 @@ use crate::streams::Streams;
 use ndarray::{Array2, ArrayView2, Axis};
 use rand::seq::SliceRandom;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 /// Number of nearest rows that vote.
 const N_VOTES: usize = 5;
-/// Minimum number of permutations if none of fewer permutations reaches the observed accuracy. A p-value of 1/4,001 remains significant after a correction
-/// for 40 tests.
-const N_EXTENDED: usize = 4000;
 
 /// Accuracy with which labels can be read from features, and its distribution under permuted labels.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,12 +102,13 @@ impl Units {
 }
 
 /// Tests whether the labels (in 0..n_classes) can be read from the features. `units` contains the unit of each row, or `None` if all rows are independent.
-/// Returns `None` for fewer than two rows per class on average, or a single class.
+/// The first number of the range `n_permutations` is made in any case; more permutations, up to the last number, only until one of them reaches the observed
+/// accuracy. Returns `None` for fewer than two rows per class on average, or a single class.
 pub fn readability(
     features: ArrayView2<f64>,
     labels: &[usize],
     units: Option<&[usize]>,
-    n_permutations: usize,
+    n_permutations: RangeInclusive<usize>,
     seed: &dyn Streams,
 ) -> Option<Readability> {
     let n = labels.len();
@@ -130,11 +129,11 @@ pub fn readability(
     let n_correct = observed[method];
     let mut permuted = labels.to_vec();
     let mut rng = seed.named("permutations").rng();
-    let mut found = Vec::with_capacity(n_permutations);
+    let mut found = Vec::with_capacity(*n_permutations.start());
     let mut is_reached = false;
     // More permutations resolve smaller p-values.
-    while found.len() < n_permutations
-        || (!is_reached && found.len() < N_EXTENDED.max(4 * n_permutations))
+    while found.len() < *n_permutations.start()
+        || (!is_reached && found.len() < *n_permutations.end())
     {
         for cells in &units.strata {
             let label = |&cell: &usize| labels[units.cells[cell][0]];
@@ -282,7 +281,7 @@ mod tests {
     fn p_values_of_noise_are_uniform_and_those_of_labels_smallest() {
         let labels: Vec<usize> = (0..60).map(|row| row % 4).collect();
         let of = |features: Array2<f64>, seed: u64| {
-            readability(features.view(), &labels, None, 99, &seed).unwrap()
+            readability(features.view(), &labels, None, 99..=4000, &seed).unwrap()
         };
         let p_values: Vec<f64> = (0..100).map(|k| of(noise(60, 6, k), k).p_value).collect();
         let below = |bound: f64| p_values.iter().filter(|&&p| p <= bound).count();
@@ -339,7 +338,7 @@ mod tests {
                 features += &levels.row(row / 5);
             }
             let of = |features: &Array2<f64>, units: Option<&[usize]>| {
-                readability(features.view(), &labels, units, 199, &5_u64).unwrap()
+                readability(features.view(), &labels, units, 199..=4000, &5_u64).unwrap()
             };
             assert!(of(&features, None).p_value <= 0.005);
             let within = of(&features, Some(&units));
