@@ -211,11 +211,31 @@ class Base:
         return np.zeros(len(rows))
 
 
+class Form(Base):
+    """Classifier whose text contains its field and not its code."""
+
+    def __init__(self, k: int) -> None:
+        self.k = k
+
+    def __repr__(self) -> str:
+        return f"Form({self.k})"
+
+
+class OtherForm(Form):
+    """Classifier with the text of another class."""
+
+    def predict(self, rows: Any) -> Any:
+        return np.ones(len(rows))
+
+
 def test_a_version_follows_bases_and_variables_around_a_class() -> None:
     def version(thing: Any) -> str:
         return bt._foreign.identified({"mine": thing}, None)[0][0][1]
 
     assert version(trained_with(1.0)) == version(trained_with(1.0)) != version(trained_with(2.0))
+    # Objects with equal texts and different code.
+    assert version(Form(3)) == version(Form(3)) != version(Form(4))
+    assert version(Form(3)) != version(OtherForm(3))
     derived = type("Derived", (Base,), {"__module__": __name__})
     other = type("Derived", (Nearest,), {"__module__": __name__})
     assert version(derived()) == version(derived()) != version(other())

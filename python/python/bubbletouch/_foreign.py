@@ -65,7 +65,9 @@ def _described(thing: Any, above: tuple[Any, ...] = ()) -> str:
     if hasattr(thing, "__dict__") and getattr(type(thing), "__repr__", None) is getattr(object, "__repr__", None):
         return f"{_described(type(thing), inside)} {_described(vars(thing), inside)}"
     # The address of an object differs between processes.
-    return re.sub(r" at 0x[0-9a-fA-F]+", "", repr(thing))
+    text = re.sub(r" at 0x[0-9a-fA-F]+", "", repr(thing))
+    # The text of a dataclass, for example, contains its fields and not its code.
+    return text if type(thing).__module__ == "builtins" else f"{_described(type(thing), inside)} {text}"
 
 
 def _cells(function: FunctionType, above: tuple[Any, ...]) -> str:
