@@ -20,6 +20,9 @@ use std::ops::Range;
 /// Largest cosine that counts as zero in the conditions above. If larger, parts that are not nearest are kept; if smaller, rounding can lose the nearest
 /// point on the boundary between two parts.
 const FLAT: f64 = 1e-9;
+/// Smallest angle between the normals of two faces at a crease, radians (30°, the usual limit of smooth shading). If larger, a corner that stands on a floor and at a
+/// wall has one contact, whose faces share the force; if smaller, a corner that slides over a finely triangulated surface loses its multiplier more often.
+pub(crate) const CREASE: f64 = std::f64::consts::FRAC_PI_6;
 
 /// Parts of a mesh that objects can touch; vertices with equal coordinates are one corner.
 ///
@@ -29,10 +32,14 @@ pub struct MeshFeatures {
     corners: Vec<DVec3>,
     /// Unit vectors along the edges at each corner, corner by corner.
     directions: Lists<DVec3>,
+    /// For each corner, whether one of its edges is a ridge.
+    is_on_ridge: Vec<bool>,
     edges: Vec<Edge>,
     /// Unit vectors in the adjacent faces of each edge, perpendicular to the edge and into the face.
     sides: Lists<DVec3>,
     faces: Vec<Face>,
+    /// For each part, the number of the part that stands for its smooth patch.
+    patches: Vec<u32>,
     normals: Pseudonormals,
     is_closed: bool,
 }
@@ -180,7 +187,23 @@ impl MeshFeatures {
                 });
             }
         }
+        let patches = smooth_patches(&faces, corners.len(), edges.len());
+        let mut is_on_ridge = vec![false; corners.len()];
+        for face in &faces {
+            for (k, edge) in face.edges.iter().enumerate() {
+                if edges
+                    .get(*edge as usize)
+                    .is_some_and(|edge: &Edge| edge.is_ridge)
+                {
+                    for end in [k, (k + 1) % 3] {
+                        is_on_ridge[face.corner_numbers[end] as usize] = true;
+                    }
+                }
+            }
+        }
         Self {
+            patches,
+            is_on_ridge,
             directions: lists(corners.len(), directions),
             sides: lists(edges.len(), sides),
             corners,
@@ -221,6 +244,11 @@ impl MeshFeatures {
         corners.filter_map(|(corner, owns)| owns.then_some(*corner as usize))
     }
 
+    /// Returns whether one of the edges at a corner is a ridge. Another corner does not protrude from its faces, and touches nothing before they do.
+    pub fn is_on_ridge(&self, corner: usize) -> bool {
+        self.is_on_ridge[corner]
+    }
+
     /// Returns the number of an edge among all parts.
     pub fn edge_number(&self, edge: usize) -> u32 {
         (self.corners.len() + edge) as u32
@@ -245,13 +273,21 @@ impl MeshFeatures {
         }
     }
 
-    /// Returns the direction of the edge that contains a nearest point (unit vector); `None` if the point is in a face or at a corner.
-    pub fn edge_along(&self, closest: &Closest) -> Option<DVec3> {
-        let Feature::Edge(side) = closest.feature else {
-            return None;
-        };
-        let edge = self.faces[closest.triangle].edges[usize::from(side)];
-        self.edges.get(edge as usize).map(|edge| edge.direction)
+    /// Returns the number that stands for the smooth patch of a part. A smooth patch consists of faces that are connected over edges without a crease, and of
+    /// the edges and corners that only these faces have. An edge or a corner of several patches stands for itself.
+    pub fn smooth_patch(&self, part: u32) -> u32 {
+        self.patches[part as usize]
+    }
+
+    /// Returns whether the face, edge or corner that contains a nearest point is a part of the triangle.
+    pub fn has_nearest(&self, triangle: usize, closest: &Closest) -> bool {
+        let of = &self.faces[closest.triangle].corner_numbers;
+        let has = |k: usize| self.faces[triangle].corner_numbers.contains(&of[k % 3]);
+        match closest.feature {
+            Feature::Face => triangle == closest.triangle,
+            Feature::Edge(k) => has(usize::from(k)) && has(usize::from(k) + 1),
+            Feature::Vertex(k) => has(usize::from(k)),
+        }
     }
 
     /// Returns whether a point is inside the solid of the mesh, given the nearest point of the mesh. `bvh` is the tree of the mesh's triangles.
@@ -278,6 +314,59 @@ impl MeshFeatures {
         let along = self.directions.at(corner);
         along.iter().all(|along| d.dot(*along) <= FLAT)
     }
+}
+
+/// Returns, for each part, the number of the part that stands for its smooth patch ([`MeshFeatures::smooth_patch`]).
+fn smooth_patches(faces: &[Face], n_corners: usize, n_edges: usize) -> Vec<u32> {
+    let mut of_edge: Vec<(u32, u32)> = faces
+        .iter()
+        .zip(0..)
+        .flat_map(|(face, number)| face.edges.map(|edge| (edge, number)))
+        .filter(|(edge, _)| *edge != u32::MAX)
+        .collect();
+    of_edge.sort_unstable();
+    let mut first: Vec<u32> = (0..faces.len() as u32).collect();
+    for sides in of_edge.chunk_by(|a, b| a.0 == b.0) {
+        let [one, other] = *sides else { continue };
+        let normals = [one, other].map(|side| faces[side.1 as usize].normal);
+        // A triangle without a normal belongs to its neighbours.
+        let is_smooth = match normals {
+            [Some(a), Some(b)] => a.dot(b) > CREASE.cos(),
+            _ => true,
+        };
+        if is_smooth {
+            let [a, b] = [one, other].map(|side| root(&mut first, side.1));
+            first[a.max(b) as usize] = a.min(b);
+        }
+    }
+    let n_rest = n_corners + n_edges;
+    let mut patches = vec![u32::MAX; n_rest];
+    for number in 0..faces.len() {
+        let patch = n_rest as u32 + root(&mut first, number as u32);
+        let face = &faces[number];
+        let corners = face.corner_numbers.map(|corner| corner as usize);
+        let edges = face.edges.iter().filter(|edge| **edge != u32::MAX);
+        let edges = edges.map(|edge| n_corners + *edge as usize);
+        for part in corners.into_iter().chain(edges) {
+            let of = &mut patches[part];
+            *of = match *of {
+                u32::MAX => patch,
+                same if same == patch => patch,
+                _ => part as u32,
+            };
+        }
+        patches.push(patch);
+    }
+    patches
+}
+
+/// Returns the first face of the patch to which a face belongs, and shortens the way to it.
+fn root(first: &mut [u32], mut face: u32) -> u32 {
+    while first[face as usize] != face {
+        first[face as usize] = first[first[face as usize] as usize];
+        face = first[face as usize];
+    }
+    face
 }
 
 impl Face {

@@ -52,6 +52,7 @@ mod winding;
 
 pub use box_tree::BoxTree;
 pub use bvh::{Bvh, Closest, Hit};
+pub(crate) use features::CREASE;
 pub use features::{Edge, Face, MeshFeatures};
 pub use formats::{
     LengthUnit, MeshFormat, obj_group, read_collada, read_gltf, read_obj, read_ply, read_stl,

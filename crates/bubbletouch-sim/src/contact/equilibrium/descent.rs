@@ -171,7 +171,8 @@ impl<'a, 'b> Descent<'a, 'b> {
                 && change <= ACCEPTED_IMBALANCE
                 && self.is_at_rest(ACCEPTED_IMBALANCE, ACCEPTED_RESIDUAL)
             {
-                (best, least) = (Some(self.scene.clone()), now);
+                let held = self.workspace.held.clone();
+                (best, least) = (Some((self.scene.clone(), held)), now);
             }
             if self.has_mesh {
                 let imbalance = self.largest_imbalance().max(change);
@@ -205,12 +206,16 @@ impl<'a, 'b> Descent<'a, 'b> {
             complementarity_residual = now;
             self.look_again();
         }
-        let Some(best) = best else {
+        let Some((scene, held)) = best else {
             return End::Exhausted;
         };
-        self.scene = best;
+        self.scene = scene;
+        self.workspace.held = held;
         self.look_again();
-        End::Rest
+        match self.is_at_rest(ACCEPTED_IMBALANCE, ACCEPTED_RESIDUAL) || !self.has_mesh {
+            true => End::Rest,
+            false => End::Exhausted,
+        }
     }
 
     fn is_at_rest(&self, imbalance: f64, complementarity_residual: f64) -> bool {
@@ -302,7 +307,8 @@ impl<'a, 'b> Descent<'a, 'b> {
             return None;
         }
         let DescentWorkspace { now, model, .. } = &mut *self.workspace;
-        let step = model.best(&self.scene, now, (gradient, hessian), self.reach);
+        let limit = (self.reach, self.has_mesh);
+        let step = model.best(&self.scene, now, (gradient, hessian), limit);
         Some((slope, step))
     }
 

@@ -42,7 +42,11 @@ pub(super) struct Smoothness {
 impl Smoothness {
     /// Returns the width of the smoothing between spheres that push a taxel equally far, metres.
     fn for_group(&self, group: &Group) -> f64 {
-        let of_load = self.load * group.weight / group.stiffness;
+        let stiffness = match group.key {
+            Key::Taxel(..) => group.stiffness,
+            Key::Rigid(..) => 0.1 * self.stop_stiffness,
+        };
+        let of_load = self.load * group.weight / stiffness;
         self.smoothing.min(of_load).max(self.least)
     }
 

@@ -35,6 +35,8 @@ mod energy;
 mod fall;
 mod free_object;
 mod loads;
+#[cfg(test)]
+mod mesh_laws;
 mod meshes;
 mod model;
 mod pair;

@@ -14,6 +14,9 @@ use glam::DVec3;
 
 /// Maximum number of Newton iterations that minimise the quadratic model.
 const MAX_STEPS: usize = 40;
+/// Value of [`MAX_STEPS`] if a mesh can touch a rigid shape. Between the present pose and the minimum, the model of such a scene has many kinks, where a corner meets
+/// another face.
+const MAX_ROUGH_STEPS: usize = 150;
 
 /// Quadratic model of the energy as a function of the motions of the bodies; a motion has six components per body.
 #[derive(Clone, Debug, Default)]
@@ -122,9 +125,10 @@ impl Model {
                     );
                     if load.n_sharing > 1 {
                         add(of_body(sums, *body), 1.0, slope);
-                        let block = [*body as usize; 2];
-                        hessian.add_block(block, stiffening, slope, slope);
                     }
+                }
+                if load.n_sharing > 1 {
+                    add_square(&mut hessian, stiffening, slopes.for_pair(at));
                 }
             }
             add_square(&mut hessian, -stiffening / load.n_sharing as f64, sums);
@@ -134,19 +138,21 @@ impl Model {
     }
 
     /// Returns a motion that decreases the model and is not longer than the trust-region radius `reach`, metres. The function uses Newton steps. The model
-    /// must have been set up for the given energy, gradient and Hessian.
+    /// must have been set up for the given energy, gradient and Hessian. If the energy `is_rough`, Newton steps become longer again after a short one, because the
+    /// model has many kinks that are far from its minimum.
     pub fn best(
         &mut self,
         scene: &Scene,
         Energy { pairs, loads }: &Energy,
         (mut gradient, mut hessian): (Vec<f64>, Symmetric),
-        reach: f64,
+        (reach, is_rough): (f64, bool),
     ) -> Step {
         let start = loads.elastic;
         let enough = 0.03 * scene.slope(&gradient);
         let (mut motion, mut energy) = (vec![0.0; gradient.len()], start);
         let mut part = reach;
-        for _ in 0..MAX_STEPS {
+        let n_steps = if is_rough { MAX_ROUGH_STEPS } else { MAX_STEPS };
+        for _ in 0..n_steps {
             let (step, promised) = best_step(&gradient, &hessian, part);
             let mut next: Vec<f64> = motion.iter().zip(&step).map(|(a, b)| a + b).collect();
             let length = norm(&next);
@@ -157,6 +163,8 @@ impl Model {
             let after = self.energy_after(scene, pairs, &next);
             if after >= energy || energy - after < 0.1 * promised && !is_far {
                 part *= 0.25;
+            } else if is_rough && energy - after > 0.5 * promised {
+                part = (4.0 * part).min(reach);
             }
             if after < energy {
                 (motion, energy) = (next, after);

@@ -78,7 +78,12 @@ impl Touch {
         body: &Body,
         of_body: impl Fn(usize) -> usize,
     ) -> Self {
-        let sphere = pair.part.1 as usize;
+        let parts = match &pair.kind {
+            Kind::Rigid(touching) => touching.parts,
+            _ => None,
+        };
+        let sphere = parts.map_or(pair.part.1, |[own, _]| own) as usize;
+        let counterpart = |number: usize| parts.map_or(number, |[_, other]| other as usize);
         let push = pair.push(load.force);
         let out = push.try_normalize().unwrap_or(DVec3::ZERO);
         let inset = match &pair.kind {
@@ -89,8 +94,11 @@ impl Touch {
             object: of_body(pair.part.0 as usize),
             sphere,
             other: match touched {
-                Touched::Object(slot, sphere) => Touched::Object(of_body(slot), sphere),
-                rigid => rigid,
+                Touched::Object(slot, sphere) => {
+                    Touched::Object(of_body(slot), counterpart(sphere))
+                }
+                Touched::Obstacle(number, sphere) => Touched::Obstacle(number, counterpart(sphere)),
+                plane => plane,
             },
             point: body.center + pair.arm - inset * out,
             force: push,

@@ -22,6 +22,8 @@ pub(super) struct Touching {
     pub curvature: Curvature,
     /// Distance from the end of the pair's arm to the contact point, towards the counterpart, metres.
     pub inset: f64,
+    /// Numbers of the touching parts of the body and its counterpart; `None` if the key of the pair contains them.
+    pub parts: Option<[u32; 2]>,
     /// Index of the touched body, and the arm from its centre of mass; `None` if the counterpart is fixed.
     pub other: Option<(u32, DVec3)>,
 }
@@ -41,6 +43,7 @@ impl Touching {
         Self {
             curvature: Curvature::of_point((-n, bending)),
             inset: radius,
+            parts: None,
             other,
         }
     }

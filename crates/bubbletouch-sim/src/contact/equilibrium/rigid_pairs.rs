@@ -62,7 +62,7 @@ pub(super) fn gather_rigid(
             gather_shapes(pairs, (slot, body), &others, touched, (range, held));
         }
     }
-    pairs[first..].sort_unstable_by_key(|pair| pair.key);
+    pairs[first..].sort_unstable_by_key(|pair| (pair.key, pair.part));
 }
 
 fn gather_plane(
@@ -120,18 +120,24 @@ fn gather_shapes(
         pose: others.pose,
     };
     each_contact(&own, &other, Range { gap, deep }, |found| {
-        let part = (slot, found.parts[0]);
-        let key = Key::Rigid(part, touched(found.parts[1] as usize));
+        let [own, other] = found.identity;
+        let key = Key::Rigid((slot, own), touched(other as usize));
+        // Parts of a smooth patch that one point touches share one multiplier, as spheres that press one taxel. The number of the varying part tells them apart.
+        let part = match found.parts[0] == own {
+            true => found.parts[1],
+            false => found.parts[0],
+        };
         if found.beyond > 0.0 && held.binary_search(&key).is_err() {
             return;
         }
         pairs.push(Pair {
             key,
-            part,
+            part: (slot, part),
             deflection: found.penetration,
             kind: Kind::Rigid(Touching {
                 curvature: found.curvature,
                 inset: found.inset,
+                parts: Some(found.parts),
                 other: others
                     .body
                     .map(|(body, middle)| (body, found.point - middle)),

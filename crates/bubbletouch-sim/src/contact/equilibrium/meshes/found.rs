@@ -36,6 +36,8 @@ impl Range {
 pub(in crate::contact::equilibrium) struct Found {
     /// Numbers of the touching parts of both shapes.
     pub parts: [u32; 2],
+    /// Numbers that identify the contact. All parts of a smooth patch that one point touches are one contact, whose penetration is the largest one.
+    pub identity: [u32; 2],
     pub penetration: f64,
     /// Distance by which the parts miss the contact, metres, at most [`MISS`] times the largest depth: the foot is beside the face, or the nearest points are
     /// beside the ridges. At most 0 for a contact.

@@ -4,7 +4,7 @@ use crate::geometry::Pose;
 use crate::objects::MeshModel;
 use glam::DMat3;
 
-/// Corners and ridges of a mesh that are near another mesh, by their numbers, ascending.
+/// Ridges of a mesh that are near another mesh, and corners at the end of a ridge, by their numbers, ascending.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Near {
     pub corners: Vec<usize>,
@@ -26,7 +26,9 @@ impl Near {
         other
             .bvh()
             .each_near(mesh.bvh(), motion, margin, |triangle| {
-                near.corners.extend(features.own_corners(triangle));
+                let corners = features.own_corners(triangle);
+                near.corners
+                    .extend(corners.filter(|&corner| features.is_on_ridge(corner)));
                 let edges = features.own_edges(triangle);
                 near.ridges
                     .extend(edges.filter(|&edge| features.edges()[edge].is_ridge));

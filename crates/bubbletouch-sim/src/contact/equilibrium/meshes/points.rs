@@ -9,30 +9,39 @@
 //! | in front of the face, g > 0 | g ≥ h | parts of a face that its neighbours cover |
 //! | behind the face, g ≤ 0, and inside the solid | n·(q − a) ≥ 0: the way to q leads out of this face, too | the far sides of the solid |
 //!
-//! If no face contains the foot of a point inside the solid, q is on an edge or at a corner, and the point touches this part.
+//! If q is on an edge or at a corner, a point inside the solid also touches the faces of this edge or corner. A point outside touches the farthest of these faces,
+//! if all of them belong to one smooth patch.
+//!
+//! The contacts of one point with a smooth patch ([`MeshFeatures::smooth_patch`]) are one group, whose penetration is the largest one. No face is deeper than
+//! −h, and the nearest one is as deep. The penetration is thus −h where q is on a face, and continuous when the point slides over the patch. The faces of
+//! a valley share the force. A floor and a wall are two patches and two contacts.
 
 use super::super::curvature::Curvature;
 use super::super::rigid_shape::RigidShape;
 use super::algebra::{cross_matrix, outer};
 use super::found::{Found, MISS, Placed, Range};
 use crate::geometry::Pose;
-use crate::mesh::{Closest, Feature, MeshFeatures};
+use crate::mesh::{CREASE, Closest, Feature, MeshFeatures};
 use crate::objects::MeshModel;
 use glam::{DMat3, DVec3};
 
 /// Distance behind a valley up to which its faces continue in front of the point, relative to the largest depth that is searched. If smaller, a step meets a face
 /// that it did not know; if larger, more faces are collected.
 const VALLEY: f64 = 0.1;
-/// Distance behind a valley up to which its faces continue, relative to the depth of a point behind them. The foot of a point is at most as far behind a valley as
-/// the point is from the valley.
-const BELOW: f64 = 1.01;
-/// Height of the nearest point behind another face, relative to the depth, up to which this face counts. If larger, the far side of a solid can count; if
-/// smaller, contacts on nearly flat ridges change more often.
-const NEARLY_FLAT: f64 = 0.1;
+/// Distance behind a valley up to which its faces continue, relative to the depth d of a point behind them. At a crease of the angle φ, the point is on the plane of
+/// the second face if its foot is d / sin φ behind the valley.
+fn below() -> f64 {
+    1.01 / CREASE.sin()
+}
+
+/// Largest difference of the normals of two faces that count as one plane. If larger, the lateral force in a flat valley is lost; if smaller, rounding decides.
+const ONE_PLANE: f64 = 1e-7;
 
 /// Contact of a point with a mesh, in the frame of the mesh.
 struct OnMesh {
     part: u32,
+    /// Number of the smooth patch of the part.
+    patch: u32,
     beyond: f64,
     /// Distance of the point from the triangles, metres; negative inside the solid.
     distance: f64,
@@ -67,18 +76,23 @@ impl Points {
             for on in &self.found {
                 // The normal points to the first shape.
                 let outward = to_world * on.normal;
-                let (parts, normal, inset, turning) = match is_second {
+                let (normal, inset, turning) = match is_second {
                     false => {
                         let turning = [DMat3::ZERO, -cross_matrix(outward)];
-                        ([number as u32, on.part], outward, radius, turning)
+                        (outward, radius, turning)
                     }
                     true => {
                         let turning = [cross_matrix(outward), DMat3::ZERO];
-                        ([on.part, number as u32], -outward, -radius, turning)
+                        (-outward, -radius, turning)
                     }
                 };
+                let ordered = |part: u32| match is_second {
+                    false => [number as u32, part],
+                    true => [part, number as u32],
+                };
                 visit(Found {
-                    parts,
+                    parts: ordered(on.part),
+                    identity: ordered(on.patch),
                     penetration: reach - on.distance,
                     beyond: on.beyond,
                     point: pose.translation + to_world * place,
@@ -118,19 +132,6 @@ impl Points {
             return;
         }
         self.touch_faces(mesh, (place, &nearest, is_inside), reach, range);
-        let is_met = self.found.iter().any(|on| on.beyond <= 0.0);
-        if is_inside && !is_met && nearest.feature != Feature::Face {
-            let normal = (nearest.point - place) / nearest.distance;
-            let along = features.edge_along(&nearest).unwrap_or(DVec3::ZERO);
-            let flat = outer(normal, normal) + outer(along, along);
-            self.found.push(OnMesh {
-                part: features.part_of(&nearest),
-                beyond: 0.0,
-                distance: -nearest.distance,
-                normal,
-                bending: (DMat3::IDENTITY - flat) * (-1.0 / nearest.distance),
-            });
-        }
         if reach > 0.0 && !is_inside {
             self.touch_edges(mesh, place, reach + range.gap);
         }
@@ -147,12 +148,14 @@ impl Points {
         let features: &MeshFeatures = mesh.features();
         let within = reach + range.reach();
         let (rounding, miss) = (1e-9 * within, MISS * range.deep);
-        let depth = if is_inside { nearest.distance } else { 0.0 };
-        let least = if is_inside {
-            f64::NEG_INFINITY
-        } else {
-            nearest.distance
+        let behind = below() * nearest.distance;
+        let least = match is_inside {
+            true => f64::NEG_INFINITY,
+            false => nearest.distance,
         };
+        let nearest_patch = features.smooth_patch(features.part_of(nearest));
+        // Face of the nearest edge or corner from which a point outside is farthest.
+        let mut farthest: Option<OnMesh> = None;
         mesh.bvh().search(
             within * within,
             |bounds| bounds.distance_squared(place),
@@ -162,39 +165,69 @@ impl Points {
                     return limit;
                 };
                 let height = normal.dot(place - face.corners[0]);
-                let is_nearest = nearest.feature == Feature::Face && triangle == nearest.triangle;
-                let valley = if height > 0.0 {
-                    VALLEY * range.deep
-                } else {
-                    BELOW * depth
-                };
-                let is_out_with_nearest = || {
-                    let above = normal.dot(nearest.point - face.corners[0]);
-                    is_inside && above >= -rounding - NEARLY_FLAT * depth
-                };
-                let counts = match height > 0.0 {
-                    true => height >= least - rounding,
-                    false => is_out_with_nearest(),
-                };
-                if height >= reach + range.gap || height <= -within || !(counts || is_nearest) {
+                if height >= reach + range.gap || height <= -within {
                     return limit;
                 }
-                let beyond = match is_nearest {
-                    true => 0.0,
-                    false => face.beyond(place - height * normal, normal, valley) - rounding,
+                let part = features.face_number(triangle);
+                let mut on = OnMesh {
+                    part,
+                    patch: features.smooth_patch(part),
+                    beyond: 0.0,
+                    distance: height,
+                    normal,
+                    bending: DMat3::ZERO,
                 };
-                if beyond <= miss {
-                    self.found.push(OnMesh {
-                        part: features.face_number(triangle),
-                        beyond,
-                        distance: height,
-                        normal,
-                        bending: DMat3::ZERO,
-                    });
+                let is_nearest = features.has_nearest(triangle, nearest);
+                if is_nearest && (is_inside || nearest.feature == Feature::Face) {
+                    self.found.push(on);
+                    return limit;
+                }
+                if is_nearest && on.patch == nearest_patch {
+                    if reach == 0.0 && farthest.as_ref().is_none_or(|far| far.distance < height) {
+                        farthest = Some(on);
+                    }
+                    return limit;
+                }
+                let (counts, valley) = match height > 0.0 {
+                    true => (height >= least - rounding, VALLEY * range.deep),
+                    false => {
+                        let above = normal.dot(nearest.point - face.corners[0]);
+                        (is_inside && above >= -rounding, behind)
+                    }
+                };
+                if counts {
+                    on.beyond = face.beyond(place - height * normal, normal, valley) - rounding;
+                    if on.beyond <= miss {
+                        self.found.push(on);
+                    }
                 }
                 limit
             },
         );
+        self.found.extend(farthest);
+        self.merge_planes();
+    }
+
+    /// Removes all but the deepest of the contacts with faces of a smooth patch that lie in one plane. Their number would change the smoothed maximum. Faces that
+    /// the point misses are removed first.
+    fn merge_planes(&mut self) {
+        let key = |on: &OnMesh| (on.patch, on.beyond > 0.0);
+        self.found.sort_by(|a, b| {
+            let by_key = key(a).cmp(&key(b));
+            by_key.then(a.distance.total_cmp(&b.distance))
+        });
+        let mut n_kept = 0;
+        for place in 0..self.found.len() {
+            let on = &self.found[place];
+            let is_same = |other: &OnMesh| {
+                other.patch == on.patch && (other.normal - on.normal).length() <= ONE_PLANE
+            };
+            if !self.found[..n_kept].iter().any(is_same) {
+                self.found.swap(n_kept, place);
+                n_kept += 1;
+            }
+        }
+        self.found.truncate(n_kept);
     }
 
     /// Adds the edges and corners of a mesh that are nearer to a point than their faces, and nearer than `within` metres.
@@ -215,8 +248,10 @@ impl Points {
                     let normal = away / distance;
                     if features.edge_is_nearest(number, normal) {
                         let flat = outer(normal, normal) + outer(edge.direction, edge.direction);
+                        let part = features.edge_number(number);
                         self.found.push(OnMesh {
-                            part: features.edge_number(number),
+                            part,
+                            patch: features.smooth_patch(part),
                             beyond: 0.0,
                             distance,
                             normal,
@@ -234,6 +269,7 @@ impl Points {
                     if features.corner_is_nearest(number, normal) {
                         self.found.push(OnMesh {
                             part: number as u32,
+                            patch: features.smooth_patch(number as u32),
                             beyond: 0.0,
                             distance,
                             normal,

@@ -64,11 +64,13 @@ pub(super) fn each_crossing(
                         continue;
                     }
                 }
+                let parts = [
+                    features.edge_number(number),
+                    others.edge_number(other_number),
+                ];
                 visit(Found {
-                    parts: [
-                        features.edge_number(number),
-                        others.edge_number(other_number),
-                    ],
+                    parts,
+                    identity: parts,
                     penetration,
                     beyond: crossing.beyond,
                     point: other_pose.translation + to_world * crossing.point,
