@@ -4,6 +4,7 @@ use crate::command::Case;
 use crate::recorded_sensors::{
     COUPLED, IMAGES, LABELS, N, NOISE, RAW, SKIN, error, planned, rows, written,
 };
+use bubbletouch::study::progress::Silent;
 use bubbletouch::study::write_npy;
 use ndarray::{Array2, Array3, Array4, Axis, s};
 use ndarray_npy::read_npy;
@@ -88,6 +89,60 @@ fn each_value_of_a_taxel_has_an_image() {
     );
 }
 
+fn measured_by(ensemble: &str, m: usize) -> String {
+    format!(
+        "{SKIN}[sensing]\nmeasurements = {m}\nensemble = \"{ensemble}\"\n[recognition]\nclassifier = \"linear_svm\"\n"
+    )
+}
+
+/// Law: an ensemble of rows and columns measures each kind of value as it measures a recording of this kind alone. The measurements of a nested ensemble
+/// alternate between the kinds; other ensembles measure kind after kind.
+#[test]
+fn each_value_of_a_taxel_is_measured_as_an_image() {
+    let case = with_values();
+    let measured = |file: &str, order: &str, rest: &str| {
+        let study = planned(&case, &keys(file, order), rest).unwrap();
+        study
+            .first()
+            .features((0, 0), &Silent)
+            .unwrap()
+            .data
+            .records
+    };
+    for (ensemble, is_nested, step) in [
+        ("block_average", false, 1),
+        ("adaptive", false, 1),
+        ("adaptive_learned", false, 1),
+        ("fourier", true, 2),
+    ] {
+        let whole = measured("last", "order = \"n y x c\"", &measured_by(ensemble, 16));
+        for (value, file) in ["left", "right"].into_iter().enumerate() {
+            let alone = measured(file, "order = \"n y x\"", &measured_by(ensemble, 8));
+            let first = if is_nested {
+                value
+            } else {
+                value * alone.ncols()
+            };
+            let own = whole.slice(s![.., first..; step]);
+            let own = own.slice(s![.., ..alone.ncols()]);
+            let difference = (&own - &alone)
+                .mapv(f64::abs)
+                .fold(0.0, |a: f64, b| a.max(*b));
+            assert!(difference < 1e-15, "{ensemble} of {file}: {difference}");
+            assert!(alone.iter().any(|value| *value > 1e-4), "{ensemble}");
+        }
+        // With an odd number, the first kind has one measurement more.
+        let odd = measured("last", "order = \"n y x c\"", &measured_by(ensemble, 7));
+        let more = measured("left", "order = \"n y x\"", &measured_by(ensemble, 4));
+        let own = odd.slice(s![.., ..; step]);
+        let own = own.slice(s![.., ..more.ncols()]);
+        assert!(
+            (&own - &more).iter().all(|value| value.abs() < 1e-15),
+            "{ensemble}"
+        );
+    }
+}
+
 /// Zeros may be an array with the axes of a frame, in which each value of a taxel has a zero.
 #[test]
 fn each_value_of_a_taxel_has_a_zero() {
@@ -128,11 +183,15 @@ fn each_value_of_a_taxel_has_a_zero() {
 #[test]
 fn recordings_with_several_values_that_do_not_fit_are_refused() {
     let case = with_values();
-    let blocks = format!(
-        "{SKIN}[sensing]\nratio = 4\nensemble = \"block_average\"\n[recognition]\nclassifier = \"linear_svm\"\n"
+    let said = error(
+        &case,
+        &keys("last", "order = \"n y x c\""),
+        &measured_by("block_average", 1),
     );
-    let said = error(&case, &keys("last", "order = \"n y x c\""), &blocks);
-    assert!(said.contains("key sensing.ensemble: block average of 2 sensors (skin, value 1 32, skin, value 2 32); ensembles that need no rows"), "{said}");
+    assert!(
+        said.contains("key sensing.measurements: 1 measurements of 2 images; at least 2, one for each kind of value"),
+        "{said}"
+    );
     let rest = format!("{SKIN}{RAW}");
     let tested = |test: &str| {
         format!(

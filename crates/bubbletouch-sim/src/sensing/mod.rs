@@ -51,7 +51,7 @@
 //! |---|---|
 //! | `ensembles` | a name and a seed → the map Φ ([`Ensemble`], [`Operator`]) |
 //! | `selection` | training frames and labels → taxels to read ([`Selection`]) |
-//! | `projection`, `columns` | frames → measurements ([`Projection`]) |
+//! | `projection`, `several_images`, `columns` | frames → measurements ([`Projection`]) |
 //! | `dictionary`, `wavelet`, `pca`, `cosine` | training frames → atoms Ψ ([`Dictionary`]) |
 //! | `sensed`, `coherence` | Φ and Ψ → A = ΦΨ, and its coherence |
 //! | `reconstruction` | measurements → frames ([`Reconstructor`]) |
@@ -71,6 +71,7 @@ mod projection;
 mod reconstruction;
 mod selection;
 mod sensed;
+mod several_images;
 mod symmetric_eigen;
 mod wavelet;
 

@@ -18,7 +18,7 @@ use crate::studies::recognition::plan::trials::projection_of;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
-use ndarray::{Array1, Array2, ArrayViewMut2, Axis, s};
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
 
 /// Measurements of all touches of a group of configurations. If touches are read several times, the first readings of all touches come first, followed by the
 /// second readings. Reading r of a touch has the number r · n_touches + touch.
@@ -248,11 +248,13 @@ fn sensed_by(
     n_measurements: usize,
 ) -> Result<SensedBy> {
     let array = inputs.array;
-    let shape = array.frame_shape();
+    let images = array.measured_images(inputs.ensemble);
     let drawn = projection_of(inputs.projections_per_split, trial.number) as u64;
     let drawn = Seed::new(inputs.seed).named("projection").numbered(drawn);
     if !inputs.learns() {
-        let projection = Projection::new(inputs.ensemble, shape, n_measurements, &drawn)?;
+        let no_frames = ArrayView2::from_shape((0, 0), &[]).expect("the frame is empty");
+        let (ensemble, m) = (inputs.ensemble, n_measurements);
+        let projection = Projection::of_images(ensemble, images, m, (no_frames, &drawn))?;
         return Ok(SensedBy {
             projection,
             images: None,
@@ -278,7 +280,7 @@ fn sensed_by(
         groups: &of_frames(&|touch| trial.group_keys.map_or(touch, |keys| keys[touch])),
         selection: inputs.selection.unwrap_or_default(),
     };
-    let learn = |m| Projection::learned(inputs.ensemble, shape, m, (frames, &drawn));
+    let learn = |m| Projection::of_images(inputs.ensemble, images, m, (frames, &drawn));
     let projection = learn(n_measurements)?;
     let mut images = None;
     if !inputs.of_images.is_empty() {

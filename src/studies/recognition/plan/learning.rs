@@ -56,16 +56,31 @@ impl Check<'_> {
         }
         let mut ensembles = sensing.ensemble.values().into_iter();
         let of_rows = ensembles.find(|ensemble| ensemble.about().needs_rows);
-        let no_rows = arrays.iter().find(|array| array.sides().is_none());
+        let no_rows = arrays.iter().find(|array| array.equal_images().is_none());
         if let (Some(ensemble), Some(array)) = (of_rows, no_rows) {
             let given = format!("{} of {}", ensemble.about().words, array.layout_words());
             let allowed = match array.image_shapes().len() {
                 1 => "ensembles that need no rows and columns",
                 _ => {
-                    "ensembles that need no rows and columns, or one sensor with one value a taxel"
+                    "ensembles that need no rows and columns, or sensors of equal rows and columns"
                 }
             };
             return Err(self.error("sensing.ensemble", given, allowed));
+        }
+        if let Some(ensemble) = of_rows {
+            for array in arrays {
+                let (n_images, _) = array.measured_images(ensemble);
+                let counts = sensing.measurements_on(array.n_values());
+                if let Some(m) = counts.into_iter().find(|&m| m < n_images) {
+                    let key = match sensing.ratio {
+                        Some(_) => "sensing.ratio",
+                        None => "sensing.measurements",
+                    };
+                    let given = format!("{m} measurements of {n_images} images");
+                    let allowed = format!("at least {n_images}, one for each kind of value");
+                    return Err(self.error(key, given, allowed));
+                }
+            }
         }
         Ok(())
     }

@@ -133,6 +133,8 @@ struct ListedSensor {
     /// Positions of the taxels on the plane of the sensor's image, metres, relative to the middle of the image.
     places: Vec<DVec2>,
     shape: (usize, usize),
+    /// Numbers of rows and columns of taxels, if the taxels are numbered row by row.
+    sides: Option<(usize, usize)>,
     pitch: f64,
     widest: f64,
     is_grid: bool,
@@ -144,8 +146,6 @@ pub struct ListedTaxels {
     sensors: Vec<ListedSensor>,
     /// Positions of all taxels in pictures, metres; sensors are side by side.
     places: Vec<DVec2>,
-    /// Numbers of rows and columns of a single sensor whose taxels are numbered row by row.
-    sides: Option<(usize, usize)>,
     /// Rest centres and axes of all taxels in the patch, hashed for cache keys.
     content: Hashed<Vec<[f64; 6]>>,
 }
@@ -186,6 +186,7 @@ impl ListedTaxels {
                 taxels: first..places.len(),
                 places: own,
                 shape,
+                sides: sensor.layout.sides().map(|[rows, columns]| (rows, columns)),
                 pitch: sensor.pitch,
                 widest: sensor.widest,
                 is_grid: sensor.layout.as_grid().is_some(),
@@ -199,10 +200,6 @@ impl ListedTaxels {
             axes.extend_from_slice(moved.axes());
         }
         let (places, _) = centred(places);
-        let sides = match sensors {
-            [one] => one.layout.sides().map(|[rows, columns]| (rows, columns)),
-            _ => None,
-        };
         let numbers = centers.iter().zip(&axes);
         let numbers = numbers.map(|(c, a): (&DVec3, &DVec3)| [c.x, c.y, c.z, a.x, a.y, a.z]);
         let content = Hashed::new(numbers.collect(), |numbers: &Vec<[f64; 6]>| {
@@ -213,7 +210,6 @@ impl ListedTaxels {
         let listed = Self {
             sensors: listed,
             places,
-            sides,
             content,
         };
         Ok((listed, layout))
@@ -221,7 +217,18 @@ impl ListedTaxels {
 
     /// Returns the numbers of rows and columns of taxels; `None` for several sensors, or if the taxels are not numbered row by row.
     pub fn sides(&self) -> Option<(usize, usize)> {
-        self.sides
+        match &self.sensors[..] {
+            [one] => one.sides,
+            _ => None,
+        }
+    }
+
+    /// Returns the number of sensors, and the numbers of rows and columns that all of them have; `None` if these numbers differ or a sensor has none.
+    pub fn equal_sides(&self) -> Option<(usize, (usize, usize))> {
+        let first = self.sensors.first()?.sides?;
+        let is_equal = |sensor: &ListedSensor| sensor.sides == Some(first);
+        let all_equal = self.sensors.iter().all(is_equal);
+        all_equal.then_some((self.sensors.len(), first))
     }
 
     /// Returns whether taxels of different sensors are neighbours in the patch. The distance of neighbours depends on the local spacing, which is undefined

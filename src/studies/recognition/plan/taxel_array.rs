@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::inputs::units::millimetres;
 use crate::random::Seed;
+use crate::sensing::Ensemble;
 use crate::signal::{Chain, SignalStep};
 use crate::studies::recognition::plan::listed_taxels::{ListedTaxels, PlacedSensor, SensorImage};
 use crate::studies::recognition::plan::sensed::{Sensed, of_channel};
@@ -255,6 +256,23 @@ impl TaxelArray {
     pub fn frame_shape(&self) -> (usize, usize) {
         let (rows, columns) = self.shape();
         (self.sensed.n_channels() * rows, columns)
+    }
+
+    /// Returns the images of a frame that an ensemble of rows and columns measures one by one: their number, and the rows and columns of each. An image
+    /// contains one kind of value of all taxels of a sensor. Returns `None` if a sensor has no rows and columns, or if sensors differ in them.
+    pub fn equal_images(&self) -> Option<(usize, (usize, usize))> {
+        let (n_sensors, sides) = match &self.listed {
+            Some(listed) => listed.equal_sides()?,
+            None => (1, self.sides()?),
+        };
+        Some((n_sensors * self.sensed.n_channels(), sides))
+    }
+
+    /// Returns the images of a frame that an ensemble measures one by one. An ensemble that needs no rows and columns measures the frame as one image.
+    pub fn measured_images(&self, ensemble: Ensemble) -> (usize, (usize, usize)) {
+        let of_rows = ensemble.about().needs_rows;
+        let images = of_rows.then(|| self.equal_images()).flatten();
+        images.unwrap_or((1, self.frame_shape()))
     }
 
     /// Returns the pitch of the square grid, metres.

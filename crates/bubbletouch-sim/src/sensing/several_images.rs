@@ -1,0 +1,71 @@
+//! Measurement of frames that consist of several images, such as one image for each kind of value of a taxel.
+
+use super::ensembles::Operator;
+use super::projection::Projection;
+use ndarray::{ArrayView2, ArrayViewMut2, s};
+
+/// Returns the number of measurements of each of k images, m in total. The numbers differ by at most 1; the first images have the larger numbers.
+pub(super) fn shares(k: usize, m: usize) -> impl Iterator<Item = usize> {
+    (0..k).map(move |image| m / k + usize::from(image < m % k))
+}
+
+/// Map of a frame of k equal images, stored one after the other. Each image has its own projection.
+///
+/// If the ensemble is nested, measurement j of image i is measurement i + j k of the frame, so that the map is nested, too. Otherwise, the measurements of an
+/// image follow those of the previous images.
+#[derive(Debug)]
+pub(super) struct SeveralImages {
+    pub images: Vec<Projection>,
+    pub is_nested: bool,
+}
+
+impl SeveralImages {
+    /// Returns the index of the first measurement of each image, with its projection.
+    fn starts(&self) -> impl Iterator<Item = (usize, &Projection)> {
+        let mut before = 0;
+        self.images
+            .iter()
+            .enumerate()
+            .map(move |(image, projection)| {
+                let start = if self.is_nested { image } else { before };
+                before += projection.n_measurements();
+                (start, projection)
+            })
+    }
+
+    /// Returns the distance between two successive measurements of an image.
+    fn step(&self) -> usize {
+        if self.is_nested { self.images.len() } else { 1 }
+    }
+}
+
+impl Operator for SeveralImages {
+    fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+        let n_taxels = frames.ncols() / self.images.len();
+        for (image, (start, projection)) in self.starts().enumerate() {
+            let own = frames.slice(s![.., image * n_taxels..(image + 1) * n_taxels]);
+            let end = start + (projection.n_measurements() - 1) * self.step() + 1;
+            let mut out = out.slice_mut(s![.., start..end; self.step()]);
+            out.assign(&projection.measure(own));
+        }
+    }
+
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        for (image, (start, projection)) in self.starts().enumerate() {
+            projection.each_entry(|measurement, taxel, value| {
+                let taxel = image * projection.n_taxels() + taxel;
+                visit(start + measurement * self.step(), taxel, value);
+            });
+        }
+    }
+
+    fn row_norm(&self) -> f64 {
+        let (mut squares, mut n) = (0.0, 0.0);
+        for projection in &self.images {
+            let m = projection.n_measurements() as f64;
+            squares += m * projection.row_norm().powi(2);
+            n += m;
+        }
+        (squares / n).sqrt()
+    }
+}
