@@ -185,7 +185,7 @@ pub fn read<S: DeserializeOwned>(
         if axes.combine == CombineSpec::OneAtATime {
             let keys = axis.keys();
             let has_value = |key: &String| {
-                find(table.get_ref(), key).is_some_and(|own| own.as_array().is_none())
+                find(table.get_ref(), key).is_some_and(|own| own.get_ref().as_array().is_none())
             };
             if axis.has_column && !keys.iter().all(has_value) {
                 let allowed =
@@ -209,8 +209,48 @@ pub fn read<S: DeserializeOwned>(
             axes.axes.push(axis);
         }
     }
-    let study = S::deserialize(toml::Deserializer::from(table)).map_err(said)?;
+    let study = S::deserialize(toml::Deserializer::from(table));
+    let study = study.map_err(|error| {
+        unexpected_list(place, text, &error, keys).unwrap_or_else(|| said(error))
+    })?;
     Ok((study, axes))
+}
+
+/// Returns an error that states where a list is allowed, if a reader refused the list of a key that has one value in its table; otherwise `None`.
+fn unexpected_list(
+    place: &str,
+    text: &str,
+    error: &toml::de::Error,
+    keys: &[KeyAbout],
+) -> Option<Error> {
+    let span = error.span()?;
+    // A reader that accepts values of several types describes them in words.
+    let said = error.message().trim();
+    let expected = said.strip_prefix("invalid type: sequence, expected ");
+    let is_plain = said.starts_with("wanted ") || expected.is_some_and(|e| !e.contains(", or "));
+    if !is_plain || !text.get(span.clone())?.starts_with('[') {
+        return None;
+    }
+    let table = DeTable::parse(text).ok()?;
+    let is_refused = |about: &&KeyAbout| {
+        find(table.get_ref(), about.path).is_some_and(|value| value.span() == span)
+    };
+    let mut keys = keys.iter().filter(|about| about.axis != AxisPlace::Table);
+    let about = keys.find(is_refused)?;
+    let allowed = match about.axis {
+        AxisPlace::Axes => format!(
+            "one value, or several as an axis: [axes] {:?} = {}",
+            about.path,
+            &text[span.clone()]
+        ),
+        _ => "one value: this key cannot be an axis".to_owned(),
+    };
+    let line = line_of(text, span.start);
+    Some(Error::input(
+        format!("{place}:{line}, key {}", about.path),
+        "a list",
+        allowed,
+    ))
 }
 
 /// Returns all lists in a TOML table and its subtables, each with its dotted key path and its start position in the text.
@@ -256,9 +296,9 @@ fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::V
 }
 
 /// Returns the TOML value at a dotted key path; `None` if the path does not exist.
-fn find<'t, 'i>(table: &'t DeTable<'i>, key: &str) -> Option<&'t DeValue<'i>> {
+fn find<'t, 'i>(table: &'t DeTable<'i>, key: &str) -> Option<&'t Spanned<DeValue<'i>>> {
     match key.split_once('.') {
-        None => table.get(key).map(Spanned::get_ref),
+        None => table.get(key),
         Some((first, rest)) => find(table.get(first)?.get_ref().as_table()?, rest),
     }
 }

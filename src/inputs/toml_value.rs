@@ -13,6 +13,18 @@ pub(crate) fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(integer)
 }
 
+/// Returns whether a value, or each value of a list, equals `expected`. Integers and floats are compared as numbers.
+pub(crate) fn has_only(value: &toml::Value, expected: &toml::Value) -> bool {
+    let is_equal = |value: &toml::Value| match (number(value), number(expected)) {
+        (Some(value), Some(expected)) => value == expected,
+        _ => value == expected,
+    };
+    is_equal(value)
+        || value
+            .as_array()
+            .is_some_and(|values| values.iter().all(is_equal))
+}
+
 /// Returns whether a dotted key path equals `name` or is below `name`.
 pub(crate) fn is_at(key: &str, name: &str) -> bool {
     let rest = key.strip_prefix(name);

@@ -290,7 +290,7 @@ fn keys_that_make_no_sense_are_refused_with_what_does() {
     for (signal, said) in [
         (
             "gain_std = 0.1",
-            "signal.steps: no \"gain\"; \"gain\" among",
+            "signal.steps: no \"gain\", but signal.gain_std is given; \"gain\" among",
         ),
         (
             gain,

@@ -45,4 +45,5 @@ mod shear;
 mod statistics_examples;
 mod taxels;
 mod test_touches;
+mod unused_keys;
 mod variance;

@@ -194,11 +194,11 @@ fn what_contradicts_itself_is_refused_by_its_key() {
         ),
         (
             with("\"shear\"", "\"force\""),
-            "study.toml, key skin.friction: 0.4; no such key without sensed = \"shear\"",
+            "study.toml, key skin.friction: 0.4, but the skin reads no shear; skin.sensed = \"shear\" beside it, or no such key",
         ),
         (
             with("slide_mm = 3.0\n", ""),
-            "study.toml, key touches.slide_deg: given; slide_mm above 0 beside it",
+            "study.toml, key touches.slide_deg: 30, but touches do not slide; touches.slide_mm above 0 beside it, or no such key",
         ),
         (
             with("slide_mm = 3.0\nslide_deg = 30.0\n", ""),

@@ -119,7 +119,7 @@ fn more_taxels_can_be_selected_than_there_are_training_touches_but_not_by_pivots
 
 #[test]
 fn keys_that_contradict_a_selection_are_refused() {
-    let drawn = "ensemble = \"gaussian\"\nselection = \"greedy\"";
+    let drawn = "ensemble = \"gaussian\"\nselection = \"random\"";
     let message = error(&STUDY.replace("ensemble = \"selected\"", drawn));
     assert!(
         message.contains("no ensemble of the study selects"),

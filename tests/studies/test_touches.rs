@@ -304,7 +304,7 @@ fn what_test_touches_cannot_have_is_refused_by_its_key() {
         ),
         (
             "signal.dead_fraction = 0.1",
-            "no \"faults\"; \"faults\" among the steps",
+            "no \"faults\", but signal.dead_fraction is given; \"faults\" among the steps",
         ),
         (
             "signal.noise_std_full_scale = [0.1, 0.2]",

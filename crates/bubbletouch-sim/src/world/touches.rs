@@ -95,10 +95,10 @@ fn order(
     if let Some((axis, _)) = spreads.iter().find(is_uniform) {
         return match count {
             Some(count @ 1..=MAX_TOUCHES) => Ok(Order::Drawn(count)),
-            Some(count) => Err(count_error(count, MAX_TOUCHES)),
+            Some(count) => Err(count_error(count, MAX_TOUCHES, "")),
             None => {
                 let given = format!("no number, with {} spread uniformly", axis.name());
-                Err(count_error(given, MAX_TOUCHES))
+                Err(count_error(given, MAX_TOUCHES, ""))
             }
         };
     }
@@ -112,7 +112,14 @@ fn order(
             count,
             seed,
         ))),
-        given => Err(count_error(given.unwrap_or(n_combinations), most)),
+        given => {
+            let reason = match most {
+                MAX_TOUCHES => "",
+                1 => ", the only pose: no value of it varies (a list or a uniform range would)",
+                _ => ", the combinations of the listed values (a uniform range gives more)",
+            };
+            Err(count_error(given.unwrap_or(n_combinations), most, reason))
+        }
     }
 }
 
@@ -254,10 +261,11 @@ fn range_of(axis: TouchAxis) -> (fn(f64) -> bool, &'static str) {
     }
 }
 
-fn count_error(given: impl ToString, most: usize) -> Error {
-    Error::input(
-        "key touches.per_object",
-        given,
-        format!("a number from 1 to {most}"),
-    )
+/// Returns the error of a number of touches per object that is not between 1 and `most`; `reason` explains the bound.
+fn count_error(given: impl ToString, most: usize, reason: &str) -> Error {
+    let allowed = match most {
+        1 => format!("1{reason}"),
+        _ => format!("a number from 1 to {most}{reason}"),
+    };
+    Error::input("key touches.per_object", given, allowed)
 }

@@ -3,6 +3,8 @@
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
 use crate::inputs::check::Check;
+use crate::inputs::memory::GIB;
+use crate::inputs::toml_value::has_only;
 use crate::inputs::units::MM;
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::parameters;
@@ -11,14 +13,19 @@ use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::{Ensemble, Selection};
 use crate::studies::recognition::plan::pose_groups::KeepTogether;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::classifier_parameters::ClassifierParameters;
 use crate::studies::recognition::spec::pose_split::PoseSplit;
 use crate::studies::recognition::spec::study::{RecognitionSpec, SensingSpec, StudySpec};
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;
+use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 
 /// Default of the maximum tilt of a tilted copy about each axis, degrees. With a larger value, copies lack those parts of the object that were not touched;
 /// with a smaller value, copies add no new tilts.
-const DEFAULT_TILT_DEG: f64 = 5.0;
+pub(crate) const DEFAULT_TILT_DEG: f64 = 5.0;
+
+/// Default of the penalty C.
+const DEFAULT_C: f64 = 1.0;
 
 /// Pairs of keys of `[recognition]` that exclude each other.
 const ONE_OF: [[&str; 2]; 3] = [
@@ -93,7 +100,8 @@ impl Check<'_> {
             .iter()
             .flat_map(|&ensemble| sensing.selections(ensemble));
         let methods: Vec<Selection> = methods.flatten().collect();
-        if sensing.selection.is_some() && methods.is_empty() {
+        let mut selections = sensing.selection.iter().flat_map(Axis::values);
+        if selections.any(|selection| selection != Selection::default()) && methods.is_empty() {
             let given = "given, but no ensemble of the study selects taxels";
             let allowed = "\"selected\" among sensing.ensemble, or no such key";
             return Err(self.error("sensing.selection", given, allowed));
@@ -133,18 +141,23 @@ impl Check<'_> {
                 return Err(self.error("recognition", both, "one of them"));
             }
         }
-        self.parameters(recognition, &given)?;
+        let mut changed = given.clone();
+        let usual = RecognitionSpec::usual();
+        changed.retain(|key, value| !usual.get(key).is_some_and(|usual| has_only(value, usual)));
+        self.parameters(recognition, &changed)?;
         for (key, others) in BESIDE {
-            if let Some(value) = given.get(key)
+            if let Some(value) = changed.get(key)
                 && !others.iter().any(|other| given.contains_key(*other))
             {
-                let allowed = format!("no such key without recognition.{}", others.join(" or "));
-                return Err(self.error(&format!("recognition.{key}"), value, allowed));
+                let others = others.join(" or ");
+                let given = format!("{value}, but no {others} is given that uses it");
+                let allowed = format!("recognition.{others} beside it, or no such key");
+                return Err(self.error(&format!("recognition.{key}"), given, allowed));
             }
         }
         // If C or γ is chosen, the rarest objects may have too few rows for the inner folds.
         let is_open = recognition.c_grid.is_some() || recognition.gamma_grid.is_some();
-        if let Some(folds) = recognition.cv_folds
+        if let Some(folds) = changed.get("cv_folds")
             && !is_open
             && !recognition.is_informed()
         {
@@ -157,7 +170,7 @@ impl Check<'_> {
             (_, true) => Some(("next_touch = \"most_informative\"", "another next_touch")),
             _ => None,
         };
-        if let (Some((key, other)), Some(_)) = (folded, &recognition.class_imbalance) {
+        if let (Some((key, other)), true) = (folded, changed.contains_key("class_imbalance")) {
             let allowed = format!("{other}: folds need touches of every object");
             let given = format!("given beside {key}");
             return Err(self.error("recognition.class_imbalance", given, allowed));
@@ -165,18 +178,19 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that each changed hyper-parameter is used by at least one classifier, and that the solver can train every SVM.
-    fn parameters(&self, recognition: &RecognitionSpec, given: &toml::Table) -> Result<()> {
-        let usual: toml::Table = RecognitionSpec::usual();
+    /// Checks that each hyper-parameter in `changed` is used by at least one classifier, and that the solver can train every SVM. `changed` contains the keys of
+    /// `[recognition]` whose values differ from the defaults.
+    fn parameters(&self, recognition: &RecognitionSpec, changed: &toml::Table) -> Result<()> {
         let kinds = recognition.kinds();
         self.list(
             "recognition.classifier",
             kinds.iter().map(|kind| kind.about().words).collect(),
         )?;
         for key in parameters::keys() {
-            let is_set = given.contains_key(key) && given.get(key) != usual.get(key);
-            if is_set && !kinds.iter().any(|kind| kind.uses(key)) {
-                let given = format!("{}, but no classifier of the study uses it", given[key]);
+            if let Some(value) = changed.get(key)
+                && !kinds.iter().any(|kind| kind.uses(key))
+            {
+                let given = format!("{value}, but no classifier of the study uses it");
                 let users = parameters::users(key);
                 let allowed = format!("{users} among recognition.classifier, or no such key");
                 return Err(self.error(&format!("recognition.{key}"), given, allowed));
@@ -203,10 +217,7 @@ impl Check<'_> {
             let foremost = recognition.depth_window_full_scale.is_some();
             let of_images = [
                 ("recognition.depth_window_full_scale", foremost),
-                (
-                    "recognition.tilt_augmentation",
-                    recognition.tilt_augmentation.is_some(),
-                ),
+                ("recognition.tilt_augmentation", recognition.has_copies()),
             ];
             return match of_images.into_iter().find(|(_, is_given)| *is_given) {
                 None => Ok(()),
@@ -223,9 +234,9 @@ impl Check<'_> {
             return Err(self.error("recognition.features", given, allowed));
         }
         let has_several = |array: &TaxelArray| array.image_shapes().len() > 1;
-        if let (Some(array), Some(_)) = (
+        if let (Some(array), true) = (
             arrays.iter().find(|array| has_several(array)),
-            &recognition.tilt_augmentation,
+            recognition.has_copies(),
         ) {
             let given = format!("tilted copies of {}", array.layout_words());
             let allowed = "no such key: each sensor has a tilt of its own";
@@ -366,10 +377,30 @@ impl SensingSpec {
 }
 
 impl RecognitionSpec {
-    /// Returns a table `[recognition]` in which every key has its default value.
-    fn usual() -> toml::Table {
+    /// Returns a table `[recognition]` in which every key has its default value. Keys whose default is a rule or the absence of the key are omitted.
+    pub fn usual() -> toml::Table {
         let usual: Self = toml::from_str("classifier = []").expect("all other keys have defaults");
+        let usual = Self {
+            c: Some(Axis::One(DEFAULT_C)),
+            cv_folds: Some(usual.n_choice_folds()),
+            readings_per_touch: Some(1),
+            solver_memory_gib: Some(DEFAULT_MEMORY_BYTES as f64 / GIB),
+            tilt_augmentation: Some(Axis::One(0)),
+            tilt_augmentation_deg: Some(DEFAULT_TILT_DEG),
+            mislabelled_fraction: Some(Axis::One(0.0)),
+            class_imbalance: Some(Axis::One(1.0)),
+            next_touch: Some(Axis::One(NextTouch::Random)),
+            test_fraction: Some(usual.test_share()),
+            parameters: ClassifierParameters::usual(),
+            ..usual
+        };
         toml::Table::try_from(usual).expect("every field of a study has a TOML form")
+    }
+
+    /// Returns whether training touches have tilted copies for some value of the key `tilt_augmentation`.
+    pub fn has_copies(&self) -> bool {
+        let numbers = self.tilt_augmentation.iter().flat_map(Axis::values);
+        numbers.into_iter().any(|n| n > 0)
     }
 
     /// Returns the fraction of the touches that is held out for testing if the study has no folds; the default is 0.25.
@@ -441,7 +472,7 @@ impl RecognitionSpec {
     pub fn penalties(&self) -> Vec<Option<f64>> {
         match (&self.c, &self.c_grid) {
             (_, Some(_)) => vec![None],
-            (None, None) => vec![Some(1.0)],
+            (None, None) => vec![Some(DEFAULT_C)],
             (axis, None) => Axis::optional_values(axis),
         }
     }

@@ -7,9 +7,11 @@ use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::{MAX_SIDE, MM};
 use crate::mesh::SizeLimits;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::scene::{RangeSpec, SkinSpec, SpreadSpec, TouchesSpec};
+use crate::studies::recognition::spec::scene::{
+    RangeSpec, SensedSpec, SkinSpec, SpreadSpec, TouchesSpec,
+};
 use crate::studies::recognition::spec::study::StudySpec;
-use crate::world::{Grid, Placement, Spread, Taxel, TouchAxis};
+use crate::world::{ArrayLayout, Grid, Placement, Spread, Taxel, TouchAxis};
 
 /// Returns the smallest pitch of all arrays, metres.
 fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
@@ -142,10 +144,12 @@ impl Check<'_> {
             let allowed = format!("no such key: only studies of recognition have {what}");
             Err(self.error(key, "given", allowed))
         };
-        if skin.layout.is_some() || skin.curvature_radius_mm.is_some() {
+        if skin.layout.unwrap_or_default() != ArrayLayout::Grid
+            || skin.curvature_radius_mm.is_some()
+        {
             return only("skin.layout", "other layouts than grids");
         }
-        if skin.sensed.is_some()
+        if skin.sensed.unwrap_or_default() != SensedSpec::Deflection
             || skin.friction.is_some()
             || skin.shear_stiffness_n_per_m.is_some()
         {
@@ -181,8 +185,11 @@ impl Check<'_> {
     /// Returns the placement (distribution of touch poses). Returns an error if a touch has several frames or slides.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
         let of_recognition = [
-            ("slide_mm", touches.slide_mm.is_some()),
-            ("slide_deg", touches.slide_deg.is_some()),
+            ("slide_mm", touches.slide_mm.is_some_and(|mm| mm != 0.0)),
+            (
+                "slide_deg",
+                touches.slide_deg.is_some_and(|degrees| degrees != 0.0),
+            ),
             ("frames", touches.frames.values() != [1]),
         ];
         if let Some((key, _)) = of_recognition.into_iter().find(|(_, is_given)| *is_given) {

@@ -17,8 +17,14 @@ impl Check<'_> {
         self.of_sensed(spec)?;
         let touches = &spec.touches;
         let slides = touches.slide_mm.is_some_and(|slide| slide > 0.0);
-        if touches.slide_deg.is_some() && !slides && !spec.axes.has("touches.slide_mm") {
-            return Err(self.error("touches.slide_deg", "given", "slide_mm above 0 beside it"));
+        if let Some(degrees) = touches.slide_deg
+            && degrees != 0.0
+            && !slides
+            && !spec.axes.has("touches.slide_mm")
+        {
+            let given = format!("{degrees}, but touches do not slide");
+            let allowed = "touches.slide_mm above 0 beside it, or no such key";
+            return Err(self.error("touches.slide_deg", given, allowed));
         }
         let reads_shear = spec.skin.sensed == Some(SensedSpec::Shear);
         if touches.speed_mm_per_s > 0.0 && (slides || reads_shear) {
@@ -31,7 +37,7 @@ impl Check<'_> {
     fn of_sensed(&self, spec: &StudySpec) -> Result<()> {
         let skin = &spec.skin;
         let sensed = skin.sensed.unwrap_or_default();
-        if spec.human_touch.is_some() && skin.sensed.is_some() {
+        if spec.human_touch.is_some() && sensed != SensedSpec::Deflection {
             let allowed = "no such key in a study of human touches";
             return Err(self.error("skin.sensed", "given", allowed));
         }
@@ -42,7 +48,9 @@ impl Check<'_> {
         let may_read_shear = sensed == SensedSpec::Shear || spec.axes.has("skin.sensed");
         for (key, value) in of_shear {
             if let (Some(value), false) = (value, may_read_shear) {
-                return Err(self.error(key, value, "no such key without sensed = \"shear\""));
+                let given = format!("{value}, but the skin reads no shear");
+                let allowed = "skin.sensed = \"shear\" beside it, or no such key";
+                return Err(self.error(key, given, allowed));
             }
         }
         if sensed != SensedSpec::Deflection && spec.signal.steps.contains(&StepSpec::Force) {

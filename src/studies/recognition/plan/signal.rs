@@ -4,7 +4,7 @@ use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
 use crate::error::Result;
 use crate::inputs::check::Check;
-use crate::inputs::sensor_errors::{NOISES, Strengths};
+use crate::inputs::sensor_errors::{NOISES, Strengths, TestSensor};
 use crate::inputs::units::MM;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
 use crate::studies::recognition::plan::study_plan::Plan;
@@ -97,7 +97,8 @@ impl Check<'_> {
     pub fn check_test_sensor(&self, signal: &SignalSpec) -> Result<()> {
         let is_of_skin =
             |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
-        if signal.test_sensor.is_none() || signal.steps.iter().any(is_of_skin) {
+        let mut skins = signal.test_sensor.iter().flat_map(Axis::values);
+        if skins.all(|skin| skin == TestSensor::SameSkin) || signal.steps.iter().any(is_of_skin) {
             return Ok(());
         }
         let all = SENSOR_ERRORS.iter().map(|error| error.about());
@@ -114,11 +115,14 @@ impl Check<'_> {
         if !signal.steps.is_empty() {
             self.list(KEY, signal.steps.iter().map(|step| step.word()).collect())?;
         }
-        let mut set = signal.axes.given().map(|(_, step, _)| step);
-        if let Some(step) = set.find(|step| !signal.steps.contains(step)) {
+        // A strength of 0 is the default.
+        let is_set = |axis: &Axis<f64>| axis.values().iter().any(|&strength| strength != 0.0);
+        let mut set = signal.axes.given().filter(|(.., axis)| is_set(axis));
+        if let Some((key, step, _)) = set.find(|(_, step, _)| !signal.steps.contains(step)) {
             let word = step.word();
-            let allowed = format!("\"{word}\" among the steps, since its axis is set");
-            return Err(self.error(KEY, format!("no \"{word}\""), allowed));
+            let given = format!("no \"{word}\", but signal.{key} is given");
+            let allowed = format!("\"{word}\" among the steps, or no such strength");
+            return Err(self.error(KEY, given, allowed));
         }
         for step in &signal.steps {
             let mut given = signal.axes.given();

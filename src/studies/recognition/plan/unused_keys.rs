@@ -5,7 +5,8 @@ use crate::engine::axis::Axis;
 use crate::error::Result;
 use crate::inputs::check::Check;
 use crate::inputs::defaults::number;
-use crate::inputs::toml_value::is_at;
+use crate::inputs::toml_value::{is_at, value_at};
+use crate::studies::recognition::plan::learning::DEFAULT_TILT_DEG;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::scene::{SensedSpec, SkinSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::StepSpec;
@@ -28,16 +29,49 @@ struct KeyUse {
 
 const OF_FORCE: &str = "skin.sensed = \"force\" or \"force\" among signal.steps beside it";
 const WHOLE_FRAMES: &str = "every ensemble of the study measures all values of a frame";
+const STICKS: &str = "tips stay where they first touch";
+const RUBS: &str = "a touches.slide_mm above 0 or a curved skin.layout beside it";
 const ENSEMBLE: &str = "no such key, or another sensing.ensemble beside it";
 
 /// Keys that may have no effect.
-const USES: [KeyUse; 8] = [
+const USES: [KeyUse; 12] = [
+    KeyUse {
+        key: "skin.damping_n_s_per_m",
+        given: damping,
+        has_effect: |plan| reads_force(&plan.spec),
+        beside: &["skin.sensed", "signal.steps"],
+        reason: "no force is read",
+        allowed: OF_FORCE,
+    },
+    KeyUse {
+        key: "skin.damping_n_s_per_m",
+        given: damping,
+        has_effect: |plan| plan.speed > 0.0,
+        beside: &["touches.speed_mm_per_s", "recorded.speed_mm_per_s"],
+        reason: "every touch is read at rest",
+        allowed: "a touches.speed_mm_per_s above 0 beside it",
+    },
+    KeyUse {
+        key: "skin.friction",
+        given: |plan| of_simulation(plan, plan.spec.skin.friction),
+        has_effect: |plan| rubs(&plan.spec),
+        beside: &["touches.slide_mm", "skin.layout"],
+        reason: STICKS,
+        allowed: RUBS,
+    },
+    KeyUse {
+        key: "skin.shear_stiffness_n_per_m",
+        given: |plan| of_simulation(plan, plan.spec.skin.shear_stiffness_n_per_m),
+        has_effect: |plan| rubs(&plan.spec),
+        beside: &["touches.slide_mm", "skin.layout"],
+        reason: STICKS,
+        allowed: RUBS,
+    },
     KeyUse {
         key: "skin.stiffness_n_per_m",
         given: |plan| {
             let given = plan.spec.skin.stiffness_n_per_m;
-            // A study of recorded frames may describe the skin completely.
-            (plan.spec.recorded.is_none() && given != number::<100>()).then_some(given)
+            of_simulation(plan, Some(given)).filter(|&given| given != number::<100>())
         },
         has_effect: |plan| reads_force(&plan.spec),
         beside: &["skin.sensed", "signal.steps"],
@@ -95,11 +129,11 @@ const USES: [KeyUse; 8] = [
     },
     KeyUse {
         key: "recognition.tilt_augmentation_deg",
-        given: |plan| plan.spec.recognition.tilt_augmentation_deg,
-        has_effect: |plan| {
-            let copies = &plan.spec.recognition.tilt_augmentation;
-            copies.iter().flat_map(Axis::values).any(|n| n > 0)
+        given: |plan| {
+            let given = plan.spec.recognition.tilt_augmentation_deg;
+            given.filter(|&degrees| degrees != DEFAULT_TILT_DEG)
         },
+        has_effect: |plan| plan.spec.recognition.has_copies(),
         beside: &["recognition.tilt_augmentation"],
         reason: "no touch is copied",
         allowed: "a recognition.tilt_augmentation above 0 beside it",
@@ -121,6 +155,25 @@ const USES: [KeyUse; 8] = [
         allowed: "no such key, or { uniform = [low, high] } of such a key of [touches]",
     },
 ];
+
+/// Returns the damping coefficient of the taxels if it is positive.
+fn damping(plan: &Plan) -> Option<f64> {
+    Some(plan.spec.skin.damping_n_s_per_m).filter(|&damping| damping > 0.0)
+}
+
+/// Returns the value of a key in a study that simulates its frames. A study of recorded frames may describe the skin completely.
+fn of_simulation(plan: &Plan, value: Option<f64>) -> Option<f64> {
+    value.filter(|_| plan.spec.recorded.is_none())
+}
+
+/// Returns whether taxels move along the object. On a flat array that is pressed straight on, no taxel does.
+fn rubs(spec: &StudySpec) -> bool {
+    let layout = spec.skin.layout.as_ref();
+    spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)
+        || layout.is_some_and(|layout| layout.is_curved())
+        || spec.axes.has("touches.slide_mm")
+        || spec.axes.has("skin.layout")
+}
 
 /// Returns whether the study reads forces.
 fn reads_force(spec: &StudySpec) -> bool {
@@ -148,39 +201,38 @@ fn groups_drawn(plan: &Plan, is_selected: fn(TouchAxis) -> bool) -> bool {
     drawn.any(|(axis, _)| is_selected(*axis) && axes.contains(axis))
 }
 
-/// Returns whether a key in `names`, or a key of a table in `names`, is an axis.
-fn has_axis(axes: &StudyAxes, names: &[&str]) -> bool {
+/// Returns whether a key in `names`, or a key of a table in `names`, is an axis. Names of keys of test touches start with `table`.
+fn has_axis(axes: &StudyAxes, table: &str, names: &[&str]) -> bool {
     let keys = axes.axes.iter().flat_map(|axis| axis.keys());
     let mut keys = keys.into_iter();
-    keys.any(|key| names.iter().any(|name| is_at(&key, name)))
+    keys.any(|key| {
+        let key = key.strip_prefix(table);
+        key.is_some_and(|key| names.iter().any(|name| is_at(key, name)))
+    })
 }
 
 impl Check<'_> {
-    /// Checks that keys have an effect. One value of an axis that uses a key suffices, as do separate test touches.
+    /// Checks that keys have an effect. One value of an axis that uses a key suffices. A key that training touches and test touches share has an effect if it has
+    /// one in either. A key of `[test]` must have an effect in test touches.
     pub fn unused_keys(&self, plan: &Plan) -> Result<()> {
-        let spec = &plan.spec;
-        if !spec.test.is_empty() {
-            return Ok(());
-        }
-        self.used_damper(spec)?;
-        self.used_friction(spec)?;
-        for KeyUse {
-            key,
-            given,
-            has_effect,
-            beside,
-            reason,
-            allowed,
-        } in &USES
-        {
-            if let Some(given) = given(plan)
-                && !has_effect(plan)
-                && !has_axis(&spec.axes, beside)
-            {
-                return Err(self.error(key, format!("{given}, but {reason}"), allowed));
+        self.sticking_shear(&plan.spec)?;
+        for key_use in &USES {
+            let KeyUse { key, given, .. } = key_use;
+            let own_value = given(plan).filter(|_| !key_use.acts(plan, &plan.spec.axes, ""));
+            let Some(tested) = plan.tested.as_deref() else {
+                self.refuse_unused(key_use, "", own_value)?;
+                continue;
+            };
+            let of_test = given(tested).filter(|_| !key_use.acts(tested, &plan.spec.axes, "test."));
+            match value_at(&plan.spec.test, key) {
+                Some(_) => {
+                    self.refuse_unused(key_use, "", own_value)?;
+                    self.refuse_unused(key_use, "test.", of_test)?;
+                }
+                None => self.refuse_unused(key_use, "", own_value.and(of_test))?,
             }
         }
-        let signal = &spec.signal;
+        let signal = &plan.spec.signal;
         let several = signal.axes.given();
         let several = several.filter(|(.., axis)| axis.values().len() > 1);
         if signal.combine == CombineSpec::OneAtATime && several.count() < 2 {
@@ -189,6 +241,23 @@ impl Check<'_> {
             return Err(self.error("signal.combine", given, allowed));
         }
         Ok(())
+    }
+
+    /// Returns an error if `unused` is the value of a key without effect; `table` is `test.` for a key of `[test]`.
+    fn refuse_unused(&self, key_use: &KeyUse, table: &str, unused: Option<f64>) -> Result<()> {
+        let KeyUse {
+            key,
+            reason,
+            allowed,
+            ..
+        } = key_use;
+        match unused {
+            None => Ok(()),
+            Some(given) => {
+                let given = format!("{given}, but {reason}");
+                Err(self.error(&format!("{table}{key}"), given, allowed))
+            }
+        }
     }
 
     /// Checks that the springs, the dampers and the speed have an effect in a study of another kind than recognition. `of_force` states which keys make the
@@ -224,66 +293,21 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Returns an error if the taxels have a damper that has no effect in the study. A damper acts on moving taxels, and so affects only forces that are read
-    /// during the press.
-    fn used_damper(&self, spec: &StudySpec) -> Result<()> {
-        let (skin, touches, axes) = (&spec.skin, &spec.touches, &spec.axes);
-        let reads_force = reads_force(spec) || has_axis(axes, &["skin.sensed", "signal.steps"]);
-        let speed = spec
-            .recorded
-            .as_ref()
-            .map_or(touches.speed_mm_per_s, |r| r.speed_mm_per_s);
-        let moves = speed > 0.0
-            || axes.has("touches.speed_mm_per_s")
-            || axes.has("recorded.speed_mm_per_s");
-        if skin.damping_n_s_per_m > 0.0 && !(reads_force && moves) {
-            let given = match reads_force {
-                true => format!(
-                    "{}, but every touch is read at rest",
-                    skin.damping_n_s_per_m
-                ),
-                false => format!("{}, but no force is read", skin.damping_n_s_per_m),
-            };
-            let allowed = match reads_force {
-                true => "a touches.speed_mm_per_s above 0 beside it",
-                false => OF_FORCE,
-            };
-            return Err(self.error("skin.damping_n_s_per_m", given, allowed));
-        }
-        Ok(())
-    }
-
-    /// Returns an error if the taxels have friction that has no effect in the study. Friction acts only on taxels that move along the object. On a flat array
-    /// that is pressed straight on, no taxel does.
-    fn used_friction(&self, spec: &StudySpec) -> Result<()> {
-        let (skin, axes) = (&spec.skin, &spec.axes);
-        let rubs = spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)
-            || skin
-                .layout
-                .as_ref()
-                .is_some_and(|layout| layout.is_curved())
-            || ["touches.slide_mm", "skin.layout"]
-                .iter()
-                .any(|key| axes.has(key));
-        // A study of recorded frames may describe the skin completely.
-        if spec.recorded.is_some() {
-            return Ok(());
-        }
-        let of_shear = [
-            ("skin.friction", skin.friction),
-            ("skin.shear_stiffness_n_per_m", skin.shear_stiffness_n_per_m),
-        ];
-        for (key, value) in of_shear {
-            if let (Some(value), false) = (value, rubs) {
-                let given = format!("{value}, but tips stay where they first touch");
-                let allowed = "a touches.slide_mm above 0 or a curved skin.layout beside it";
-                return Err(self.error(key, given, allowed));
-            }
-        }
-        let reads_shear = skin.sensed == Some(SensedSpec::Shear);
-        if reads_shear && rubs && skin.friction.is_none() {
+    /// Returns an error if taxels read shear and move along the object, but have no friction.
+    fn sticking_shear(&self, spec: &StudySpec) -> Result<()> {
+        let reads_shear = spec.skin.sensed == Some(SensedSpec::Shear);
+        if spec.recorded.is_none() && reads_shear && rubs(spec) && spec.skin.friction.is_none() {
             return Err(self.error("skin.sensed", "shear", "skin.friction beside it"));
         }
         Ok(())
+    }
+}
+
+impl KeyUse {
+    /// Returns whether the key has an effect in a plan, or may have one because another key is an axis. Other keys of test touches may be axes of `table`.
+    fn acts(&self, plan: &Plan, axes: &StudyAxes, table: &str) -> bool {
+        (self.has_effect)(plan)
+            || has_axis(axes, "", self.beside)
+            || has_axis(axes, table, self.beside)
     }
 }
