@@ -301,6 +301,20 @@ struct Found {
     is_one: bool,
 }
 
+/// Directions of contact of the triangles of one lane, times the radius of the taxels.
+struct Directions {
+    /// Length by which the triangles are moved along their axis, metres; zero if the side of the surface is not certain.
+    shift: f32,
+    /// Radius of the taxels if the side of the surface is not certain, otherwise zero, metres. A component of a direction is then between minus and plus the sum of
+    /// the spread and the absolute component of the axis.
+    both: f32,
+    /// Length by which the moved triangles are enlarged, metres: the whole radius if they may be behind the substrate, because the search then evaluates all their
+    /// parts.
+    spread: f32,
+    /// Whether triangles may be behind the substrate.
+    is_low: bool,
+}
+
 impl BlockSearch {
     pub fn new(
         blocks: &MeshBlocks,
@@ -371,13 +385,17 @@ impl BlockSearch {
                 let [a, b, c] = self.rows[k];
                 half[k] = a.abs() * own[0] + b.abs() * own[1] + c.abs() * own[2];
             }
-            let (shift, spread, _) =
-                self.directions(axis[2], node.spread[lane], center[2] - half[2]);
+            let Directions {
+                shift,
+                both,
+                spread,
+                ..
+            } = self.directions(axis[2], node.spread[lane], center[2] - half[2]);
             let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
             let mut middle = [0.0; 3];
             for k in 0..3 {
                 middle[k] = center[k] + shift * axis[k];
-                let wide = half[k] + spread + self.slack;
+                let wide = half[k] + least(spread + both * axis[k].abs(), self.reach) + self.slack;
                 (low[k], high[k]) = (middle[k] - wide, middle[k] + wide);
             }
             let top = center[2] + half[2];
@@ -402,6 +420,7 @@ impl BlockSearch {
                 let reach = own[j] * up[k].abs() + own[k] * up[j].abs();
                 gap = most(gap, (along_x * x + along_y * y).abs() - reach);
             }
+            let spread = if both > 0.0 { self.reach } else { spread };
             let is_missed = found.is_one & (gap > spread + 2.0 * self.slack);
             for k in 0..2 {
                 candidates.columns[k][lane] = found.columns[k];
@@ -427,7 +446,12 @@ impl BlockSearch {
             let b = self.placed(get(b, lane));
             let c = self.placed(get(c, lane));
             let bottom = least(least(a[2], b[2]), c[2]);
-            let (shift, spread, is_low) = self.directions(normal[2], block.spread[lane], bottom);
+            let Directions {
+                shift,
+                both,
+                spread,
+                is_low,
+            } = self.directions(normal[2], block.spread[lane], bottom);
             let wide = spread + self.slack;
             // No direction is longer than one.
             let far = self.reach + self.slack;
@@ -436,6 +460,7 @@ impl BlockSearch {
                 let lowest = least(least(a[k], b[k]), c[k]);
                 let highest = most(most(a[k], b[k]), c[k]);
                 let moved = shift * normal[k];
+                let wide = wide + both * normal[k].abs();
                 low[k] = most(lowest + moved - wide, lowest - far);
                 high[k] = least(highest + moved + wide, highest + far);
             }
@@ -670,19 +695,18 @@ impl BlockSearch {
         [x + a, y + b, z + c]
     }
 
-    /// Returns the length by which the triangles of a lane are moved along their axis, and by which they are then enlarged, metres. `up` is the vertical
-    /// component of the axis, `bottom` the lowest point of the triangles. Triangles that may be behind the substrate are enlarged by the whole radius, because the
-    /// search then evaluates all their parts.
+    /// Returns the directions of contact of the triangles of a lane. `up` is the vertical component of the axis, `bottom` the lowest point of the triangles.
     #[inline(always)]
-    fn directions(&self, up: f32, spread: f32, bottom: f32) -> (f32, f32, bool) {
+    fn directions(&self, up: f32, spread: f32, bottom: f32) -> Directions {
         let is_low = bottom - self.reach - self.slack < self.behind;
         let is_certain = (up.abs() > spread + 1e-5) & !is_low;
         let side = if up < 0.0 { self.reach } else { -self.reach };
-        (
-            if is_certain { side } else { 0.0 },
-            self.reach * (if is_certain { spread } else { 1.0 }),
+        Directions {
+            shift: if is_certain { side } else { 0.0 },
+            both: if is_certain { 0.0 } else { self.reach },
+            spread: self.reach * (if is_low { 1.0 } else { spread }),
             is_low,
-        )
+        }
     }
 
     #[inline(always)]
