@@ -341,9 +341,8 @@ fn smooth_patches(faces: &[Face], n_corners: usize, n_edges: usize) -> Vec<u32> 
     }
     let n_rest = n_corners + n_edges;
     let mut patches = vec![u32::MAX; n_rest];
-    for number in 0..faces.len() {
+    for (number, face) in faces.iter().enumerate() {
         let patch = n_rest as u32 + root(&mut first, number as u32);
-        let face = &faces[number];
         let corners = face.corner_numbers.map(|corner| corner as usize);
         let edges = face.edges.iter().filter(|edge| **edge != u32::MAX);
         let edges = edges.map(|edge| n_corners + *edge as usize);

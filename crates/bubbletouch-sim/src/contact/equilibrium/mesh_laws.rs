@@ -78,7 +78,8 @@ fn the_energy_of_a_corner_is_continuous_on_smooth_surfaces_and_in_a_tray() {
         }
     };
     let egg_top = |x: f64, y: f64| 8e-3 * (1.0 - (x / 12e-3).powi(2) - (y / 10e-3).powi(2)).sqrt();
-    let surfaces: [(MeshModel, &dyn Fn(f64, f64) -> f64); 5] = [
+    type Height<'a> = &'a dyn Fn(f64, f64) -> f64;
+    let surfaces: [(MeshModel, Height); 5] = [
         (egg, &egg_top),
         (relief(40, |_, _| 0.0), &|_, _| 0.0),
         (relief(40, hollow), &hollow),
