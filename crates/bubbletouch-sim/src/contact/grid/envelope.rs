@@ -283,7 +283,9 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
             n_waiting += 1;
         }
     }
-    sweep.bound_beside(bounds);
+    if sweep.beside.n > 0 {
+        sweep.bound_beside(bounds);
+    }
     sweep.evaluate_waiting();
 }
 
