@@ -3,7 +3,6 @@
 use super::Ensemble;
 use super::ensembles::ScrambledHadamard;
 use super::ensembles::{Operator, Source, TrainingFrames};
-use super::several_images::{SeveralImages, shares};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
@@ -25,10 +24,10 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Projection {
-    ensemble: Ensemble,
-    n_taxels: usize,
-    n_measurements: usize,
-    operator: Arc<dyn Operator>,
+    pub(super) ensemble: Ensemble,
+    pub(super) n_taxels: usize,
+    pub(super) n_measurements: usize,
+    pub(super) operator: Arc<dyn Operator>,
 }
 
 impl Projection {
@@ -86,46 +85,6 @@ impl Projection {
             n_taxels: n,
             n_measurements: ensemble.n_measurements(m, n),
             operator: operator.into(),
-        })
-    }
-
-    /// Prepares the projection of frames that consist of `k` images of equal shape, one after the other, such as one image for each kind of value of a taxel.
-    /// Each image has a projection of its own with the seed `seed`; m counts the measurements of all images, at least one each. Their numbers differ by at
-    /// most 1. One image is measured as by [`learned`](Self::learned).
-    ///
-    /// # Errors
-    /// If m < k, or if an image has no projection.
-    ///
-    /// # Panics
-    /// If k = 0, or if a frame does not have k · n values.
-    pub fn of_images<'a>(
-        ensemble: Ensemble,
-        (k, grid): (usize, (usize, usize)),
-        m: usize,
-        (training, seed): (impl Into<TrainingFrames<'a>>, &Seed),
-    ) -> Result<Self> {
-        let (training, n) = (training.into(), grid.0 * grid.1);
-        if k == 1 {
-            return Self::learned(ensemble, grid, m, (training, seed));
-        }
-        let image = |(image, m): (usize, usize)| {
-            let taxels = image * n..(image + 1) * n;
-            let frames = match training.frames.is_empty() {
-                true => training.frames,
-                false => training.frames.slice_move(s![.., taxels]),
-            };
-            let training = TrainingFrames { frames, ..training };
-            Self::learned(ensemble, grid, m, (training, seed))
-        };
-        let images: Vec<Self> = shares(k, m).enumerate().map(image).collect::<Result<_>>()?;
-        Ok(Self {
-            ensemble,
-            n_taxels: k * n,
-            n_measurements: images.iter().map(Self::n_measurements).sum(),
-            operator: Arc::new(SeveralImages {
-                images,
-                is_nested: ensemble.is_prefix_nested(),
-            }),
         })
     }
 

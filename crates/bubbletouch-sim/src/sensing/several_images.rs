@@ -1,12 +1,58 @@
 //! Measurement of frames that consist of several images, such as one image for each kind of value of a taxel.
 
-use super::ensembles::Operator;
+use super::Ensemble;
+use super::ensembles::{Operator, TrainingFrames};
 use super::projection::Projection;
+use crate::error::Result;
+use crate::random::Seed;
 use ndarray::{ArrayView2, ArrayViewMut2, s};
+use std::sync::Arc;
 
 /// Returns the number of measurements of each of k images, m in total. The numbers differ by at most 1; the first images have the larger numbers.
-pub(super) fn shares(k: usize, m: usize) -> impl Iterator<Item = usize> {
+fn shares(k: usize, m: usize) -> impl Iterator<Item = usize> {
     (0..k).map(move |image| m / k + usize::from(image < m % k))
+}
+
+impl Projection {
+    /// Prepares the projection of frames that consist of `k` images of equal shape, one after the other, such as one image for each kind of value of a taxel.
+    /// Each image has a projection of its own with the seed `seed`; m counts the measurements of all images, at least one each. Their numbers differ by at
+    /// most 1. One image is measured as by [`learned`](Self::learned).
+    ///
+    /// # Errors
+    /// If m < k, or if an image has no projection.
+    ///
+    /// # Panics
+    /// If k = 0, or if a frame does not have k · n values.
+    pub fn of_images<'a>(
+        ensemble: Ensemble,
+        (k, grid): (usize, (usize, usize)),
+        m: usize,
+        (training, seed): (impl Into<TrainingFrames<'a>>, &Seed),
+    ) -> Result<Self> {
+        let (training, n) = (training.into(), grid.0 * grid.1);
+        if k == 1 {
+            return Self::learned(ensemble, grid, m, (training, seed));
+        }
+        let image = |(image, m): (usize, usize)| {
+            let taxels = image * n..(image + 1) * n;
+            let frames = match training.frames.is_empty() {
+                true => training.frames,
+                false => training.frames.slice_move(s![.., taxels]),
+            };
+            let training = TrainingFrames { frames, ..training };
+            Self::learned(ensemble, grid, m, (training, seed))
+        };
+        let images: Vec<Self> = shares(k, m).enumerate().map(image).collect::<Result<_>>()?;
+        Ok(Self {
+            ensemble,
+            n_taxels: k * n,
+            n_measurements: images.iter().map(Self::n_measurements).sum(),
+            operator: Arc::new(SeveralImages {
+                images,
+                is_nested: ensemble.is_prefix_nested(),
+            }),
+        })
+    }
 }
 
 /// Map of a frame of k equal images, stored one after the other. Each image has its own projection.
@@ -14,9 +60,9 @@ pub(super) fn shares(k: usize, m: usize) -> impl Iterator<Item = usize> {
 /// If the ensemble is nested, measurement j of image i is measurement i + j k of the frame, so that the map is nested, too. Otherwise, the measurements of an
 /// image follow those of the previous images.
 #[derive(Debug)]
-pub(super) struct SeveralImages {
-    pub images: Vec<Projection>,
-    pub is_nested: bool,
+struct SeveralImages {
+    images: Vec<Projection>,
+    is_nested: bool,
 }
 
 impl SeveralImages {

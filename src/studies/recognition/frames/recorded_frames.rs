@@ -22,7 +22,7 @@ use crate::studies::recognition::frames::sensor_frames::{
     SensorFrames, SensorScale, check_alike, joined_readings,
 };
 use crate::studies::recognition::frames::touch_lengths::one_each;
-use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
+use crate::studies::recognition::frames::touch_set::{RecordedContent, Samples, TouchSet};
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
@@ -31,15 +31,6 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2};
 use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
 use std::path::PathBuf;
-
-/// Identity of a recording by the contents of its files. Files may move to another folder, or have other names.
-#[derive(Clone, Debug)]
-pub struct RecordedContent {
-    /// SHA-256 hash of each file, by its key.
-    pub hashes: BTreeMap<String, String>,
-    /// Text that is equal exactly if all keys and the contents of all files are equal.
-    pub identity: String,
-}
 
 /// Touches that a real skin recorded.
 #[derive(Clone, Debug)]

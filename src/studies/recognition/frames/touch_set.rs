@@ -7,7 +7,6 @@ use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::TouchToRead;
-use crate::studies::recognition::frames::recorded_frames::RecordedContent;
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::pose_groups::KeepTogether;
 use crate::studies::recognition::plan::study_plan::Plan;
@@ -15,6 +14,16 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::touches::drawn_touches::touch_labels;
 use crate::world::Touch;
 use ndarray::Array1;
+use std::collections::BTreeMap;
+
+/// Identity of a recording by the contents of its files. Files may move to another folder, or have other names.
+#[derive(Clone, Debug)]
+pub struct RecordedContent {
+    /// SHA-256 hash of each file, by its key.
+    pub hashes: BTreeMap<String, String>,
+    /// Text that is equal exactly if all keys and the contents of all files are equal.
+    pub identity: String,
+}
 
 /// Set of touches of several classes, ordered by class. A class is an object, a kind of human touch, or a label of a recording.
 pub trait TouchSet: Sync {
