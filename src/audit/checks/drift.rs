@@ -90,7 +90,7 @@ fn gain(context: &Context) -> Finding {
         return not_checked("There are too few touches, or all gains are equal.");
     };
     if shape.p_value <= ALIKE {
-        let why = "Touches that follow each other have similar shapes, so that a drift of the gain cannot be told from copies of touches; groups may tell them.";
+        let why = "Touches that follow each other have similar shapes, so that a drift of the gain cannot be told from copies of touches.";
         return not_checked(why);
     }
     // Neighbours in time share the slow part of the gain.
