@@ -301,7 +301,10 @@ fn a_drawn_pose_without_a_distance_and_a_distance_without_a_group_are_refused() 
             "group_by = \"pose\"\ngroup_by_mm = 2.0\n",
             "key recognition.group_by_deg: left out, and yaw is spread uniformly",
         ),
-        ("group_by_mm = 2.0\n", "without recognition.group_by"),
+        (
+            "group_by_mm = 2.0\n",
+            "key recognition.group_by_mm: 2.0, but no group_by is given",
+        ),
         (
             "group_by = \"offset\"\ngroup_by_mm = 0.0\n",
             "key recognition.group_by_mm: 0; a positive number",

@@ -258,7 +258,7 @@ fn copies_are_of_images_and_their_tilt_belongs_to_them() {
         ),
         (
             "tilt_augmentation_deg = 2.0",
-            "no such key without recognition.tilt_augmentation",
+            "key recognition.tilt_augmentation_deg: 2.0, but no tilt_augmentation is given",
         ),
         (
             "tilt_augmentation = 2\ntilt_augmentation_deg = 60.0",
