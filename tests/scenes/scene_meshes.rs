@@ -115,6 +115,70 @@ fn a_turned_block_in_the_shipped_cup_rests_and_rises_with_the_bed() {
     }
 }
 
+/// Robot with a patch of skin, as the finger of a gripper: approaches along the world's x-axis by `approach` mm/s, then rises.
+fn finger(name: &str, x_mm: f64, tilt_deg: f64, approach: f64) -> String {
+    format!(
+        r#"
+[[robots]]
+name = "{name}"
+floating = true
+motion = {{ phases = [
+    {{ duration_s = 0.2, linear_mm_per_s = [{approach:?}, 0.0, 0.0] }},
+    {{ duration_s = 0.1, linear_mm_per_s = [0.0, 0.0, 40.0] }},
+] }}
+
+[[patches]]
+name = "skin of {name}"
+robot = "{name}"
+layout = {{ grid = {{ nx = 10, ny = 10, pitch_mm = 2.0 }} }}
+at = {{ position_mm = [{x_mm:?}, 0.0, 10.0], rotation_deg = [0.0, {tilt_deg:?}, 0.0] }}
+stroke_mm = 6.0
+stiffness_n_per_m = 400.0
+friction = 0.8
+"#
+    )
+}
+
+/// The taxels hold the block by friction: half of its weight each, while it hangs above the table.
+#[test]
+fn two_fingers_grasp_a_free_mesh_and_lift_it_from_a_table() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes");
+    let scene = format!(
+        r#"
+title = "Grasp"
+dt_ms = 5.0
+output_hz = 20.0
+{}{}
+[[planes]]
+name = "table"
+
+[[objects]]
+name = "block"
+mesh = "block.obj"
+unit = "mm"
+model = "mesh"
+at = {{ position_mm = [0.0, 0.0, 10.0] }}
+free = {{ mass_kg = 0.05 }}
+"#,
+        finger("left", -18.0, 90.0, 20.0),
+        finger("right", 18.0, -90.0, -20.0)
+    );
+    let spec = SceneSpec::parse("s.toml", &scene).unwrap();
+    let plan = ScenePlan::new("s.toml", &folder, spec).unwrap();
+    let mut frames: Vec<Frame> = Vec::new();
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    simulation.run(&mut [&mut frames]).unwrap();
+    for frame in &frames {
+        assert_eq!(frame.objects[0].held, PoseControl::AtRest);
+        let imbalance = frame.objects[0].balance.unwrap().imbalance;
+        assert!(imbalance <= 1e-6, "{imbalance}");
+    }
+    let height = |frame: &Frame| frame.objects[0].pose.translation.z;
+    let risen = height(frames.last().unwrap()) - height(&frames[0]);
+    // The shear springs yield a little.
+    assert!((risen - 4e-3).abs() < 5e-4, "{risen}");
+}
+
 #[test]
 fn open_and_overlapping_meshes_beside_others_are_refused() {
     let said = |objects: String| {

@@ -83,7 +83,7 @@ pub(super) struct Descent<'a, 'b> {
     pub n_steps: usize,
     /// Whether a mesh can touch a rigid shape.
     has_mesh: bool,
-    /// Total decrease of the energy by ordinary steps, joules.
+    /// Total decrease of the energy by ordinary steps, less increases by contacts that are found only after a step, joules.
     descended: f64,
 }
 
@@ -360,6 +360,8 @@ impl<'a, 'b> Descent<'a, 'b> {
         // The next step knows the contacts of the rejected one.
         let n_pairs = self.workspace.now.pairs.all.len();
         self.look_again();
+        // Contacts of the rejected pose can raise the energy. Without this, a cycle of such poses would count as a descent.
+        self.descended -= self.workspace.now.loads.elastic - before;
         (self.workspace.now.pairs.all.len() > n_pairs).then_some(0.5)
     }
 
