@@ -1,6 +1,7 @@
 //! Layouts stored as NumPy archives, in one of two forms. The first form has `positions` (n × 3, metres), `normals` (n × 3), and optionally `radii` (n, metres)
 //! and `pixels` (n × 2: row, column). The second form, used for Analog Devices' DEX-01, has `poses` (n × 3 × 4) and `taxel2pixel` (n × 2), and optionally
-//! `radii`. A pose is a rotation matrix, whose third column is the normal, followed by the position in metres. [`NAMES`] lists other names of the arrays.
+//! `radii`. A pose is a rotation matrix, whose third column is the normal, followed by the position in metres. Other names
+//! such as `points`, `centers` and `axes` are read too.
 
 use super::LayoutFile;
 use crate::error::{Error, Result};
