@@ -116,6 +116,16 @@ impl Finding {
             .shown_in("confounds")
     }
 
+    /// Creates the finding that labels can be read from a source. `names` is the subject and the verb of the sentence, such as "The mean reading names".
+    pub fn names_class(found: &Readability, names: &str, advice: &str) -> Self {
+        let sentence = format!(
+            "{names} the class of {} of the touches; permuted labels give {}.",
+            percent(found.accuracy),
+            percent(found.chance)
+        );
+        Self::readable(found, sentence, advice)
+    }
+
     /// Creates a finding from a count.
     pub fn counted(check: &'static str, value: f64, sentence: String, is_fault: bool) -> Self {
         Self::new(check, value, sentence, Evidence::Counted(is_fault))

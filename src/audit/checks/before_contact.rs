@@ -303,32 +303,29 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         return Ok(vec![Finding::not_checked("", NO_LABELS)]);
     }
     let mut findings: Vec<Finding> = at_rest(context).into_iter().collect();
-    if let Some(found) = context.readable.get(PADDING.name) {
-        let sentence = format!(
-            "The number of equal frames at the end names the class of {} of the touches; permuted labels give {}.",
-            percent(found.accuracy),
-            percent(found.chance)
-        );
-        let advice = "Record all touches with the same length, or cut them to the shortest; otherwise the classifier may name the length of the recording.";
-        findings.push(Finding::readable(found, sentence, advice).about("padding"));
-    }
-    if let Some(found) = context.readable.get(NOISE.name) {
-        let sentence = format!(
-            "The noise of readings without contact names the class of {} of the touches; permuted labels give {}.",
-            percent(found.accuracy),
-            percent(found.chance)
-        );
-        let advice = "Record the classes in random order and with the same settings of the sensor; otherwise the classifier may name the session by its noise.";
-        findings.push(Finding::readable(found, sentence, advice).about("noise"));
-    }
-    if let Some(found) = context.readable.get(ONSET.name) {
-        let sentence = format!(
-            "The number of frames before the contact names the class of {} of the touches; permuted labels give {}.",
-            percent(found.accuracy),
-            percent(found.chance)
-        );
-        let advice = "Align the touches at the beginning of the contact; otherwise the classifier may name how the recording was made.";
-        findings.push(Finding::readable(found, sentence, advice).about("number of frames"));
+    for (source, names, advice, subject) in [
+        (
+            PADDING,
+            "The number of equal frames at the end names",
+            "Record all touches with the same length, or cut them to the shortest; otherwise the classifier may name the length of the recording.",
+            "padding",
+        ),
+        (
+            NOISE,
+            "The noise of readings without contact names",
+            "Record the classes in random order and with the same settings of the sensor; otherwise the classifier may name the session by its noise.",
+            "noise",
+        ),
+        (
+            ONSET,
+            "The number of frames before the contact names",
+            "Align the touches at the beginning of the contact; otherwise the classifier may name how the recording was made.",
+            "number of frames",
+        ),
+    ] {
+        if let Some(found) = context.readable.get(source.name) {
+            findings.push(Finding::names_class(found, names, advice).about(subject));
+        }
     }
     let Some(found) = context.readable.get(SOURCE.name) else {
         let Some(quietest) = context.readable.get(QUIETEST.name) else {
@@ -349,12 +346,11 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         findings.push(note);
         return Ok(findings);
     };
-    let sentence = format!(
-        "Frames before the contact name the class of {} of the touches; permuted labels give {}.",
-        percent(found.accuracy),
-        percent(found.chance)
-    );
     let advice = "Subtract the frame before contact from each touch, or record the classes in random order; otherwise the classifier may name the session.";
-    findings.push(Finding::readable(found, sentence, advice));
+    findings.push(Finding::names_class(
+        found,
+        "Frames before the contact name",
+        advice,
+    ));
     Ok(findings)
 }

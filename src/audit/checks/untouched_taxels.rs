@@ -2,7 +2,6 @@
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result, Source};
 use crate::audit::checks::before_contact::{noise_levels, some_columns};
-use crate::audit::finding::percent;
 use ndarray::Array2;
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -45,21 +44,13 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         };
         return Ok(vec![Finding::not_checked("", why)]);
     };
-    let sentence = format!(
-        "The {n} taxels that nothing touches name the class of {} of the touches; permuted labels give {}.",
-        percent(found.accuracy),
-        percent(found.chance)
-    );
+    let names = format!("The {n} taxels that nothing touches name");
     let advice = "Subtract the level of the untouched taxels from each frame, mask them, and record the classes in random order.";
-    let mut findings = vec![Finding::readable(found, sentence, advice)];
+    let mut findings = vec![Finding::names_class(found, &names, advice)];
     if let Some(found) = context.readable.get(NOISE.name) {
-        let sentence = format!(
-            "The noise of the taxels that nothing touches names the class of {} of the touches; permuted labels give {}.",
-            percent(found.accuracy),
-            percent(found.chance)
-        );
+        let names = "The noise of the taxels that nothing touches names";
         let advice = "Mask the untouched taxels, and record the classes in random order and with the same settings of the sensor.";
-        findings.push(Finding::readable(found, sentence, advice).about("noise"));
+        findings.push(Finding::names_class(found, names, advice).about("noise"));
     }
     Ok(findings)
 }
