@@ -2,11 +2,12 @@
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::line::{Decoded, NO_STUDY, Records, decode, encode};
+use crate::engine::journal::locked_file::LockedFile;
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::value::RawValue;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::OpenOptions;
 use std::io::ErrorKind::{NotADirectory, NotFound};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -34,7 +35,7 @@ pub struct Journal {
 
 #[derive(Debug)]
 struct Writer {
-    file: File,
+    file: LockedFile,
     synced: Instant,
     /// Whether a write to the journal has failed. The last line may then be incomplete, so no further line is written.
     is_broken: bool,
@@ -231,28 +232,16 @@ fn is_failure(record: &RawValue) -> bool {
     serde_json::from_str(record.get()).is_ok_and(|outcome: Outcome| outcome.is_err())
 }
 
-/// Locks a journal file against other processes until the file is closed.
-pub(crate) fn lock(path: &Path, file: &File) -> Result<()> {
-    file.try_lock().map_err(|error| match error {
-        TryLockError::WouldBlock => Error::input(
-            path.display(),
-            "another run is writing to it",
-            "one run in a folder at a time: wait for that one, or name another folder with --out",
-        ),
-        TryLockError::Error(error) => Error::io(path, "lock", error),
-    })
-}
-
 /// Opens or creates a journal file with exclusive access for this process, and reads its content.
-fn read_locked(path: &Path) -> Result<(File, Vec<u8>)> {
+fn read_locked(path: &Path) -> Result<(LockedFile, Vec<u8>)> {
     let file = OpenOptions::new()
         .read(true)
         .write(true)
         .create(true)
         .truncate(false)
         .open(path);
-    let mut file = file.map_err(|e| Error::io(path, "write", e))?;
-    lock(path, &file)?;
+    let file = file.map_err(|e| Error::io(path, "write", e))?;
+    let mut file = LockedFile::new(path, file)?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)
         .map_err(|e| Error::io(path, "read", e))?;

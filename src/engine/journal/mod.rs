@@ -10,6 +10,7 @@
 pub(crate) mod identity;
 pub(crate) mod journal_file;
 pub(crate) mod line;
+pub(crate) mod locked_file;
 pub(crate) mod rename_old_results;
 mod shard_journals;
 

@@ -1,6 +1,7 @@
 //! Renaming of old result folders, so that new results do not replace them.
 
-use crate::engine::journal::journal_file::{JOURNAL_FILE, lock};
+use crate::engine::journal::journal_file::JOURNAL_FILE;
+use crate::engine::journal::locked_file::LockedFile;
 use crate::error::{Error, Result};
 use crate::files::{MANIFEST_FILE, OwnedFiles, RUN, input_within};
 use std::fs::{self, File};
@@ -24,10 +25,10 @@ pub fn rename_old_results(folder: &Path) -> Result<Option<PathBuf>> {
         false => folder.to_owned(),
     };
     let journal = folder.join(JOURNAL_FILE);
-    let held = File::open(&journal);
-    if let Ok(file) = &held {
-        lock(&journal, file)?;
-    }
+    let _held = match File::open(&journal) {
+        Ok(file) => Some(LockedFile::new(&journal, file)?),
+        Err(_) => None,
+    };
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let free = (1..)
         .map(|k| folder.with_file_name(format!("{name}.{k}")))
