@@ -3,6 +3,7 @@
 use crate::command::Case;
 use crate::study::{Study, laid_out};
 use bubbletouch::kinds::recognition::RecognitionStudy;
+use bubbletouch::sensing::Ensemble;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::TrialScore;
 use bubbletouch::study::{simulate_array, write_integers, write_npy};
@@ -127,6 +128,31 @@ fn touches_may_come_in_any_order_and_groups_are_held_out_whole() {
         }
     }
     study.run(&Silent).unwrap();
+}
+
+#[test]
+fn without_sensing_all_taxels_are_measured() {
+    let case = Case::new();
+    let (_, labels, frames) = simulated();
+    write(case.folder(), &frames, &labels);
+    let run = |rest: &str| {
+        let study = laid_out(&recorded(case.folder(), "", rest)).unwrap();
+        study.run(&Silent).unwrap()
+    };
+    let rest = "[recognition]\nclassifier = \"linear_svm\"\n";
+    let (named, default) = (
+        run(&format!("[sensing]\nensemble = \"identity\"\n{rest}")),
+        run(rest),
+    );
+    assert_eq!(default.accuracy, named.accuracy);
+    assert_eq!(default.summary[0].0.measurements, 64);
+    // An axis of the table keeps the default ensemble of the table.
+    let compressed = run(&format!("{rest}[axes]\n\"sensing.ratio\" = [4.0]\n"));
+    let configuration = &compressed.summary[0].0;
+    assert_eq!(
+        (configuration.ensemble, configuration.measurements),
+        (Ensemble::Gaussian, 16)
+    );
 }
 
 #[test]

@@ -73,7 +73,8 @@ pub struct StudySpec {
     /// Table `[signal]`: noise, sensor errors and processing of frames before compression.
     #[serde(default)]
     pub signal: SignalSpec,
-    /// Table `[sensing]`: compression of frames into measurements.
+    /// Table `[sensing]`: compression of frames into measurements. Default: `ensemble = "identity"`, which measures all taxels without compression.
+    #[serde(default)]
     pub sensing: SensingSpec,
     /// Table `[recognition]`: features, classifiers, and the split into training and test touches.
     pub recognition: RecognitionSpec,
@@ -108,6 +109,19 @@ pub struct SensingSpec {
     pub selection: Option<Axis<Selection>>,
     /// Number of measurements that the skin reads out per second. Adds the column `readout_ms`, the time to read a frame. Default: no such column.
     pub readings_per_s: Option<f64>,
+}
+
+impl Default for SensingSpec {
+    /// Returns the compression of a study without the table `[sensing]`: all taxels are measured.
+    fn default() -> Self {
+        Self {
+            ensemble: Axis::One(Ensemble::Identity),
+            ratio: None,
+            measurements: None,
+            selection: None,
+            readings_per_s: None,
+        }
+    }
 }
 
 /// Keys of `[recognition]`: features, classifiers, and the split into training and test touches.
