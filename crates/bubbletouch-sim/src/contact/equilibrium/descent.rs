@@ -83,7 +83,7 @@ pub(super) struct Descent<'a, 'b> {
     pub n_steps: usize,
     /// Whether a mesh can touch a rigid shape.
     has_mesh: bool,
-    /// Total decrease of the energy by ordinary steps, less increases by contacts that are found only after a step, joules.
+    /// Total decrease of the energy by steps and falls, less increases by contacts that are found only after a step, joules.
     descended: f64,
 }
 
@@ -403,6 +403,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             self.look(&behind);
             let gain = before - self.workspace.now.loads.elastic + 0.5 * weight.dot(way);
             if gain >= 0.0 || way.length() <= self.same_place() {
+                self.descended += gain + 0.5 * weight.dot(way);
                 return;
             }
             way *= 0.5;

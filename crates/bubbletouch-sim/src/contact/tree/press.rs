@@ -223,6 +223,9 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
 /// path is known. One part determines each deflection. If several parts require equal deflections, the first sphere of the first object determines the
 /// deflection.
 ///
+/// A free object at rest often lies on taxels that two of its parts push equally far, such as two faces of a valley. Their shares of the force are needed for the balance;
+/// [`EquilibriumSolver::loads`](crate::contact::equilibrium::EquilibriumSolver::loads) contains them.
+///
 /// ```
 /// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
 /// use bubbletouch_sim::geometry::Pose;

@@ -2,7 +2,7 @@
 
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, HalfSpace, Obstacle, Outcome, PlacedSkin,
-    Touch, Touched, overlap,
+    TaxelLoad, Touch, Touched, overlap,
 };
 use bubbletouch_sim::contact::{Workspace, press_with_contacts};
 use bubbletouch_sim::geometry::Pose;
@@ -13,11 +13,11 @@ use bubbletouch_sim::world::{Grid, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
-const G: f64 = 9.81;
-const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
-const BALANCED: f64 = 1e-6;
+pub(super) const G: f64 = 9.81;
+pub(super) const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
+pub(super) const BALANCED: f64 = 1e-6;
 
-fn bed(n: usize, pitch: f64, stiffness: f64) -> Patch {
+pub(super) fn bed(n: usize, pitch: f64, stiffness: f64) -> Patch {
     let grid = Grid {
         nx: n,
         ny: n,
@@ -69,14 +69,14 @@ fn tray(width: f64, height: f64, wall: f64) -> Model {
 
 /// Free object: shape, mass and centre of mass.
 #[derive(Clone)]
-struct Free {
-    model: Model,
-    mass: f64,
-    center: DVec3,
+pub(super) struct Free {
+    pub model: Model,
+    pub mass: f64,
+    pub center: DVec3,
 }
 
 impl Free {
-    fn new(model: Model, mass: f64) -> Self {
+    pub fn new(model: Model, mass: f64) -> Self {
         let center = match &model {
             Model::Mesh(mesh) => mesh.mesh().volume_and_centroid().1,
             Model::Spheres(spheres) => spheres.bounds().center(),
@@ -89,12 +89,13 @@ impl Free {
     }
 }
 
-struct Rest {
-    solutions: Vec<Equilibrium>,
-    touches: Vec<Touch>,
+pub(super) struct Rest {
+    pub solutions: Vec<Equilibrium>,
+    pub touches: Vec<Touch>,
+    pub loads: Vec<TaxelLoad>,
 }
 
-fn settle(free: &[Free], ground: &Ground, gravity: DVec3, starts: &[Pose]) -> Rest {
+pub(super) fn settle(free: &[Free], ground: &Ground, gravity: DVec3, starts: &[Pose]) -> Rest {
     let objects = free
         .iter()
         .map(|free| FreeObject::new(&free.model, free.mass, free.center).unwrap());
@@ -104,22 +105,23 @@ fn settle(free: &[Free], ground: &Ground, gravity: DVec3, starts: &[Pose]) -> Re
     Rest {
         solutions,
         touches: solver.touches().to_vec(),
+        loads: solver.loads().to_vec(),
     }
 }
 
-fn on_bed(patch: &Patch) -> Ground<'_> {
+pub(super) fn on_bed(patch: &Patch) -> Ground<'_> {
     Ground {
         skins: vec![PlacedSkin::new(patch, Pose::IDENTITY)],
         ..Ground::default()
     }
 }
 
-fn at(x: f64, y: f64, z: f64) -> Pose {
+pub(super) fn at(x: f64, y: f64, z: f64) -> Pose {
     Pose::from_translation(DVec3::new(x, y, z))
 }
 
 /// Returns the largest residual of force and torque of all objects, relative to the weights. The forces of the taxels are computed by another evaluator, the
-/// press at a pose; the forces between objects are the reported contacts.
+/// press at a pose; the forces between objects are the reported contacts. A press has one contact a taxel, so this function is for shapes without valleys below.
 fn residual(patch: &Patch, free: &[Free], rest: &Rest) -> f64 {
     let models: Vec<Model> = free.iter().map(|free| free.model.clone()).collect();
     let poses: Vec<Pose> = rest

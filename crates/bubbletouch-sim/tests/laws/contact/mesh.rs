@@ -32,7 +32,11 @@ fn odd_triangle(rng: &mut impl Rng, kind: u64) -> Triangle {
 
 /// Returns the lowest z at which a ball at (x, y) is a radius away from the triangle. Sampling finds a point that is nearer, and bisection follows below it.
 /// The distance to a convex set is convex along the line.
-fn stopping_height_by_search(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f64> {
+pub(super) fn stopping_height_by_search(
+    triangle: &Triangle,
+    radius: f64,
+    at: DVec2,
+) -> Option<f64> {
     let distance = |z: f64| {
         let point = at.extend(z);
         triangle.closest(point).0.distance(point)

@@ -5,6 +5,7 @@ mod balance;
 mod balance_limits;
 mod dynamics_laws;
 mod force;
+mod free_mesh_forces;
 mod free_meshes;
 mod friction;
 mod held;
