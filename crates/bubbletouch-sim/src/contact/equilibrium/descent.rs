@@ -5,11 +5,13 @@ use super::energy::{Energy, PairLoad, wrenches};
 use super::fall::Loose;
 use super::free_object::Ground;
 use super::loads::{Multipliers, Smoothness};
+use super::meshes::Depth;
 use super::model::{Model, Step};
 use super::pair::{Key, Part};
 use super::rigid_shape::RigidShape;
 use super::scene::Scene;
 use super::shear_springs::{self, Spring};
+use super::stagnation::{DescentGain, ResidualDecrease};
 use super::symmetric::{Symmetric, norm};
 use glam::DVec3;
 
@@ -44,16 +46,11 @@ const MAX_TIGHTENINGS: usize = 12;
 /// Longest step of meshes that can touch rigid shapes, relative to the smallest body. If larger, a step can pass through a thin wall; if smaller, long ways
 /// need more steps.
 const RIGID_STEP: f64 = 0.02;
-/// Largest penetration of rigid meshes that is searched, in longest steps: a point can move by two steps, by translation and by rotation.
+/// Largest increase of the penetration of two meshes by a step, relative to its length: a point can move by two steps, by translation and by rotation.
 const DEEP: f64 = 2.5;
-/// Number of poses after which a descent of meshes that gains less than [`STAGNANT_GAIN`] ends, and the multipliers are updated. If larger, a search that does not
-/// converge takes longer; if smaller, multipliers are updated far from the minimum.
-const STAGNANT_STEPS: usize = 100;
-/// Least decrease of the energy within [`STAGNANT_STEPS`] poses, relative to the sum of weights times radii.
-const STAGNANT_GAIN: f64 = 1e-6;
-/// Number of updates of the multipliers without halving the residuals after which a search with meshes ends. If larger, failures take longer; if smaller, a
-/// search that would still converge ends.
-const STAGNANT_ROUNDS: usize = 10;
+/// Least penetration of rigid meshes that is searched, relative to the largest penetration of a descent. If larger, the contacts of nested shapes take longer; if smaller, a
+/// contact that begins deep, where ridges pass each other, is missed.
+const LEAST_DEPTH: f64 = 0.2;
 /// Distance below which two positions count as equal, relative to the size and the travel of the object.
 const SAME_PLACE: f64 = 1e-15;
 
@@ -148,11 +145,11 @@ impl<'a, 'b> Descent<'a, 'b> {
     /// Repeats energy descents with updated Lagrange multipliers. If the residuals no longer decrease, the best pose within the accepted tolerances is
     /// returned.
     pub fn run(&mut self) -> End {
-        self.look(&[]);
+        self.look(&[], self.farthest);
         let mut complementarity_residual = f64::INFINITY;
         let mut n_tightened = 0;
         let (mut best, mut least) = (None, f64::INFINITY);
-        let (mut least_unrest, mut n_stagnant) = (f64::INFINITY, 0);
+        let mut decrease = self.has_mesh.then(ResidualDecrease::new);
         for _ in 0..MAX_ROUNDS {
             match self.descend() {
                 End::Rest => {}
@@ -174,14 +171,10 @@ impl<'a, 'b> Descent<'a, 'b> {
                 let held = self.workspace.held.clone();
                 (best, least) = (Some((self.scene.clone(), held)), now);
             }
-            if self.has_mesh {
+            if let Some(decrease) = &mut decrease {
                 let imbalance = self.largest_imbalance().max(change);
-                let unrest = (imbalance / ACCEPTED_IMBALANCE).max(now / ACCEPTED_RESIDUAL);
-                n_stagnant += 1;
-                if unrest < 0.5 * least_unrest {
-                    (least_unrest, n_stagnant) = (unrest, 0);
-                }
-                if n_stagnant >= STAGNANT_ROUNDS {
+                let residual = (imbalance / ACCEPTED_IMBALANCE).max(now / ACCEPTED_RESIDUAL);
+                if decrease.is_stagnant(residual) {
                     break;
                 }
             }
@@ -255,15 +248,14 @@ impl<'a, 'b> Descent<'a, 'b> {
 
     /// Moves the bodies to a stationary point of the smoothed energy that is not a saddle.
     fn descend(&mut self) -> End {
-        let (mut since, mut before) = (self.n_steps, self.descended);
         let bodies = self.scene.bodies.iter();
         let size: f64 = bodies.map(|body| body.weight.length() * body.arm()).sum();
+        let start = (self.n_steps, self.descended);
+        let mut gain = self.has_mesh.then(|| DescentGain::new(start, size));
         while self.n_steps < MAX_STEPS * self.scene.bodies.len() {
-            if self.has_mesh && self.n_steps >= since + STAGNANT_STEPS {
-                if self.descended - before < STAGNANT_GAIN * size {
-                    return End::Rest;
-                }
-                (since, before) = (self.n_steps, self.descended);
+            let now = (self.n_steps, self.descended);
+            if gain.as_mut().is_some_and(|gain| gain.is_stagnant(now)) {
+                return End::Rest;
             }
             if let Some((loose, way, room)) = self.loose() {
                 match room.is_finite() {
@@ -325,7 +317,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         let before = self.workspace.now.loads.elastic;
         std::mem::swap(&mut self.workspace.now, &mut self.workspace.next);
         let behind = std::mem::take(&mut self.workspace.next.pairs.behind);
-        self.look(&behind);
+        self.look(&behind, self.reach);
         self.workspace.next.pairs.behind = behind;
         let after = self.workspace.now.loads.elastic;
         let gain = before - after + fallen;
@@ -340,13 +332,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             false => gain >= 1e-4 * step.gain,
         };
         if self.has_mesh {
-            let DescentWorkspace { now, held, .. } = &mut *self.workspace;
-            if is_better {
-                held.clear();
-            }
-            held.extend(now.pairs.rigid());
-            held.sort_unstable();
-            held.dedup();
+            self.hold_contacts(is_better);
         }
         if is_better {
             self.descended += gain;
@@ -363,6 +349,17 @@ impl<'a, 'b> Descent<'a, 'b> {
         // Contacts of the rejected pose can raise the energy. Without this, a cycle of such poses would count as a descent.
         self.descended -= self.workspace.now.loads.elastic - before;
         (self.workspace.now.pairs.all.len() > n_pairs).then_some(0.5)
+    }
+
+    /// Adds the rigid contacts of the step to the held ones, or replaces them if the step was accepted (`is_better`).
+    fn hold_contacts(&mut self, is_better: bool) {
+        let DescentWorkspace { now, held, .. } = &mut *self.workspace;
+        if is_better {
+            held.clear();
+        }
+        held.extend(now.pairs.rigid());
+        held.sort_unstable();
+        held.dedup();
     }
 
     /// Moves the bodies by a motion; returns the work of their weights, joules.
@@ -400,7 +397,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         let behind = std::mem::take(&mut self.workspace.now.pairs.behind);
         self.shift(loose, way);
         loop {
-            self.look(&behind);
+            self.look(&behind, self.farthest);
             let gain = before - self.workspace.now.loads.elastic + 0.5 * weight.dot(way);
             if gain >= 0.0 || way.length() <= self.same_place() {
                 self.descended += gain + 0.5 * weight.dot(way);
@@ -423,20 +420,29 @@ impl<'a, 'b> Descent<'a, 'b> {
         SAME_PLACE * sizes.fold(f64::INFINITY, f64::min)
     }
 
-    /// Evaluates the energy at the current poses; `behind` lists the spheres that were behind a taxel's substrate at the previous poses.
-    fn look(&mut self, behind: &[(Key, Part)]) {
+    /// Evaluates the energy at the current poses, which the last step of at most `moved` metres reached. `behind` lists the spheres that were behind a taxel's substrate
+    /// at the previous poses.
+    fn look(&mut self, behind: &[(Key, Part)], moved: f64) {
         self.n_steps += 1;
         // For a long step not all contacts are gathered: the list would contain most spheres.
         let step = self.reach.min(self.nearby());
-        let deep = DEEP * self.farthest;
-        let DescentWorkspace { now, held, .. } = &mut *self.workspace;
-        now.look(&self.scene, [step, deep], (behind, held));
+        let largest = DEEP * self.farthest;
+        let DescentWorkspace {
+            now, next, held, ..
+        } = &mut *self.workspace;
+        let before = now.pairs.penetration().max(next.pairs.penetration());
+        let searched = 2.0 * before + DEEP * moved;
+        let depth = Depth {
+            searched: searched.clamp(LEAST_DEPTH * largest, largest),
+            largest,
+        };
+        now.look(&self.scene, (step, depth), (behind, held));
     }
 
     /// Re-evaluates the energy at the current poses. Spheres that are now behind the substrate of a taxel continue to exert no force on this taxel.
     fn look_again(&mut self) {
         let behind = std::mem::take(&mut self.workspace.now.pairs.behind);
-        self.look(&behind);
+        self.look(&behind, 0.0);
     }
 
     /// Returns the largest step, metres, for which all possible contacts are gathered.

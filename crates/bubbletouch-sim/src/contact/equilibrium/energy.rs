@@ -3,6 +3,7 @@
 use super::body::Body;
 use super::free_object::PlacedSkin;
 use super::loads::{Load, Loads};
+use super::meshes::Depth;
 use super::pair::{Key, Pair, Part};
 use super::pairs::{Group, Margins, Pairs};
 use super::scene::Scene;
@@ -31,18 +32,18 @@ pub(super) struct PairLoad {
 }
 
 impl Energy {
-    /// Evaluates the energy at the present poses of the bodies, and collects all contacts that can occur after a motion of at most `step` metres. Rigid meshes are
-    /// searched to a penetration of `deep` metres. `before` lists the spheres that were behind a taxel's substrate at the previous poses, and the rigid contacts that are held.
+    /// Evaluates the energy at the present poses of the bodies, and collects all contacts that can occur after a motion of at most `step` metres. `depth` are the
+    /// penetrations of rigid meshes. `before` lists the spheres that were behind a taxel's substrate at the previous poses, and the rigid contacts that are held.
     pub fn look(
         &mut self,
         scene: &Scene,
-        [step, deep]: [f64; 2],
+        (step, depth): (f64, Depth),
         before: (&[(Key, Part)], &[Key]),
     ) {
         let margins = Margins {
             step,
             window: 2.0 * scene.smoothness.smoothing + 4.0 * step,
-            deep,
+            depth,
         };
         self.pairs
             .look(&scene.bodies, scene.ground, margins, before);

@@ -1,20 +1,18 @@
 //! Tests of the energy of free meshes: continuity, and derivatives against finite differences.
 
-use super::body::Body;
 use super::energy::Energy;
 use super::loads::{Load, Multipliers, Smoothness};
-use super::meshes::{Placed, Range, each_contact, overlap};
+use super::meshes::{Depth, Placed, Range, each_contact, overlap};
 use super::model::Model;
 use super::pair::Key;
 use super::pairs::Group;
 use super::scene::Scene;
-use super::symmetric::norm;
-use super::{FreeObject, Ground, PlacedSkin};
+use super::tilted_bed::{self, Differences};
+use super::{Ground, PlacedSkin};
 use crate::geometry::Pose;
 use crate::mesh::TriangleMesh;
 use crate::objects::MeshModel;
 use crate::random::Seed;
-use crate::world::{Grid, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::collections::{BTreeMap, BTreeSet};
@@ -97,7 +95,7 @@ fn the_energy_of_a_corner_is_continuous_on_smooth_surfaces_and_in_a_tray() {
     let lowest = lowest.unwrap();
     let range = Range {
         gap: 1e-4,
-        deep: 1.5e-3,
+        depth: Depth::up_to(1.5e-3),
     };
     let mut rng = Seed::new(7).named("continuity").rng();
     for (number, (mesh, surface)) in surfaces.iter().enumerate() {
@@ -157,18 +155,7 @@ fn the_energy_of_a_corner_is_continuous_on_smooth_surfaces_and_in_a_tray() {
 /// Poses within a step of a kink are left out.
 #[test]
 fn derivatives_of_meshes_on_taxels_and_on_meshes_are_differences_of_the_energy() {
-    let taxel = Taxel {
-        radius: 1e-3,
-        stiffness: 200.0,
-        damping: 0.0,
-        stroke: 4e-3,
-    };
-    let grid = Grid {
-        nx: 12,
-        ny: 12,
-        pitch: 2e-3,
-    };
-    let patch = Patch::grid(grid, taxel).unwrap();
+    let patch = tilted_bed::patch(12, 0.0);
     let egg = |x: f64, y: f64, z: f64, tolerance: f64| {
         let mesh = TriangleMesh::ellipsoid("egg", DVec3::new(x, y, z), tolerance).unwrap();
         MeshModel::new(mesh)
@@ -179,10 +166,7 @@ fn derivatives_of_meshes_on_taxels_and_on_meshes_are_differences_of_the_energy()
         hollow,
         egg(6e-3, 7e-3, 5e-3, 4e-4),
     ];
-    let world_from_patch = Pose::new(
-        DQuat::from_rotation_x(0.4) * DQuat::from_rotation_y(-0.2),
-        DVec3::new(0.1, -0.2, 0.3),
-    );
+    let world_from_patch = tilted_bed::world_from_patch();
     let ground = Ground {
         skins: vec![PlacedSkin::new(&patch, world_from_patch)],
         ..Ground::default()
@@ -209,15 +193,9 @@ fn derivatives_of_meshes_on_taxels_and_on_meshes_are_differences_of_the_energy()
             }
         }
         let starts = [pose(0, lower), pose(1, lower + (near - 4e-5) * way)];
-        let weights = [DVec3::new(0.1, 0.3, -0.9), DVec3::new(0.2, -0.1, -0.3)];
-        let bodies = [0, 1].map(|k| {
-            let center = DVec3::new(1e-3, 2e-3, -1e-3);
-            let object = FreeObject::new(meshes[k], 1.0, center).unwrap();
-            Body::new((k, object), weights[k], &starts[k])
-        });
         let scene = Scene {
             springs: Vec::new(),
-            bodies: bodies.to_vec(),
+            bodies: tilted_bed::bodies(meshes, starts),
             ground: &ground,
             multipliers: Multipliers::default(),
             smoothness: Smoothness {
@@ -229,14 +207,8 @@ fn derivatives_of_meshes_on_taxels_and_on_meshes_are_differences_of_the_energy()
         };
         let mut energy = Energy::default();
         let mut value = |steps: &[(usize, f64)]| {
-            let mut motion = [0.0; 12];
-            steps.iter().for_each(|(k, by)| motion[*k] += by);
-            let mut moved = scene.clone();
-            let mut fallen = 0.0;
-            for (body, motion) in moved.bodies.iter_mut().zip(motion.chunks(6)) {
-                fallen += body.weight.dot(body.go(motion));
-            }
-            energy.look(&moved, [0.0, 2e-3], (&[], &[]));
+            let (moved, fallen) = tilted_bed::moved(&scene, steps);
+            energy.look(&moved, (0.0, Depth::up_to(2e-3)), (&[], &[]));
             let loads = &energy.loads;
             let all = energy.pairs.groups.iter().zip(&loads.all);
             let carrying = all.filter(|(_, load)| load.force > 0.0);
@@ -247,26 +219,18 @@ fn derivatives_of_meshes_on_taxels_and_on_meshes_are_differences_of_the_energy()
                 .collect();
             (loads.elastic - fallen, parts)
         };
-        let h = 3e-8;
         let here = value(&[]).1;
         let mut is_smooth = true;
-        let mut at = |steps: &[(usize, f64)]| {
+        let at = |steps: &[(usize, f64)]| {
             let (energy, parts) = value(steps);
             is_smooth &= parts == here;
             energy
         };
-        let slopes: [f64; 12] =
-            std::array::from_fn(|k| (at(&[(k, h)]) - at(&[(k, -h)])) / (2.0 * h));
-        let bends: [[f64; 12]; 12] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                let along = at(&[(i, h), (j, h)]) + at(&[(i, -h), (j, -h)]);
-                (along - at(&[(i, h), (j, -h)]) - at(&[(i, -h), (j, h)])) / (4.0 * h * h)
-            })
-        });
+        let differences = Differences::new(at, [3e-8; 2]);
         if !is_smooth {
             continue;
         }
-        energy.look(&scene, [0.0, 2e-3], (&[], &[]));
+        energy.look(&scene, (0.0, Depth::up_to(2e-3)), (&[], &[]));
         let loads = energy.loads.carrying(&energy.pairs.groups);
         let ties = loads.filter(|(_, load)| load.n_sharing > 1);
         let is_rigid = |(group, _): &(&Group, &Load)| matches!(group.key, Key::Rigid(..));
@@ -283,22 +247,7 @@ fn derivatives_of_meshes_on_taxels_and_on_meshes_are_differences_of_the_energy()
             }
         }
         let (gradient, hessian) = Model::default().lay(&scene, &energy);
-        let largest = hessian.size();
-        for i in 0..12 {
-            let error = (gradient[i] - slopes[i]).abs();
-            assert!(
-                error < 1e-5 * norm(&gradient),
-                "{i}: {} {}",
-                gradient[i],
-                slopes[i]
-            );
-            let mut unit = vec![0.0; 12];
-            unit[i] = 1.0;
-            for (j, entry) in hessian.times(&unit).iter().enumerate() {
-                let error = (entry - bends[i][j]).abs();
-                assert!(error < 1e-3 * largest, "{i} {j}: {entry} {}", bends[i][j]);
-            }
-        }
+        differences.assert_equal((&gradient, &hessian), [1e-5, 1e-3]);
     }
     let all = [n_smooth, n_faces, n_edges, n_corners, n_rigid, n_ties];
     let names = "poses, faces, edges, corners, rigid contacts, rigid ties";

@@ -50,8 +50,11 @@ mod scene;
 mod shear_springs;
 mod slopes;
 mod solver;
+mod stagnation;
 mod symmetric;
 mod tied_max;
+#[cfg(test)]
+mod tilted_bed;
 
 pub use super::friction::{TangentialSpring, TangentialSpringState};
 pub use free_object::{FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin};

@@ -212,40 +212,27 @@ fn add_square(hessian: &mut Symmetric, factor: f64, v: &[(u32, Six)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::equilibrium::body::Body;
     use crate::contact::equilibrium::loads::{Multipliers, Smoothness};
+    use crate::contact::equilibrium::meshes::Depth;
     use crate::contact::equilibrium::shear_springs::Spring;
+    use crate::contact::equilibrium::tilted_bed::{self, Differences};
     use crate::contact::equilibrium::{
-        FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin, TangentialSpring, Touched,
+        Ground, HalfSpace, Obstacle, PlacedSkin, TangentialSpring, Touched,
     };
     use crate::geometry::Pose;
     use crate::objects::{Sphere, SphereUnion};
     use crate::random::Seed;
-    use crate::world::{Grid, Patch, Shear, Taxel};
-    use glam::{DQuat, DVec2};
+    use crate::world::Shear;
+    use glam::DVec2;
     use rand::Rng;
 
     /// Compares the derivatives of the energy with finite differences. Two objects of seven spheres penetrate each other, an obstacle and a plane, and press
     /// a tilted array of taxels, some to the end of their stroke. The step includes dampers, and some tangential springs act on the objects.
     #[test]
     fn gradient_and_hessian_are_the_differences_of_the_energy() {
-        let taxel = Taxel {
-            radius: 1e-3,
-            stiffness: 200.0,
-            damping: 2.0,
-            stroke: 4e-3,
-        };
-        let grid = Grid {
-            nx: 16,
-            ny: 16,
-            pitch: 2e-3,
-        };
-        let patch = Patch::grid(grid, taxel).unwrap();
+        let patch = tilted_bed::patch(16, 2.0);
         let before: Vec<f64> = (0..256).map(|taxel| 1e-6 * f64::from(taxel)).collect();
-        let world_from_patch = Pose::new(
-            DQuat::from_rotation_x(0.4) * DQuat::from_rotation_y(-0.2),
-            DVec3::new(0.1, -0.2, 0.3),
-        );
+        let world_from_patch = tilted_bed::world_from_patch();
         let skin = PlacedSkin::new(&patch, world_from_patch);
         let before = Some((&before[..], 0.01));
         // Some springs stick, some slip.
@@ -291,16 +278,11 @@ mod tests {
                 pose: Pose::from_translation(at(-5e-3)),
             }],
         };
-        let weights = [DVec3::new(0.1, 0.3, -0.9), DVec3::new(0.2, -0.1, -0.3)];
-        let bodies = [0, 1].map(|k| {
-            let center = DVec3::new(1e-3, 2e-3, -1e-3);
-            let object = FreeObject::new(&unions[k], 1.0, center).unwrap();
-            let start = Pose::from_translation(at(14e-3 * k as f64));
-            Body::new((k, object), weights[k], &start)
-        });
+        let starts = [0.0, 14e-3].map(|x| Pose::from_translation(at(x)));
+        let bodies = tilted_bed::bodies([&unions[0], &unions[1]], starts);
         let scene = Scene {
             springs: Spring::all(&bodies, &ground),
-            bodies: bodies.to_vec(),
+            bodies,
             ground: &ground,
             multipliers: Multipliers::default(),
             smoothness: Smoothness {
@@ -311,30 +293,13 @@ mod tests {
             },
         };
         let mut energy = Energy::default();
-        let mut value = |motion: &[f64; 12]| {
-            let mut moved = scene.clone();
-            let mut fallen = 0.0;
-            for (body, motion) in moved.bodies.iter_mut().zip(motion.chunks(6)) {
-                fallen += body.weight.dot(body.go(motion));
-            }
-            energy.look(&moved, [0.0; 2], (&[], &[]));
+        let value = |steps: &[(usize, f64)]| {
+            let (moved, fallen) = tilted_bed::moved(&scene, steps);
+            energy.look(&moved, (0.0, Depth::up_to(0.0)), (&[], &[]));
             energy.loads.elastic - fallen
         };
-        let mut at = |steps: &[(usize, f64)]| {
-            let mut motion = [0.0; 12];
-            steps.iter().for_each(|(k, by)| motion[*k] += by);
-            value(&motion)
-        };
-        let slopes: [f64; 12] =
-            std::array::from_fn(|k| (at(&[(k, 1e-6)]) - at(&[(k, -1e-6)])) / 2e-6);
-        let h = 3e-6;
-        let bends: [[f64; 12]; 12] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                let along = at(&[(i, h), (j, h)]) + at(&[(i, -h), (j, -h)]);
-                (along - at(&[(i, h), (j, -h)]) - at(&[(i, -h), (j, h)])) / (4.0 * h * h)
-            })
-        });
-        energy.look(&scene, [0.0; 2], (&[], &[]));
+        let differences = Differences::new(value, [1e-6, 3e-6]);
+        energy.look(&scene, (0.0, Depth::up_to(0.0)), (&[], &[]));
         let has = |what: fn(&Key) -> bool| {
             let all = energy.loads.carrying(&energy.pairs.groups);
             all.filter(|(group, _)| what(&group.key)).count()
@@ -349,20 +314,6 @@ mod tests {
         assert!(all.any(|(group, load)| is_stop(&group.key) && load.stop > 0.0));
         let mut model = Model::default();
         let (gradient, hessian) = model.lay(&scene, &energy);
-        let largest = hessian.size();
-        for i in 0..12 {
-            assert!(
-                (gradient[i] - slopes[i]).abs() < 1e-4 * norm(&gradient),
-                "{i}: {} {}",
-                gradient[i],
-                slopes[i]
-            );
-            let mut unit = vec![0.0; 12];
-            unit[i] = 1.0;
-            for (j, entry) in hessian.times(&unit).iter().enumerate() {
-                let error = (entry - bends[i][j]).abs();
-                assert!(error < 2e-3 * largest, "{i} {j}: {entry} {}", bends[i][j]);
-            }
-        }
+        differences.assert_equal((&gradient, &hessian), [1e-4, 2e-3]);
     }
 }

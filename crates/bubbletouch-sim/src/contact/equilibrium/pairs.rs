@@ -6,7 +6,7 @@
 use super::super::taxel_contact::GRAZING;
 use super::body::Body;
 use super::free_object::{Ground, PlacedSkin};
-use super::meshes::MeshOnSkin;
+use super::meshes::{Depth, MeshOnSkin};
 use super::pair::{Key, Kind, OTHERS, Pair, Part};
 use super::reach::Reach;
 use super::rigid_pairs::gather_rigid;
@@ -37,8 +37,8 @@ pub(super) struct Margins {
     /// Largest difference between the largest required deflection of a taxel and the deflections of its other spheres, metres. Spheres with a larger
     /// difference are omitted.
     pub window: f64,
-    /// Largest penetration of rigid meshes that is searched, metres.
-    pub deep: f64,
+    /// Penetrations of rigid meshes.
+    pub depth: Depth,
 }
 
 /// Pairs of spheres and taxels or rigid counterparts at the present poses of all bodies.
@@ -71,7 +71,7 @@ impl Pairs {
             self.gather(bodies, (number as u32, skin), margins, behind);
         }
         self.behind.sort_unstable();
-        let range = [2.0 * margins.step, margins.deep];
+        let range = (2.0 * margins.step, margins.depth);
         gather_rigid(&mut self.all, bodies, ground, range, held);
         self.groups.clear();
         let mut first = 0;
@@ -80,6 +80,13 @@ impl Pairs {
             first = pairs.end;
             self.groups.push(group(of_key, pairs, bodies, ground));
         }
+    }
+
+    /// Returns the largest penetration of all rigid contacts, metres; at least 0.
+    pub fn penetration(&self) -> f64 {
+        let is_rigid = |pair: &&Pair| matches!(pair.key, Key::Rigid(..));
+        let rigid = self.all.iter().filter(is_rigid);
+        rigid.map(|pair| pair.deflection).fold(0.0, f64::max)
     }
 
     /// Returns the rigid contacts, sorted.

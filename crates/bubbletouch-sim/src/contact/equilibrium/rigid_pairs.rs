@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::free_object::{Ground, HalfSpace};
-use super::meshes::{Placed, Range, each_below_plane, each_contact};
+use super::meshes::{Depth, Placed, Range, each_below_plane, each_contact};
 use super::pair::{Key, Kind, Pair, Part};
 use super::rigid_contact::{Touched, Touching};
 use super::rigid_shape::RigidShape;
@@ -18,13 +18,13 @@ struct Others<'a> {
     body: Option<(u32, DVec3)>,
 }
 
-/// Appends the pairs of parts that penetrate a rigid counterpart or are nearer to it than `may_move` metres; sorted. Meshes are searched to a penetration of
-/// `deep` metres, and their contacts in `held` (sorted) remain contacts until their parts miss each other clearly.
+/// Appends the pairs of parts that penetrate a rigid counterpart or are nearer to it than `may_move` metres; sorted. `depth` are the penetrations of
+/// meshes, and their contacts in `held` (sorted) remain contacts until their parts miss each other clearly.
 pub(super) fn gather_rigid(
     pairs: &mut Vec<Pair>,
     bodies: &[Body],
     ground: &Ground,
-    [may_move, deep]: [f64; 2],
+    (may_move, depth): (f64, Depth),
     held: &[Key],
 ) {
     let first = pairs.len();
@@ -44,7 +44,7 @@ pub(super) fn gather_rigid(
                 (slot, body),
                 &others,
                 touched,
-                ([may_move, deep], held),
+                ((may_move, depth), held),
             );
         }
         for (other, number) in bodies.iter().zip(0..).skip(slot as usize + 1) {
@@ -58,7 +58,7 @@ pub(super) fn gather_rigid(
                 body: Some((number, other.center)),
             };
             let touched = |sphere| Touched::Object(number as usize, sphere);
-            let range = [2.0 * may_move, deep];
+            let range = (2.0 * may_move, depth);
             gather_shapes(pairs, (slot, body), &others, touched, (range, held));
         }
     }
@@ -99,13 +99,13 @@ fn gather_plane(
     }
 }
 
-/// Collects the pairs of the parts of a body and of another shape that are less than `gap` metres apart. Meshes are searched to a penetration of `deep` metres.
+/// Collects the pairs of the parts of a body and of another shape that are less than `gap` metres apart. `depth` are the penetrations of meshes.
 fn gather_shapes(
     pairs: &mut Vec<Pair>,
     (slot, body): (u32, &Body),
     others: &Others,
     touched: impl Fn(usize) -> Touched,
-    ([gap, deep], held): ([f64; 2], &[Key]),
+    ((gap, depth), held): ((f64, Depth), &[Key]),
 ) {
     let is_mesh = |shape: RigidShape| matches!(shape, RigidShape::Mesh(_));
     if !is_mesh(body.object.shape) && !is_mesh(others.shape) {
@@ -119,7 +119,7 @@ fn gather_shapes(
         shape: others.shape,
         pose: others.pose,
     };
-    each_contact(&own, &other, Range { gap, deep }, |found| {
+    each_contact(&own, &other, Range { gap, depth }, |found| {
         let [own, other] = found.identity;
         let key = Key::Rigid((slot, own), touched(other as usize));
         // Parts of a smooth patch that one point touches share one multiplier, as spheres that press one taxel. The number of the varying part tells them apart.

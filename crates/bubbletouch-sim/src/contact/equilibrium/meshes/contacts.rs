@@ -26,7 +26,7 @@ use crate::mesh::MeshFeatures;
 use crate::objects::MeshModel;
 use glam::{DMat3, DVec3};
 
-/// Least gap up to which contacts are collected, relative to the largest depth that is searched. Contacts that a multiplier loads stay in the list while the
+/// Least gap up to which contacts are collected, relative to the largest penetration of a descent. Contacts that a multiplier loads stay in the list while the
 /// shapes are apart by rounding or by the last step.
 const LEAST_GAP: f64 = 1e-2;
 
@@ -38,7 +38,7 @@ pub(in crate::contact::equilibrium) fn each_contact(
     mut visit: impl FnMut(Found),
 ) {
     let range = Range {
-        gap: range.gap.max(LEAST_GAP * range.deep),
+        gap: range.gap.max(LEAST_GAP * range.depth.largest),
         ..range
     };
     let (mut own, mut others) = (Near::default(), Near::default());
@@ -81,6 +81,7 @@ pub(in crate::contact::equilibrium) fn each_below_plane(
 
 #[cfg(test)]
 mod tests {
+    use super::super::found::Depth;
     use super::*;
     use crate::mesh::TriangleMesh;
     use crate::random::Seed;
@@ -101,7 +102,7 @@ mod tests {
         let mut vector = || DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
         let range = Range {
             gap: 5e-5,
-            deep: 5e-4,
+            depth: Depth::up_to(5e-4),
         };
         let fixed = Placed {
             shape: (&other).into(),

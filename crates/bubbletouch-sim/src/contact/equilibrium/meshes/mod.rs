@@ -19,6 +19,6 @@ mod reach;
 mod ridges;
 
 pub(super) use contacts::{each_below_plane, each_contact};
-pub(super) use found::{Placed, Range};
+pub(super) use found::{Depth, Placed, Range};
 pub use overlap::overlap;
 pub(super) use reach::{MeshOnSkin, MeshReach};

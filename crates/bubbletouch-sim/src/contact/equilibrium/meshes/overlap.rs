@@ -2,7 +2,7 @@
 
 use super::super::rigid_shape::RigidShape;
 use super::contacts::each_contact;
-use super::found::{Placed, Range};
+use super::found::{Depth, Placed, Range};
 use crate::geometry::Pose;
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ pub fn overlap(one: (RigidShape, &Pose), other: (RigidShape, &Pose)) -> f64 {
     let [one, other] = [one, other].map(|(shape, pose)| Placed { shape, pose: *pose });
     let range = Range {
         gap: 0.0,
-        deep: RIDGES * smaller,
+        depth: Depth::up_to(RIDGES * smaller),
     };
     let mut deepest = 0.0_f64;
     each_contact(&one, &other, range, |found| {

@@ -25,7 +25,7 @@ use crate::mesh::{CREASE, Closest, Feature, MeshFeatures};
 use crate::objects::MeshModel;
 use glam::{DMat3, DVec3};
 
-/// Distance behind a valley up to which its faces continue in front of the point, relative to the largest depth that is searched. If smaller, a step meets a face
+/// Distance behind a valley up to which its faces continue in front of the point, relative to the largest penetration of a descent. If smaller, a step meets a face
 /// that it did not know; if larger, more faces are collected.
 const VALLEY: f64 = 0.1;
 /// Distance behind a valley up to which its faces continue, relative to the depth d of a point behind them. At a crease of the angle φ, the point is on the plane of
@@ -128,7 +128,11 @@ impl Points {
         };
         let features = mesh.features();
         let is_inside = features.is_inside(mesh.bvh(), place, &nearest);
-        if is_inside && nearest.distance > range.deep {
+        if is_inside && nearest.distance > range.depth.searched {
+            return;
+        }
+        // No part is nearer than the nearest one, so none is within the gap.
+        if !is_inside && nearest.distance > 1.001 * (reach + range.gap) {
             return;
         }
         self.touch_faces(mesh, (place, &nearest, is_inside), reach, range);
@@ -147,7 +151,7 @@ impl Points {
     ) {
         let features: &MeshFeatures = mesh.features();
         let within = reach + range.reach();
-        let (rounding, miss) = (1e-9 * within, MISS * range.deep);
+        let (rounding, miss) = (1e-9 * within, MISS * range.depth.largest);
         let behind = below() * nearest.distance;
         let least = match is_inside {
             true => f64::NEG_INFINITY,
@@ -189,7 +193,7 @@ impl Points {
                     return limit;
                 }
                 let (counts, valley) = match height > 0.0 {
-                    true => (height >= least - rounding, VALLEY * range.deep),
+                    true => (height >= least - rounding, VALLEY * range.depth.largest),
                     false => {
                         let above = normal.dot(nearest.point - face.corners[0]);
                         (is_inside && above >= -rounding, behind)

@@ -48,12 +48,12 @@ pub(super) fn each_crossing(
                     others.edge_points_along(other_number, normal, BEYOND)
                         && features.edge_points_along(number, own_normal, BEYOND)
                 };
-                let miss = MISS * range.deep;
+                let miss = MISS * range.depth.largest;
                 let Some(crossing) = Crossing::new(&placed, other_edge, miss, is_outward) else {
                     continue;
                 };
                 let penetration = reach - crossing.gap;
-                if penetration <= -range.gap || penetration > range.deep {
+                if penetration <= -range.gap || penetration > range.depth.searched {
                     continue;
                 }
                 // Ridges that cross without a rounding touch only if the way between them is inside both solids.
