@@ -27,6 +27,19 @@ impl Poses {
         Self::of_objects(place, given, None)
     }
 
+    /// Reads a single pose from an array of shape (7,), (1, 7), (4, 4) or (1, 4, 4).
+    ///
+    /// # Errors
+    /// If the array contains several poses, or the pose is not finite or contains no rotation.
+    pub fn single(place: &str, given: &Bound<PyAny>) -> PyResult<Pose> {
+        let poses = Self::from_argument(place, given)?.poses;
+        let [pose] = poses[..] else {
+            let given = format!("{} poses", poses.len());
+            return Err(bad_input(place, given, "one pose"));
+        };
+        Ok(pose)
+    }
+
     /// Reads poses of k objects from an array of shape (n, k, 7), (k, 7), (n, k, 4, 4) or (k, 4, 4). If `n_objects` is `None`, the shapes have no axis k.
     ///
     /// # Errors

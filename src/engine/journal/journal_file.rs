@@ -177,7 +177,7 @@ impl Journal {
         synced.map_err(|e| Error::io(&self.path, "write", e))
     }
 
-    /// Writes all lines to the disk and prevents further writes before the process ends.
+    /// Writes all lines to the disk and blocks all later writes until the process ends.
     ///
     /// # Errors
     /// If the journal cannot be written.
@@ -217,7 +217,8 @@ impl Writer {
     }
 }
 
-/// Returns whether the bytes can be the start of a journal file: a checksum (8 hexadecimal digits), a space and the key of the first line.
+/// Returns whether the bytes can be the start of a journal file. A journal starts with a checksum (8 hexadecimal digits), a space and the key of the first
+/// line.
 fn begins_header(bytes: &[u8]) -> bool {
     let expected = format!(" {{\"key\":\"{HEADER}\"");
     let is_digit = |byte: &u8| byte.is_ascii_hexdigit();

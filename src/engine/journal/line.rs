@@ -58,8 +58,8 @@ pub struct Decoded {
     pub n_whole: usize,
 }
 
-/// Decodes the complete lines of a journal whose first line contains the key `header`; ignores an incomplete last line. If a line is damaged and an interrupted
-/// write cannot be the cause, the error contains the number of the line (from 1) and the defect.
+/// Decodes the complete lines of a journal whose first line contains the key `header`; ignores an incomplete last line. If a line is damaged and an
+/// interrupted write cannot be the cause. The error contains the number of the line (from 1) and the defect.
 pub fn decode(header: &str, bytes: &[u8]) -> Result<Decoded, (usize, &'static str)> {
     let mut decoded = Decoded::default();
     for (number, line) in bytes.split_inclusive(|&byte| byte == b'\n').enumerate() {

@@ -3,7 +3,8 @@
 use crate::inputs::memory::Bytes;
 use crate::spelling::counted;
 
-/// Approximate memory of the program without the data of the study, bytes: the program itself, its objects, and the pictures that it draws at the end.
+/// Approximate memory of the program without the data of the study, bytes. It contains the program itself, its objects, and the pictures that it draws at
+/// the end.
 const PROGRAM_BYTES: f64 = 2e8;
 
 /// Size of a study: its numbers of objects, touches and configurations, and its memory.

@@ -47,7 +47,7 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
     }
 
     /// Computes the pending work items by `measure` and returns all rows of the study. The rows belong to all items that did not fail in this or an earlier
-    /// run, in the order of items; failed items are returned, too. Except for times, the rows equal the rows of a run that computes all items together.
+    /// run, in the order of items. Failed items are also returned. Except for times, the rows equal the rows of a run that computes all items together.
     ///
     /// `place(number, rows)` sets the values in the rows that depend on the item's number, such as numbers of configurations. `words(number)` returns the name
     /// of an item in words, for failures.

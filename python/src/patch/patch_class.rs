@@ -1,18 +1,20 @@
 //! Class `Patch`: taxels on a rigid substrate.
 
-use crate::arrays::{each, points, to_column, to_rows, view, whole_number};
+use super::arguments::{
+    drape_region, each_taxel, missing_taxels, pixels_of, side, taxel, with_shape,
+};
+use crate::arrays::{points, to_column, to_rows, whole_number};
 use crate::batch::Spare;
-use crate::errors::{bad_input, check_folder, check_readable, exception, guarded};
+use crate::errors::{check_folder, check_readable, exception, guarded};
 use crate::mesh::Mesh;
 use crate::poses::Poses;
 use crate::press::output::Output;
 use crate::press::slide::{Motion, press_and_slide};
 use bubbletouch::contact::Workspace;
-use bubbletouch::geometry::Aabb;
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutOptions};
 use bubbletouch::random::Seed;
 use bubbletouch::report::layout_picture::write_layout_picture;
-use bubbletouch::world::{self, DrapeRegion, Grid, Layout, MissingTaxels, Taxel, Taxels};
+use bubbletouch::world::{self, Grid, Layout, Taxel, Taxels};
 use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyUserWarning;
@@ -20,9 +22,6 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::ffi::CString;
 use std::path::PathBuf;
-
-/// Default stiffness of a taxel, N/m. The value equals the command's default, and signatures state it for `help()`.
-const STIFFNESS: f64 = 100.0;
 
 /// Taxels on a rigid substrate. A patch is created by one of the static methods.
 ///
@@ -114,59 +113,6 @@ fn warn(py: Python, notes: &[String]) -> PyResult<()> {
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 1)?;
     }
     Ok(())
-}
-
-/// Returns the layout with the shape of its frames: (ny, nx) or (n_taxels,).
-fn with_shape(layout: Layout, shape: Option<Vec<i64>>) -> PyResult<Layout> {
-    let n_taxels = layout.n_taxels();
-    match shape.as_deref() {
-        None => Ok(layout),
-        Some(&[n]) if usize::try_from(n) == Ok(n_taxels) => Ok(layout),
-        Some(&[ny, nx]) => {
-            let sides = [side("shape", ny)?, side("shape", nx)?];
-            layout.with_sides(sides).map_err(exception)
-        }
-        Some(other) => {
-            let allowed = format!("({n_taxels},), or (ny, nx) with this product");
-            Err(bad_input("shape", format!("{other:?}"), allowed))
-        }
-    }
-}
-
-/// Reads the row and the column of each of n taxels in an image.
-fn pixels_of(given: &Bound<PyAny>, n: usize) -> PyResult<Vec<[usize; 2]>> {
-    let allowed = format!("({n}, 2)");
-    view(
-        "pixels",
-        given,
-        &allowed,
-        |shape| shape == [n, 2],
-        |array| {
-            let whole = |&number: &f64| match number >= 0.0 && number.fract() == 0.0 && number < 1e9
-            {
-                true => Ok(number as usize),
-                false => Err(bad_input("pixels", number, "integers from 0")),
-            };
-            let rows = array.rows().into_iter();
-            rows.map(|row| Ok([whole(&row[0])?, whole(&row[1])?]))
-                .collect()
-        },
-    )
-}
-
-/// Converts a number of rows or columns; the library checks that it is at least 1.
-fn side(place: &str, given: i64) -> PyResult<usize> {
-    usize::try_from(given).map_err(|_| bad_input(place, given, "at least 1"))
-}
-
-/// Returns the parameters that all taxels of a patch have in common. If no radius is given, it is half the pitch.
-fn taxel(pitch: f64, stroke: f64, (radius, stiffness, damping): (Option<f64>, f64, f64)) -> Taxel {
-    Taxel {
-        radius: radius.unwrap_or(0.5 * pitch),
-        stiffness,
-        damping,
-        stroke,
-    }
 }
 
 #[pymethods]
@@ -314,22 +260,7 @@ impl Patch {
         guarded(|| {
             let seed = whole_number("seed", seed)?;
             let mesh = mesh.get();
-            let two = |place: &str, given: &Bound<PyAny>| match points(place, given)?[..] {
-                [first, second] => Ok((first, second)),
-                ref several => {
-                    let given = format!("shape ({}, 3)", several.len());
-                    Err(bad_input(place, given, "(2, 3)"))
-                }
-            };
-            let number = |n| whole_number("triangles", n);
-            let numbers = |all: Vec<i128>| all.into_iter().map(number).collect();
-            let triangles: Option<Vec<usize>> = triangles.map(numbers).transpose()?;
-            let corners = bounds.map(|given| two("bounds", given)).transpose()?;
-            let region = DrapeRegion {
-                bounds: corners.map(|(min, max)| Aabb { min, max }),
-                beyond: plane.map(|given| two("plane", given)).transpose()?,
-                triangles,
-            };
+            let region = drape_region(bounds, plane, triangles)?;
             let (layout, orientation) = py.detach(|| {
                 let (outwards, orientation) = mesh.triangle_mesh().clone().turned_outwards();
                 let layout = Layout::draped_on(&outwards, pitch, &region, &Seed::new(seed));
@@ -346,7 +277,7 @@ impl Patch {
     /// differ from 1 by 1 %; the axes are normalised. The other arguments are arrays (n,), or one number for all taxels. Defaults: stiffness 100 N/m,
     /// damping 0.
     ///
-    /// shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
+    /// shape: shape of a frame, (ny, nx) if the taxels are numbered row by row. Default: (n,).
     /// pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
     #[staticmethod]
     #[pyo3(signature = (centers, axes, *, stroke, taxel_radius, stiffness=None, damping=None, shape=None, pixels=None))]
@@ -365,22 +296,7 @@ impl Patch {
             let centers = points("centers", centers)?;
             let axes = points("axes", axes)?;
             let n = centers.len();
-            let or = |place: &str, given: Option<&Bound<PyAny>>, other: f64| match given {
-                Some(given) => each(place, given, n),
-                None => Ok(vec![other; n]),
-            };
-            let stroke = each("stroke", stroke, n)?;
-            let radius = each("taxel_radius", taxel_radius, n)?;
-            let stiffness = or("stiffness", stiffness, STIFFNESS)?;
-            let damping = or("damping", damping, 0.0)?;
-            let taxels: Vec<Taxel> = (0..n)
-                .map(|taxel| Taxel {
-                    radius: radius[taxel],
-                    stiffness: stiffness[taxel],
-                    damping: damping[taxel],
-                    stroke: stroke[taxel],
-                })
-                .collect();
+            let taxels = each_taxel(n, (stroke, taxel_radius), (stiffness, damping))?;
             let layout = Layout::new(centers, axes).map_err(exception)?;
             let layout = with_shape(layout, shape)?;
             let patch = match taxels.iter().all(|taxel| *taxel == taxels[0]) {
@@ -404,9 +320,9 @@ impl Patch {
     /// - .json: PaXini;
     /// - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
     ///
-    /// stroke: metres; None: the diameter of the taxel.
+    /// stroke: metres. Default: the diameter of the taxel.
     /// mesh: surface that gives the normals, for files of iCub and PaXini without normals.
-    /// taxel_radius: metres; None: the radius in the file, or half the median distance between neighbours.
+    /// taxel_radius: metres. Default: the radius in the file, or half the median distance between neighbours.
     ///
     /// Frames have the shape (ny, nx) if the file numbers its taxels row by row in a complete image. Notes of the reader are issued as UserWarnings.
     /// Raises ValueError with the file and the row if the file is invalid, and OSError if it cannot be read.
@@ -437,10 +353,10 @@ impl Patch {
 
     /// Returns a patch of taxels at given points, metres, (n, 3), with normals that point away from the substrate.
     ///
-    /// stroke: metres; None: the diameter of the taxel.
+    /// stroke: metres. Default: the diameter of the taxel.
     /// normals: vectors of any length, (n, 3), or a Mesh whose surface gives the normals. Each point must be at most 5 mm from the mesh.
-    /// taxel_radius: metres; None: half the median distance between neighbours.
-    /// shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
+    /// taxel_radius: metres. Default: half the median distance between neighbours.
+    /// shape: shape of a frame, (ny, nx) if the taxels are numbered row by row. Default: (n,).
     /// pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
     #[staticmethod]
     #[pyo3(signature = (positions, normals, stroke=None, *, taxel_radius=None, stiffness=100.0, damping=0.0, shape=None, pixels=None))]
@@ -485,7 +401,7 @@ impl Patch {
     /// moves along −z of the pose to the first point of the mesh. Its axis is the outward normal of the triangle at this point. The centres and axes are
     /// in the frame of the mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
     ///
-    /// stroke: metres; None: the diameter of the taxel.
+    /// stroke: metres. Default: the diameter of the taxel.
     /// missing: "error" raises ValueError if a taxel meets no outer face of the mesh. "drop" omits such taxels, and n_left_out counts them.
     ///
     /// Frames have the shape (ny, nx) if no taxel is omitted. `pixels` contains the row and column of each taxel in the grid.
@@ -506,19 +422,8 @@ impl Patch {
         damping: f64,
     ) -> PyResult<Self> {
         guarded(|| {
-            let poses = Poses::from_argument("pose", pose)?;
-            let [pose] = poses.poses[..] else {
-                let given = format!("{} poses", poses.poses.len());
-                return Err(bad_input("pose", given, "one pose"));
-            };
-            let missing = match missing {
-                "error" => MissingTaxels::Refuse,
-                "drop" => MissingTaxels::Drop,
-                other => {
-                    let given = format!("{other:?}");
-                    return Err(bad_input("missing", given, "\"error\" or \"drop\""));
-                }
-            };
+            let pose = Poses::single("pose", pose)?;
+            let missing = missing_taxels(missing)?;
             let (ny, nx) = (side("ny", ny)?, side("nx", nx)?);
             let grid = Grid { nx, ny, pitch };
             let mesh = mesh.get();
@@ -538,8 +443,7 @@ impl Patch {
         })
     }
 
-    /// Writes the layout to a file that Patch.read can read. The file contains positions and normals. It also contains radii and pixels
-    /// if the format has them.
+    /// Writes the layout to a file that Patch.read can read. The file contains positions and normals, and radii and pixels if the format has them.
     ///
     /// format: csv, npz, dex-01 (poses and taxel2pixel in a .npz file), icub (.txt or .ini), paxini (.json) or urdf. None selects the format by the extension.
     ///
@@ -563,7 +467,7 @@ impl Patch {
         })
     }
 
-    /// Draws the taxels to a file that ends in .svg or .png: a map with their numbers, from 0, and an oblique view with their axes.
+    /// Draws the taxels to a file that ends in .svg or .png. The picture has a map with the taxels' numbers, from 0, and an oblique view with their axes.
     ///
     /// title: heading of the picture, "patch" if None.
     #[pyo3(signature = (path, *, title=None))]
@@ -589,12 +493,8 @@ impl Patch {
     /// Returns a copy of the patch, moved by a pose in the patch frame. Frames of the copy have the same shape. pose: (7,) or (4, 4).
     fn moved(&self, pose: &Bound<PyAny>) -> PyResult<Self> {
         guarded(|| {
-            let poses = Poses::from_argument("pose", pose)?;
-            let [pose] = &poses.poses[..] else {
-                let given = format!("{} poses", poses.poses.len());
-                return Err(bad_input("pose", given, "one pose"));
-            };
-            let layout = self.patch.layout().moved(pose);
+            let pose = Poses::single("pose", pose)?;
+            let layout = self.patch.layout().moved(&pose);
             Ok(Self {
                 pixels: self.pixels.clone(),
                 ..Self::with(layout, self.patch.taxels().clone())?
@@ -777,7 +677,7 @@ impl Patch {
     /// depth: metres, zero or more; one number, or (n,).
     /// slide: motion of the patch after the press along x and y, metres, (2,) or (n, 2).
     /// friction: coefficient between taxels and objects, zero or more; one number, or (n_taxels,).
-    /// shear_stiffness: stiffness of the taxels across their axes, N/m; one number, or (n_taxels,). None: the stiffness along the axes.
+    /// shear_stiffness: stiffness of the taxels across their axes, N/m; one number, or (n_taxels,). Default: the stiffness along the axes.
     ///
     /// Returns a dict of arrays at the end of the slide. For a single pose, the arrays have no axis n. The keys are:
     ///

@@ -1,0 +1,188 @@
+//! All axes of a study, and the combinations of their values that become configurations.
+
+use super::study_axis::StudyAxis;
+use super::toml_path::with_value;
+use crate::error::{Error, Result};
+use crate::table::Column;
+use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Rule that selects the combinations of axis values that become configurations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CombineSpec {
+    /// All combinations of the values of the axes are computed.
+    #[default]
+    All,
+    /// A base configuration, and variants in which a single axis has another value than in the base configuration. The base has the first value of each axis;
+    /// for `[axes]`, it has the values of the study's own tables.
+    OneAtATime,
+}
+
+/// Axes of a study that its table `[axes]` declares; the last axis changes fastest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StudyAxes {
+    /// Axes in the order in which they are written in the study file.
+    pub axes: Vec<StudyAxis>,
+    /// Rule that selects the combinations of axis values that become configurations.
+    pub combine: CombineSpec,
+}
+
+/// Values of one configuration on all axes of the study.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AxisValues {
+    /// Number of the combination of values, from 0.
+    pub number: usize,
+    /// Value of each axis that has no separate column in result tables.
+    pub values: Arc<[AxisValue]>,
+}
+
+/// Value of one configuration on an axis, as it is written in result tables.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisValue {
+    /// Column of the result tables that contains the values of the axis.
+    pub column: Column,
+    /// Number, truth value or text on the axis; lists and tables are converted to text. The field is `None` if the axis keeps the value of the study and the
+    /// study has no such value.
+    pub value: Option<toml::Value>,
+}
+
+impl AxisValues {
+    /// Creates the axis values of the combination with this number. The columns of those axes that result tables do not have yet are `columns`.
+    pub fn new(
+        number: usize,
+        (axes, columns): (&StudyAxes, &[Column]),
+        values: &[Option<toml::Value>],
+    ) -> Self {
+        use toml::Value::{Boolean, Float, Integer, String};
+        let axes = axes.axes.iter().zip(values);
+        let shown = axes.filter(|(axis, _)| !axis.has_column);
+        let values = columns.iter().zip(shown);
+        let values = values.map(|(column, (_, value))| AxisValue {
+            column: column.clone(),
+            value: value.as_ref().map(|value| match value {
+                Integer(_) | Float(_) | Boolean(_) | String(_) => value.clone(),
+                other => other.to_string().into(),
+            }),
+        });
+        Self {
+            number,
+            values: values.collect(),
+        }
+    }
+}
+
+impl StudyAxes {
+    /// Returns whether the study has no axes.
+    pub fn is_empty(&self) -> bool {
+        self.axes.is_empty()
+    }
+
+    /// Returns whether an axis varies the given key.
+    pub fn has(&self, key: &str) -> bool {
+        let mut axes = self.axes.iter();
+        axes.any(|axis| axis.keys().iter().any(|own| own == key))
+    }
+
+    /// Returns one column for each axis that has no column in result tables yet. For a name that another column already has, `is_taken` returns true.
+    pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
+        let column = |axis: &StudyAxis| {
+            let alike = self.axes.iter().filter(|other| other.name() == axis.name());
+            let is_shared = alike.count() > 1;
+            axis.column(|name| is_shared || is_taken(name))
+        };
+        let shown = self.axes.iter().filter(|axis| !axis.has_column);
+        shown.map(column).collect()
+    }
+
+    /// Returns the number of combinations of axis values that become configurations.
+    pub fn n_combinations(&self) -> f64 {
+        let lengths = self.axes.iter().map(|axis| axis.values.len() as f64);
+        match self.combine {
+            CombineSpec::All => lengths.product(),
+            CombineSpec::OneAtATime => 1.0 + lengths.sum::<f64>(),
+        }
+    }
+
+    /// Returns all combinations of axis values that become configurations; the last axis changes fastest. An entry of `None` means that the axis keeps its
+    /// value in `study`.
+    fn combinations(&self, study: &toml::Table) -> Vec<Vec<Option<toml::Value>>> {
+        if self.combine == CombineSpec::OneAtATime {
+            let mut all = vec![vec![None; self.axes.len()]];
+            for (place, axis) in self.axes.iter().enumerate() {
+                let others = axis.values.iter().filter(|value| !axis.is_at(study, value));
+                all.extend(others.map(|value| {
+                    let mut values = vec![None; self.axes.len()];
+                    values[place] = Some(value.clone());
+                    values
+                }));
+            }
+            return all;
+        }
+        let mut all = vec![Vec::new()];
+        for axis in &self.axes {
+            let longer = all.iter().flat_map(|values: &Vec<Option<toml::Value>>| {
+                let with = |value: &toml::Value| [&values[..], &[Some(value.clone())]].concat();
+                axis.values.iter().map(with)
+            });
+            all = longer.collect();
+        }
+        all
+    }
+
+    /// Returns one study for each combination of axis values, together with these values. If an axis keeps its value, the listed value is the value in `study`.
+    ///
+    /// # Errors
+    /// If a value is invalid for the study; the error names the axis.
+    pub fn variants<S: Serialize + DeserializeOwned>(
+        &self,
+        place: &str,
+        study: &S,
+    ) -> Result<Vec<(Vec<Option<toml::Value>>, S)>> {
+        let base = toml::Table::try_from(study).expect("every field of a study has a TOML form");
+        let all = self.combinations(&base).into_iter().map(|mut values| {
+            let mut table = base.clone();
+            for (axis, value) in self.axes.iter().zip(&mut values) {
+                let Some(value) = value else {
+                    *value = axis.own(&base);
+                    continue;
+                };
+                for key in axis.keys() {
+                    let with = with_value(&table, &key, value.clone());
+                    table = with.map_err(|error| axis.error(place, &*value, error))?;
+                }
+            }
+            let study = table.try_into();
+            let study = study.map_err(|error: toml::de::Error| {
+                let said = error.to_string().trim().replace('\n', " ");
+                self.refused(place, &values, &said)
+            })?;
+            Ok((values, study))
+        });
+        all.collect()
+    }
+
+    /// Returns the error about a combination of axis values that the study's checks reject. The error names the axes whose keys the message `said` mentions, or
+    /// all axes.
+    pub fn refused(&self, place: &str, values: &[Option<toml::Value>], said: &str) -> Error {
+        let all = || {
+            let axes = self.axes.iter().zip(values);
+            axes.filter_map(|(axis, value)| Some((axis, value.as_ref()?)))
+        };
+        let names = |axis: &StudyAxis| axis.keys().iter().any(|key| said.contains(key));
+        let mut named: Vec<_> = all().filter(|(axis, _)| names(axis)).collect();
+        if named.is_empty() {
+            named = all().collect();
+        }
+        let given = |(axis, value): &(&StudyAxis, &toml::Value)| format!("{} = {value}", axis.key);
+        let given: Vec<String> = named.iter().map(given).collect();
+        let said = said.strip_prefix(place).unwrap_or(said);
+        let said = said.trim_start_matches([',', ':', ' ']);
+        match named.first() {
+            Some((axis, _)) => axis.error(place, given.join(", "), said),
+            None => Error::input(place, "a study", said),
+        }
+    }
+}
