@@ -120,9 +120,9 @@
 //! read from its path; large touches in `whole_body` and chains of packings in `packing` use the threads of the pool. All other threads are started in
 //! `studies` and `report`. Files are read and written in `studies`, `report`, `inputs`, `engine`, `scene` and the command.
 //!
-//! The [`guide`] has chapters for users of the command and of the library, from a [first study](guide::first_study) and the
-//! [study file](guide::study_file) to [objects](guide::objects), [statistics](guide::statistics), [long
-//! runs](guide::long_runs) and the [limits](guide::limits) of every method.
+//! The [`guide`] has chapters for users of the command and of the library. The first ones are [first study](guide::first_study) and [study
+//! file](guide::study_file). Others describe [objects](guide::objects), [statistics](guide::statistics), [long runs](guide::long_runs) and the
+//! [limits](guide::limits) of every method.
 //!
 //! # Sources
 //!

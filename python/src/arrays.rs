@@ -43,7 +43,7 @@ pub fn numbers<'py>(
     Ok(array.cast_into::<PyArrayDyn<f64>>()?)
 }
 
-/// Converts an array of real numbers to float64 and passes a view of the result to the function `look`.
+/// Converts an array of real numbers to float64 and passes a view of the result to the closure `look`.
 ///
 /// # Errors
 /// If the input is not an array of real numbers, or if its shape does not satisfy `is_shape`.

@@ -2,7 +2,7 @@
 
 use crate::arrays::{numbers, shape_of};
 use crate::errors::{bad_input, exception, guarded};
-use crate::study::{Said, columns};
+use crate::study::{ColumnsOfTable, columns};
 use crate::threads::aside;
 use bubbletouch::audit::{AuditData, AuditOptions, Finding, audit, audit_files};
 use bubbletouch::report::folder::write_files;
@@ -64,7 +64,7 @@ pub fn run_audit<'py>(
     permutations: usize,
     name: String,
     out: PathBuf,
-) -> PyResult<(Vec<SaidFinding>, Vec<Said<'py>>)> {
+) -> PyResult<(Vec<SaidFinding>, Vec<ColumnsOfTable<'py>>)> {
     guarded(|| {
         let array = numbers("frames", frames)?;
         let [n, n_frames, n_taxels] = *array.shape() else {

@@ -21,8 +21,8 @@ pub type Raised = Arc<Mutex<Option<PyErr>>>;
 
 /// Classifiers and features that are provided while the value exists.
 pub struct Provided {
-    _classifiers: Vec<classifiers::Provided>,
-    _features: Vec<features::Provided>,
+    _classifiers: Vec<classifiers::CodeGuard>,
+    _features: Vec<features::CodeGuard>,
 }
 
 /// Python object with its name for error messages.

@@ -101,7 +101,7 @@ impl Mesh {
     ///
     /// unit: unit of the coordinates in the file. If None, the unit is metres, or the unit in a Collada file. The object must then
     /// be 0.1 mm to 10 m in size.
-    /// close_holes: maximum width of the holes to close, metres. Each hole is closed by a cone of triangles. None: no hole is closed.
+    /// close_holes: maximum width of the holes to close, metres. Each hole is closed by a cone of triangles. Default: no hole is closed.
     ///
     /// Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError if the file cannot be read, and ValueError if it contains
     /// no valid mesh.

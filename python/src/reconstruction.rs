@@ -38,7 +38,7 @@ self_cell!(
 ///
 /// training: frames (n, ny, nx), metres.
 /// basis: dct, haar, daubechies4 (both for sides that are powers of two) or pca.
-/// n_atoms: number of atoms, for pca the components of largest variance; None: all atoms, or 256 of pca.
+/// n_atoms: number of atoms, for pca the components of largest variance. Default: all atoms, or 256 of pca.
 /// solver: omp (orthogonal matching pursuit), l1 (basis pursuit by FISTA) or lmmse (linear minimum mean square error estimate).
 /// noise: standard deviation on each taxel, in the unit of the frames.
 ///

@@ -125,7 +125,7 @@ impl Robot {
     ///
     /// q: dict from the names of joints to positions, numbers or (n,), radians and metres; or an array (d,) or (n, d) in the order of `joints`. Joints that the
     /// dict does not contain, and all joints without q, have their default positions. Limits are not checked.
-    /// base: pose of the base in the world, (7,) or (4, 4). None: the identity.
+    /// base: pose of the base in the world, (7,) or (4, 4). Default: the identity.
     ///
     /// Returns x, y, z, qw, qx, qy, qz: (7,), or (n, 7) for n positions. Raises ValueError if an argument is invalid.
     #[pyo3(signature = (link, q=None, *, base=None))]

@@ -191,7 +191,7 @@ impl Chain {
     /// frames: deflections, metres, shape (n, …) with n_taxels numbers per frame, (n, ny, nx) for a grid, or one frame. The array is not changed.
     /// seed: seed of the random values that change from touch to touch. Frame i uses the random numbers of touch `first` + i, independently of other
     /// frames.
-    /// rates: deflection rates δ̇, m/s, in the shape of the frames; None: 0.
+    /// rates: deflection rates δ̇, m/s, in the shape of the frames. Default: 0.
     /// threads: maximum number of threads; all cores if None.
     ///
     /// Returns a float64 array of the shape of the frames, in the unit of `quantity`. Raises ValueError if an argument is invalid.
@@ -231,11 +231,11 @@ impl Chain {
         })
     }
 
-    /// Returns the sensor signals of the frames of one touch, in order of time; hysteresis and scan order connect the frames.
+    /// Returns the sensor signals of the frames of one touch, in order of time. With hysteresis or a scan order, a signal depends on several frames.
     ///
     /// n_before: number of leading frames that affect later frames, but are not returned.
-    /// interval: time between frames, seconds; None: the press stops at each frame until all taxels are read.
-    /// time: elapsed fraction of the session, 0 to 1, for drift; None: random, from the seed.
+    /// interval: time between frames, seconds. Default: the press stops at each frame until all taxels are read.
+    /// time: elapsed fraction of the session, 0 to 1, for drift. Default: random, from the seed.
     ///
     /// Returns (n − n_before, …). Raises ValueError if an argument is invalid.
     #[pyo3(signature = (frames, *, seed=0, n_before=0, interval=None, time=None, rates=None))]

@@ -21,19 +21,19 @@ use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-type Going<'p> = scene::Simulation<'p>;
+type BorrowedSimulation<'p> = scene::Simulation<'p>;
 
 self_cell!(
     /// Simulation that is running, with the plan of its scene.
-    struct OnItsWay {
+    struct RunningSimulation {
         owner: Arc<ScenePlan>,
         #[not_covariant]
-        dependent: Going,
+        dependent: BorrowedSimulation,
     }
 );
 
-fn begin(plan: &Arc<ScenePlan>) -> OnItsWay {
-    OnItsWay::new(Arc::clone(plan), |plan| {
+fn begin(plan: &Arc<ScenePlan>) -> RunningSimulation {
+    RunningSimulation::new(Arc::clone(plan), |plan| {
         scene::Simulation::new(plan, Stepping::AsNeeded)
     })
 }
@@ -58,7 +58,7 @@ fn begin(plan: &Arc<ScenePlan>) -> OnItsWay {
 #[pyclass(module = "bubbletouch")]
 pub struct Simulation {
     plan: Arc<ScenePlan>,
-    going: OnItsWay,
+    running: RunningSimulation,
 }
 
 #[pymethods]
@@ -89,14 +89,14 @@ impl Simulation {
                 PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 2)?;
             }
             Ok(Self {
-                going: begin(&plan),
+                running: begin(&plan),
                 plan,
             })
         })
     }
 
     /// Resets the simulation to the state before the first frame, and removes all manual settings. The sensor is unchanged. The noise of the readings
-    /// is drawn from `seed` (None: the scene's seed). Raises ValueError if the seed is invalid.
+    /// is drawn from `seed` (default: the scene's seed). Raises ValueError if the seed is invalid.
     #[pyo3(signature = (seed=None))]
     fn reset(&mut self, seed: Option<i128>) -> PyResult<()> {
         let seed = match seed {
@@ -112,8 +112,8 @@ impl Simulation {
     /// Advances the simulation by `dt` seconds. Manually set poses are reached; all other motions follow the scene. Raises ValueError if `dt` is not
     /// positive, or a pose overflows.
     fn step(&mut self, py: Python, dt: f64) -> PyResult<()> {
-        let going = &mut self.going;
-        guarded(|| py.detach(|| on(going, |simulation| simulation.step(dt))))
+        let running = &mut self.running;
+        guarded(|| py.detach(|| on(running, |simulation| simulation.step(dt))))
     }
 
     /// Returns the current state as a frame. Before any step, the state is the first frame of the scene. Raises ValueError if a pose overflows.
@@ -126,11 +126,11 @@ impl Simulation {
         py: Python<'py>,
         out: Option<Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (going, plan) = (&mut self.going, &self.plan);
+        let (running, plan) = (&mut self.running, &self.plan);
         guarded(|| {
-            py.detach(|| on(going, |simulation| simulation.observe().map(drop)))?;
+            py.detach(|| on(running, |simulation| simulation.observe().map(drop)))?;
             // The state was computed without the lock; the second call only returns the frame.
-            going.with_dependent_mut(|_, simulation| {
+            running.with_dependent_mut(|_, simulation| {
                 let frame = simulation.observe().map_err(exception)?;
                 match out {
                     Some(out) => {
@@ -179,7 +179,7 @@ impl Simulation {
     /// Time since the start of the scene, seconds, in the current state.
     #[getter]
     fn time(&mut self) -> f64 {
-        self.going
+        self.running
             .with_dependent_mut(|_, simulation| simulation.time())
     }
 
@@ -200,17 +200,17 @@ impl Simulation {
     }
 
     fn __next__<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let (going, plan) = (&mut self.going, &self.plan);
+        let (running, plan) = (&mut self.running, &self.plan);
         guarded(|| {
             let is_over = py.detach(|| {
-                on(going, |simulation| {
+                on(running, |simulation| {
                     simulation.next_frame().map(|frame| frame.is_none())
                 })
             });
             if is_over? {
                 return Ok(None);
             }
-            going.with_dependent_mut(|_, simulation| {
+            running.with_dependent_mut(|_, simulation| {
                 let frame = simulation.observe().map_err(exception)?;
                 frame_of(py, plan, frame).map(Some)
             })
@@ -262,18 +262,18 @@ impl Simulation {
 impl Simulation {
     fn change(
         &mut self,
-        change: impl FnOnce(&mut Going) -> bubbletouch::Result<()>,
+        change: impl FnOnce(&mut BorrowedSimulation) -> bubbletouch::Result<()>,
     ) -> PyResult<()> {
-        guarded(|| on(&mut self.going, change))
+        guarded(|| on(&mut self.running, change))
     }
 }
 
 /// Calls a function with the running simulation, and converts its errors to Python exceptions.
 fn on<T>(
-    going: &mut OnItsWay,
-    call: impl FnOnce(&mut Going) -> bubbletouch::Result<T>,
+    running: &mut RunningSimulation,
+    call: impl FnOnce(&mut BorrowedSimulation) -> bubbletouch::Result<T>,
 ) -> PyResult<T> {
-    going.with_dependent_mut(|_, simulation| call(simulation).map_err(exception))
+    running.with_dependent_mut(|_, simulation| call(simulation).map_err(exception))
 }
 
 /// Reads a single pose in the world frame, `world_from_…`.

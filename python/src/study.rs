@@ -94,7 +94,7 @@ impl Progress for CallbackProgress {
 }
 
 /// File name, title, note and columns of a table.
-pub type Said<'py> = (String, String, String, Bound<'py, PyDict>);
+pub type ColumnsOfTable<'py> = (String, String, String, Bound<'py, PyDict>);
 
 /// Text of a study, its result folder, and the part of the study to run.
 struct StudySource {
@@ -210,7 +210,7 @@ pub fn run_study<'py>(
     shard: Option<String>,
     merges: bool,
     threads: Option<usize>,
-) -> PyResult<Vec<Said<'py>>> {
+) -> PyResult<Vec<ColumnsOfTable<'py>>> {
     guarded(|| {
         let seed = seed.map(|seed| whole_number("seed", seed)).transpose()?;
         let shard = shard
@@ -266,7 +266,7 @@ pub fn run_study<'py>(
 }
 
 /// Converts a table to its file name, title, note and columns.
-pub fn columns<'py>(py: Python<'py>, table: &Table) -> PyResult<Said<'py>> {
+pub fn columns<'py>(py: Python<'py>, table: &Table) -> PyResult<ColumnsOfTable<'py>> {
     let values = PyDict::new(py);
     for (column, data) in table.columns.iter().zip(&table.data) {
         match data {

@@ -202,8 +202,8 @@ impl KernelSvm {
         })
     }
 
-    /// Binary problems of the SVM, one dict each: classes, training rows, signed multipliers, ρ (negative bias), objective, number of iterations, and whether
-    /// the solver stopped at the iteration cap.
+    /// Binary problems of the SVM, one dict each. A dict contains the classes, the training rows, the signed multipliers, ρ (negative bias), the objective,
+    /// the number of iterations, and whether the solver stopped at the iteration cap.
     #[getter]
     fn problems<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let problem = |problem: &bubbletouch::recognition::svm::BinaryProblem| {

@@ -46,7 +46,7 @@ pub struct Interrupt {
 }
 
 impl Interrupt {
-    /// Creates a check that next checks after a whole period.
+    /// Creates a check whose first check is due after a whole period.
     pub fn new() -> Self {
         Self {
             looked: Instant::now(),

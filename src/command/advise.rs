@@ -25,7 +25,7 @@ pub struct Args {
     #[arg(default_value = "results/quickstart")]
     results: PathBuf,
     #[command(flatten)]
-    wish: WishArgs,
+    wish: RequirementArgs,
     /// Minimise this cost [default: decision_time, or the first cost]
     ///
     /// Any column of costs, such as decision_time, training_time, taxels or measurements (of a decision).
@@ -62,7 +62,7 @@ pub struct Args {
 
 #[derive(clap::Args)]
 #[group(required = true, multiple = true)]
-struct WishArgs {
+struct RequirementArgs {
     /// Require this fraction of correct decisions, such as 0.9
     #[arg(
         long,

@@ -60,9 +60,9 @@ pub struct Args {
         help_heading = "Input"
     )]
     surface_error_mm: Option<f64>,
-    /// Draw to this file instead of listing
+    /// Draw the objects to this file instead of listing them
     ///
-    /// One object gives one picture, several give a sheet.
+    /// One object gives a single picture; several objects are arranged in a grid.
     #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     out: Option<PathBuf>,
 }

@@ -63,7 +63,7 @@ pub fn plan(
     }
 }
 
-/// Runs a study for `seconds` without storing results, and returns a text that describes the completed work. The run goes on until the process ends.
+/// Runs a study for `seconds` without storing results, and returns a text that describes the completed work. The run continues until the process ends.
 ///
 /// # Errors
 /// If a work item of the sample fails.

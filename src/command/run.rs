@@ -13,9 +13,9 @@ use std::sync::Arc;
 
 /// Run a study; write tables, charts and a report
 ///
-/// The study's table gives its kind: [recognition] (which object is touched), [reconstruction] (how exactly frames are reconstructed from
-/// measurements), [object_detail] (how detailed models of objects must be), [whole_body] (the cost of a body with millions of taxels) or [stability]
-/// (the settings at which contact methods fail).
+/// One table of the study determines its kind. [recognition]: which object is touched. [reconstruction]: how exactly frames are reconstructed from
+/// measurements. [object_detail]: how detailed models of objects must be. [whole_body]: the cost of a body with millions of taxels. [stability]: the
+/// settings at which contact methods fail.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  bubbletouch run experiments/cans.toml --out results/cans")]
 pub struct Args {

@@ -114,8 +114,8 @@ fn is_done(study: &dyn AnyStudy, folder: &Path, shard: Shard) -> Result<bool> {
 }
 
 impl Args {
-    /// Returns the name of the jobs in the cluster's queue. Jobs have the same name if they write the same results: the name contains a hash of the study's
-    /// file, the options that replace parts of it, and the folder.
+    /// Returns the name of the jobs in the cluster's queue. Jobs have the same name if they write the same results. The name contains a hash of the study's
+    /// file, of the options that replace parts of it, and of the folder.
     fn name(&self, what: &str) -> Result<String> {
         let study = &self.results.study;
         let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());

@@ -119,13 +119,13 @@ fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
         Role::Note => 3,
     };
     let columns = Setting::all(table);
-    let mut shown: Vec<Setting> = columns.filter(|one| is_telling(table, one)).collect();
+    let mut shown: Vec<Setting> = columns.filter(|one| is_informative(table, one)).collect();
     shown.sort_by_key(rank);
     shown
 }
 
 /// Returns whether a column is worth showing: its values differ between rows, or the column contains results.
-fn is_telling(table: &Table, setting: &Setting) -> bool {
+fn is_informative(table: &Table, setting: &Setting) -> bool {
     let mut rows = 0..table.n_rows;
     match setting.column.role {
         Role::Note => false,

@@ -66,7 +66,7 @@ impl Simulation<'_> {
     /// Sets a robot's joint positions from the next step on: one number per joint coordinate, rad or m.
     ///
     /// # Errors
-    /// If the scene has no robot of this name, the number of positions is wrong, or a position is not finite or exceeds the limits of its joint.
+    /// If the scene has no robot of this name, or the number of positions is wrong. If a position is not finite or exceeds the limits of its joint.
     pub fn set_joint_positions(&mut self, robot: &str, positions: &[f64]) -> Result<()> {
         let number = self.robot(robot)?;
         let row = Array2::from_shape_vec((1, positions.len()), positions.to_vec());

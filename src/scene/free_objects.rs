@@ -94,7 +94,7 @@ impl FreeObjects {
             objects.poses[free.object] = OUT_OF_REACH;
         }
         self.push_by_others(plan, skins, objects);
-        self.hold_by_tips(plan, skins, objects);
+        self.attach_tangential_springs(plan, skins, objects);
         let is_there = |free: &&mut Free| !matches!(free.reading.held, PoseControl::Escaped { .. });
         let mut there: Vec<&mut Free> = self.all.iter_mut().filter(is_there).collect();
         let own = |tip: TangentialSpring| {
@@ -178,7 +178,12 @@ impl FreeObjects {
     }
 
     /// Attaches tangential springs to objects that were just placed, for all patches with friction.
-    fn hold_by_tips(&mut self, plan: &ScenePlan, skins: &mut [SkinState], objects: &PlacedObjects) {
+    fn attach_tangential_springs(
+        &mut self,
+        plan: &ScenePlan,
+        skins: &mut [SkinState],
+        objects: &PlacedObjects,
+    ) {
         let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
         for free in self.all.iter_mut().filter(|free| free.is_put) {
             free.is_put = false;

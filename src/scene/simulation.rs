@@ -45,7 +45,7 @@ pub struct Simulation<'p> {
     pub(super) is_by_hand: bool,
     /// Duration of the last step, seconds, if the deflections of its patches have not been computed yet. The required computations depend on whether a frame is
     /// read next.
-    unfelt: Option<f64>,
+    pending_dt: Option<f64>,
     n_read: usize,
     pub(super) n_steps: usize,
     n_unsettled: usize,
@@ -91,7 +91,7 @@ impl<'p> Simulation<'p> {
             scratch: SignalWorkspace::default(),
             time: 0.0,
             is_by_hand: false,
-            unfelt: None,
+            pending_dt: None,
             n_read: 0,
             n_steps: 0,
             n_unsettled: 0,
@@ -146,7 +146,7 @@ impl<'p> Simulation<'p> {
     /// If a pose overflows.
     pub fn observe(&mut self) -> Result<&Frame> {
         self.begin()?;
-        if let Some(dt) = self.unfelt.take() {
+        if let Some(dt) = self.pending_dt.take() {
             self.read(dt);
             self.n_read += 1;
             self.frame.time = self.time;
@@ -179,17 +179,17 @@ impl<'p> Simulation<'p> {
 
     /// Advances the simulation to `time`, which is `dt` seconds after the last step.
     pub(super) fn advance(&mut self, time: f64, dt: f64) -> Result<()> {
-        if let Some(dt) = self.unfelt.take() {
-            self.feel(dt);
+        if let Some(dt) = self.pending_dt.take() {
+            self.update_deflections(dt);
         }
-        self.go_to(time, dt)?;
+        self.move_to_time(time, dt)?;
         self.time = time;
-        self.unfelt = Some(dt);
+        self.pending_dt = Some(dt);
         Ok(())
     }
 
     /// Moves robots, objects and patches to their poses at `time`; `dt` is the time since the last step, seconds.
-    fn go_to(&mut self, time: f64, dt: f64) -> Result<()> {
+    fn move_to_time(&mut self, time: f64, dt: f64) -> Result<()> {
         let plan = self.plan;
         self.n_steps += 1;
         for (state, robot) in self.robots.iter_mut().zip(&plan.robots) {
@@ -226,12 +226,12 @@ impl<'p> Simulation<'p> {
     }
 
     /// Updates the deflections of the patches after a time step at which no frame is written.
-    fn feel(&mut self, dt: f64) {
+    fn update_deflections(&mut self, dt: f64) {
         let plan = self.plan;
         for (number, (skin, patch)) in self.skins.iter_mut().zip(&plan.patches).enumerate() {
             if patch.remembers() || self.stepping == Stepping::Always {
                 let tips = self.free.tips_on(number);
-                skin.feel(
+                skin.update_deflections(
                     patch,
                     &plan.models,
                     &self.objects,

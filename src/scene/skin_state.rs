@@ -101,7 +101,7 @@ impl SkinState {
         }
     }
 
-    /// Marks contacts as held: the parts of objects in contact push their taxels in the next steps, even from behind the substrate.
+    /// Keeps contacts for the next steps: an object part in contact continues to push its taxel, even from behind the substrate.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.workspace.hold(contacts);
     }
@@ -113,7 +113,8 @@ impl SkinState {
             .flat_map(FrictionState::tangential_springs)
     }
 
-    /// Attaches tangential springs to the contacts of the object number `object`, which has just been placed. In `only`, all other objects are out of reach.
+    /// Attaches tangential springs to the contacts of the object number `object`, which has just been placed. In `only`, all other objects are too far away
+    /// to touch the patch.
     pub fn put(
         &mut self,
         patch: &PlannedPatch,
@@ -144,7 +145,7 @@ impl SkinState {
         (loads, tips): (&[&TaxelLoad], &[TangentialSpringState]),
         reading: &mut PatchReading,
     ) {
-        self.feel(patch, models, objects, (dt, tips), Detail::Contacts);
+        self.update_deflections(patch, models, objects, (dt, tips), Detail::Contacts);
         let contacts = self.workspace.contacts();
         reading.pose = self.pose;
         reading.deflection.clone_from(&self.damper.deflection);
@@ -177,7 +178,7 @@ impl SkinState {
 
     /// Makes a time step of `dt` seconds to the current poses of the objects; an infinite `dt` gives the steady state. The tangential springs of free objects
     /// are in `tips`.
-    pub fn feel(
+    pub fn update_deflections(
         &mut self,
         patch: &PlannedPatch,
         models: &[Model],

@@ -213,7 +213,7 @@ pub struct ProjectedGridSpec {
     pub nx: usize,
     /// Number of rows, along the grid's y axis, `pitch_mm` apart.
     pub ny: usize,
-    /// Pose of the grid's middle in the frame of the mesh or link: in front of the surface, with its z axis away from the surface.
+    /// Pose of the grid's middle in the frame of the mesh or link. The pose is in front of the surface, and its z axis points away from the surface.
     pub at: PoseSpec,
     /// Treatment of taxels that do not meet the surface: `error` refuses the scene, `drop` omits them. Default: `error`.
     #[serde(default)]

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-/// Smallest positive number that a key may have; smaller bounds are shown as an excluded zero.
+/// Smallest positive number that a key may have. A smaller lower bound is written as `exclusiveMinimum: 0`.
 const LEAST_POSITIVE: f64 = 1e-12;
 
 /// Adds the bounds of allowed numbers to the schema of a key: to single numbers, list elements, and axis values.

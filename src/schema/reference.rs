@@ -353,7 +353,8 @@ fn choices(schema: &Value) -> impl Iterator<Item = &Value> {
     choices.into_iter().flatten().chain(own)
 }
 
-/// Returns the variants of an enum whose value may be a word or a number instead of a table: the variant as it is written, its values, and the description.
+/// Returns the variants of an enum whose value may be a word or a number instead of a table. Each variant has its name as written, its values, and its
+/// description.
 fn single_values(schema: &Value) -> impl Iterator<Item = (String, String, &str)> {
     variants(schema).flat_map(|(name, value, description)| {
         let single = choices(value).filter(|choice| choice.get("properties").is_none());

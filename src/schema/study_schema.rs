@@ -1,7 +1,7 @@
 //! JSON Schema of study files of all kinds.
 //!
-//! All kinds use tables such as `[skin]`, so the schema lists each table once. Conditions then state which tables a file of each kind may have and
-//! must have; the kind follows from the table that only this kind has.
+//! All kinds use tables such as `[skin]`, so the schema lists each table once. Conditions then state which tables a file of each kind may have and must
+//! have. The kind follows from the table that only this kind has.
 
 use super::ranges::bound;
 use super::tidy::{properties, tidy};

@@ -42,9 +42,9 @@ impl Bootstrap {
     /// Annals of Applied Statistics 2007).
     ///
     /// The interval is the expanded percentile interval (Hesterberg, *What teachers should know about the bootstrap*, American Statistician 2015). The
-    /// percentiles of the resampled means are moved outwards for two reasons: Student's t is wider than a normal distribution, and s² exceeds the variance of
-    /// the resamples. Let n be the smaller number of rows or columns (of rows alone, if there is one column). The tail is Φ(−√(n/(n−1)) · t). Plain
-    /// percentiles of five trials would cover 83 % instead of 95 %.
+    /// percentiles of the resampled means are moved outwards. The two reasons are that Student's t is wider than a normal distribution, and that s² exceeds
+    /// the variance of the resamples. Let n be the smaller number of rows or columns (of rows alone, if there is one column). The tail is Φ(−√(n/(n−1)) ·
+    /// t). Plain percentiles of five trials would cover 83 % instead of 95 %.
     ///
     /// # Errors
     /// If a score is not finite, there are no columns, or the confidence is outside 0..1.

@@ -44,7 +44,7 @@ pub struct TrialSize {
 /// not significant.
 ///
 /// # Errors
-/// If `a` and `b` differ in length, a score is not finite, a trial has no training or no test rows, or the confidence is outside 0..1.
+/// If `a` and `b` differ in length, or a score is not finite. If a trial has no training or no test rows, or the confidence is outside 0..1.
 pub fn compare(
     a: &[f64],
     b: &[f64],
@@ -80,7 +80,7 @@ pub fn compare(
 /// The result therefore generalises to other splits and to other projections. The degrees of freedom are Satterthwaite's.
 ///
 /// # Errors
-/// If `a` and `b` differ in length, a score is not finite, a trial has no training or no test rows, or the confidence is outside 0..1.
+/// If `a` and `b` differ in length, or a score is not finite. If a trial has no training or no test rows, or the confidence is outside 0..1.
 pub fn compare_crossed(
     a: ArrayView2<f64>,
     b: ArrayView2<f64>,

@@ -1,4 +1,4 @@
-//! Confidence intervals of an accuracy whose test rows are held out in groups, such as all rows of a pose, a yaw, a grasp or a day.
+//! Confidence intervals of an accuracy whose test rows are held out in groups. A group may be all rows of a pose, a yaw, a grasp or a day.
 //!
 //! Outcomes of one group are correlated, so n rows of few groups contain less information than n independent rows. The interval describes how the accuracy
 //! differs between groups. Source: Abadie et al., *When should you adjust standard errors for clustering?*, Quarterly Journal of Economics 138, 2023 (whole

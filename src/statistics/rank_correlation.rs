@@ -1,7 +1,8 @@
 //! Rank correlation of two runs over the same configurations: Kendall's τ and its confidence interval.
 //!
-//! τ_b = (C − D) / √((P − T_x)(P − T_y)). Among the P = n (n − 1) / 2 pairs, C have the same order in both runs and D the opposite order. T_x and T_y pairs are
-//! tied in the first and second run. τ_b is 1 if all pairs have the same order, and −1 if all have the opposite order.
+//! τ_b = (C − D) / √((P − T_x)(P − T_y)). Among the P = n (n − 1) / 2 pairs, C have the same order in both runs and D the opposite order. T_x and T_y are
+//! the numbers of pairs that are tied in the first and the second run. The value τ_b is 1 if all pairs have the same order, and −1 if all have the opposite
+//! order.
 //!
 //! Sources: Kendall, *The treatment of ties in ranking problems*, Biometrika 33, 1945. The O(n log n) algorithm: Knight, *A computer method for calculating
 //! Kendall's tau with ungrouped data*, Journal of the American Statistical Association 61, 1966.

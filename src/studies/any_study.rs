@@ -51,7 +51,7 @@ pub trait AnyStudy: Send {
     /// Runs the work items that have no result in the journal.
     ///
     /// # Errors
-    /// If the journal cannot be written, if an item fails and the first failure ends the run, or if the memory does not suffice for a single item.
+    /// If the journal cannot be written, or the memory does not suffice for a single item. If an item fails and the first failure ends the run.
     fn run(&self, options: &RunOptions) -> Result<Outcome>;
 
     /// Writes all files of a run into a result folder: tables, charts, page, study file and manifest.

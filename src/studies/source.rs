@@ -29,7 +29,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Creates a source from the text of a study, without changes by command-line options.
+    /// Creates the source of a study from its text. No command-line options change the study.
     pub fn of_text(place: &str, text: &str) -> Self {
         Self {
             place: place.to_owned(),
@@ -38,7 +38,7 @@ impl Source {
         }
     }
 
-    /// Reads the study that is stored in a result folder, without changes by command-line options.
+    /// Reads the study that is stored in a result folder. No command-line options change the study.
     ///
     /// # Errors
     /// If the folder has no study or the study cannot be read.

@@ -221,7 +221,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Computes the pending work items, in any order and on any threads. Data that several items share are computed only if one of these items is pending.
     ///
     /// # Errors
-    /// If the journal cannot be written, a work item fails and the first failure ends the run, or data that all items need cannot be computed.
+    /// If the journal cannot be written, or data that all items need cannot be computed. If a work item fails and the first failure ends the run.
     fn measure(&self, pending: &PendingItems<Self::Rows>) -> Result<()>;
 
     /// Sets the values in a work item's rows that depend on the item's number, such as configuration numbers. Rows in the journal may come from a run with

@@ -124,7 +124,7 @@ pub fn distinct(labels: ArrayView1<usize>) -> Vec<usize> {
 /// Returns the distinct labels, ascending, and checks that a classifier can be trained on the data.
 ///
 /// # Errors
-/// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or there is a single class.
+/// If the data are empty or have a single class, a feature is not finite, or the numbers of labels and rows differ.
 pub fn checked_classes(data: &Dataset) -> Result<Vec<usize>> {
     check_features(data.records.view())?;
     check_labels(data.records.nrows(), data.targets.view())?;

@@ -1,9 +1,9 @@
 //! Training of many binary problems on one set of rows, with common quantities computed only once.
 //!
-//! The rows are sorted by class. One-vs-one needs each block of kernel values between two classes once, and each block within a class for all its pairs. The
-//! blocks within classes are stored; of other blocks, only the requested rows are read. n rows of k classes need about n²/k values in memory, not n².
-//! One-vs-rest uses the whole matrix. For each problem, all values of C are solved while its Gram matrix is in memory; each solution starts from the previous
-//! C.
+//! The rows are sorted by class. One-vs-one needs each block of kernel values between two classes once, and each block within a class for all its pairs.
+//! The blocks within classes are stored. Only the requested rows of other blocks are read. For n rows of k classes, about n²/k values are in memory, not
+//! n². One-vs-rest uses the whole matrix. For each problem, all values of C are solved while its Gram matrix is in memory; each solution starts from the
+//! previous C.
 
 use std::ops::Range;
 

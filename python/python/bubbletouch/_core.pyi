@@ -62,7 +62,7 @@ class Mesh:
 
         unit: unit of the coordinates in the file. If None, the unit is metres, or the unit in a Collada file. The object must then
         be 0.1 mm to 10 m in size.
-        close_holes: maximum width of the holes to close, metres. Each hole is closed by a cone of triangles. None: no hole is closed.
+        close_holes: maximum width of the holes to close, metres. Each hole is closed by a cone of triangles. Default: no hole is closed.
 
         Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError if the file cannot be read, and ValueError if it contains
         no valid mesh.
@@ -153,14 +153,14 @@ class Mesh:
 class ShearState:
     """Shear springs with friction of all taxels of a skin. Skin.shear_state() creates the state, and each Skin.read advances it by one step.
 
-    Between two reads, a body in contact drags the taxels sideways until they slip: the shear force is at most the friction coefficient times the normal
+    Between two reads, a body in contact drags the taxels sideways until they slip. The shear force is at most the friction coefficient times the normal
     force.
     """
 
     @property
     def forces(self) -> NDArray[np.float64]:
-        """Force of the bodies on each taxel after the last read, newtons, (n_taxels, 3) or (n, n_taxels, 3), in the frame of the taxel's patch: normal force,
-        friction, and the lateral force of an inclined contact.
+        """Force of the bodies on each taxel after the last read, newtons, (n_taxels, 3) or (n, n_taxels, 3), in the frame of the taxel's patch. It is the sum
+        of the normal force, the friction, and the lateral force of an inclined contact.
         """
 
     @property
@@ -347,7 +347,9 @@ class Catalogue:
 
 @final
 class Contacts:
-    """Contacts of presses at n poses: m pairs of a taxel and the part of an object (sphere or triangle) that touches it, ordered by pose and taxel."""
+    """Contacts of presses at n poses, ordered by pose and taxel. Each of the m contacts is a pair of a taxel and the sphere or triangle of an object that
+    touches it.
+    """
 
     @property
     def pose(self) -> NDArray[np.int64]:
@@ -383,8 +385,8 @@ class Contacts:
 
     @property
     def gradient(self) -> NDArray[np.float64]:
-        """For each contact (m, 3), the gradient ∂δ/∂x of the deflection δ for a motion x of the touching part in the patch frame, without the limit of the stroke.
-        For a sphere of radius R, the length of the gradient is ∂δ/∂R.
+        """For each contact (m, 3), the gradient ∂δ/∂x of the deflection δ for a motion x of the touching part in the patch frame. The gradient ignores the
+        limit of the stroke. For a sphere of radius R, the length of the gradient is ∂δ/∂R.
         """
 
     @property
@@ -535,7 +537,7 @@ class Patch:
         differ from 1 by 1 %; the axes are normalised. The other arguments are arrays (n,), or one number for all taxels. Defaults: stiffness 100 N/m,
         damping 0.
 
-        shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
+        shape: shape of a frame, (ny, nx) if the taxels are numbered row by row. Default: (n,).
         pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
         """
 
@@ -553,10 +555,10 @@ class Patch:
     ) -> Patch:
         """Returns a patch of taxels at given points, metres, (n, 3), with normals that point away from the substrate.
 
-        stroke: metres; None: the diameter of the taxel.
+        stroke: metres. Default: the diameter of the taxel.
         normals: vectors of any length, (n, 3), or a Mesh whose surface gives the normals. Each point must be at most 5 mm from the mesh.
-        taxel_radius: metres; None: half the median distance between neighbours.
-        shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
+        taxel_radius: metres. Default: half the median distance between neighbours.
+        shape: shape of a frame, (ny, nx) if the taxels are numbered row by row. Default: (n,).
         pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
         """
 
@@ -580,7 +582,7 @@ class Patch:
         moves along −z of the pose to the first point of the mesh. Its axis is the outward normal of the triangle at this point. The centres and axes are
         in the frame of the mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
 
-        stroke: metres; None: the diameter of the taxel.
+        stroke: metres. Default: the diameter of the taxel.
         missing: "error" raises ValueError if a taxel meets no outer face of the mesh. "drop" omits such taxels, and n_left_out counts them.
 
         Frames have the shape (ny, nx) if no taxel is omitted. `pixels` contains the row and column of each taxel in the grid.
@@ -607,9 +609,9 @@ class Patch:
         - .json: PaXini;
         - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
 
-        stroke: metres; None: the diameter of the taxel.
+        stroke: metres. Default: the diameter of the taxel.
         mesh: surface that gives the normals, for files of iCub and PaXini without normals.
-        taxel_radius: metres; None: the radius in the file, or half the median distance between neighbours.
+        taxel_radius: metres. Default: the radius in the file, or half the median distance between neighbours.
 
         Frames have the shape (ny, nx) if the file numbers its taxels row by row in a complete image. Notes of the reader are issued as UserWarnings.
         Raises ValueError with the file and the row if the file is invalid, and OSError if it cannot be read.
@@ -631,7 +633,7 @@ class Patch:
         """
 
     def draw(self, path: _Path, *, title: str | None = None) -> None:
-        """Draws the taxels to a file that ends in .svg or .png: a map with their numbers, from 0, and an oblique view with their axes.
+        """Draws the taxels to a file that ends in .svg or .png. The picture has a map with the taxels' numbers, from 0, and an oblique view with their axes.
 
         title: heading of the picture, "patch" if None.
         """
@@ -844,7 +846,7 @@ class Patch:
         depth: metres, zero or more; one number, or (n,).
         slide: motion of the patch after the press along x and y, metres, (2,) or (n, 2).
         friction: coefficient between taxels and objects, zero or more; one number, or (n_taxels,).
-        shear_stiffness: stiffness of the taxels across their axes, N/m; one number, or (n_taxels,). None: the stiffness along the axes.
+        shear_stiffness: stiffness of the taxels across their axes, N/m; one number, or (n_taxels,). Default: the stiffness along the axes.
 
         Returns a dict of arrays at the end of the slide. For a single pose, the arrays have no axis n. The keys are:
 
@@ -936,11 +938,11 @@ class Chain:
         time: float | None = None,
         rates: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """Returns the sensor signals of the frames of one touch, in order of time; hysteresis and scan order connect the frames.
+        """Returns the sensor signals of the frames of one touch, in order of time. With hysteresis or a scan order, a signal depends on several frames.
 
         n_before: number of leading frames that affect later frames, but are not returned.
-        interval: time between frames, seconds; None: the press stops at each frame until all taxels are read.
-        time: elapsed fraction of the session, 0 to 1, for drift; None: random, from the seed.
+        interval: time between frames, seconds. Default: the press stops at each frame until all taxels are read.
+        time: elapsed fraction of the session, 0 to 1, for drift. Default: random, from the seed.
 
         Returns (n − n_before, …). Raises ValueError if an argument is invalid.
         """
@@ -999,7 +1001,7 @@ class Reconstructor:
 
     training: frames (n, ny, nx), metres.
     basis: dct, haar, daubechies4 (both for sides that are powers of two) or pca.
-    n_atoms: number of atoms, for pca the components of largest variance; None: all atoms, or 256 of pca.
+    n_atoms: number of atoms, for pca the components of largest variance. Default: all atoms, or 256 of pca.
     solver: omp (orthogonal matching pursuit), l1 (basis pursuit by FISTA) or lmmse (linear minimum mean square error estimate).
     noise: standard deviation on each taxel, in the unit of the frames.
 
@@ -1064,7 +1066,7 @@ class Robot:
 
         q: dict from the names of joints to positions, numbers or (n,), radians and metres; or an array (d,) or (n, d) in the order of `joints`. Joints that the
         dict does not contain, and all joints without q, have their default positions. Limits are not checked.
-        base: pose of the base in the world, (7,) or (4, 4). None: the identity.
+        base: pose of the base in the world, (7,) or (4, 4). Default: the identity.
 
         Returns x, y, z, qw, qx, qy, qz: (7,), or (n, 7) for n positions. Raises ValueError if an argument is invalid.
         """
@@ -1124,7 +1126,7 @@ class Simulation:
     ) -> Simulation: ...
     def reset(self, seed: int | None = None) -> None:
         """Resets the simulation to the state before the first frame, and removes all manual settings. The sensor is unchanged. The noise of the readings
-        is drawn from `seed` (None: the scene's seed). Raises ValueError if the seed is invalid.
+        is drawn from `seed` (default: the scene's seed). Raises ValueError if the seed is invalid.
         """
 
     def step(self, dt: float) -> None:
@@ -1201,8 +1203,8 @@ class KernelSvm:
 
     @property
     def problems(self) -> list[dict[str, Any]]:
-        """Binary problems of the SVM, one dict each: classes, training rows, signed multipliers, ρ (negative bias), objective, number of iterations, and whether
-        the solver stopped at the iteration cap.
+        """Binary problems of the SVM, one dict each. A dict contains the classes, the training rows, the signed multipliers, ρ (negative bias), the objective,
+        the number of iterations, and whether the solver stopped at the iteration cap.
         """
 
     @property

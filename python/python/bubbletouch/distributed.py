@@ -79,9 +79,9 @@ def run(
 
     study: path of a TOML file, or a dict with its tables. Files that the study names exist under the same absolute paths on all machines.
     client: dask.distributed.Client, a RayExecutor, or another concurrent.futures.Executor. Dask and Ray run the shard of a lost worker again.
-    n_shards: number of tasks. None: the number of threads of all workers, or of processors of this machine for another executor. Each shard simulates
+    n_shards: number of tasks. Default: the number of threads of all workers, or of processors of this machine for another executor. Each shard simulates
     the touches that it needs, so many shards repeat simulations.
-    out: result folder. Journals of finished shards are kept there; the same call continues an interrupted run with the same n_shards. None: a temporary
+    out: result folder. Journals of finished shards are kept there; the same call continues an interrupted run with the same n_shards. Default: a temporary
     folder that is deleted with the Study.
     seed, recorded: as for bubbletouch.run. Arrays in memory are sent to the workers.
     classifiers, features: as for bubbletouch.run. They are sent to the workers by cloudpickle, or by pickle if cloudpickle is not installed. A worker

@@ -184,7 +184,7 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         """Starts new episodes in all environments; returns the observations, and a dict with the indices of the objects.
 
         seed: one seed makes the current and all later episodes reproducible. A sequence contains one seed per environment: the episodes of an
-        environment equal those of a single environment with this seed; None: random episodes. Raises TypeError and ValueError for invalid seeds.
+        environment equal those of a single environment with this seed. Default: random episodes. Raises TypeError and ValueError for invalid seeds.
         """
         if seed is None or isinstance(seed, Integral):
             super().reset(seed=None if seed is None else whole("seed", seed, least=0), options=options)

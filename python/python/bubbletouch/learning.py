@@ -189,7 +189,7 @@ class LinearSVC(_Classifier):
     C: penalty per unit of margin violation (hinge loss), above 0.
     tol: spread of the projected gradients at which the solver stops, above 0.
     max_iter: maximum number of passes over the rows, at least 1.
-    random_state: seed of the order in which rows are visited; None: 0.
+    random_state: seed of the order in which rows are visited. Default: 0.
 
     The intercept is regularised together with the weights, as in LIBLINEAR; the features should therefore be centred.
 
@@ -257,9 +257,9 @@ class LinearSVC(_Classifier):
 class GridSearch(_Classifier):
     """Cross-validated choice of C and γ of an SVC, by the accuracy on held-out rows. The whole grid shares one matrix of inner products.
 
-    estimator: SVC whose other parameters are used; None: SVC().
+    estimator: SVC whose other parameters are used. Default: SVC().
     C: candidate values, each above 0.
-    gamma_scales: candidate values of γ as multiples of the "scale" value; None: the γ of the estimator.
+    gamma_scales: candidate values of γ as multiples of the "scale" value. Default: the γ of the estimator.
     cv: number of folds, splitter of scikit-learn, or pairs of arrays of training and test rows (row indices, or masks of all rows). Splitters that
     support groups keep rows of one group together (argument `groups` of fit()).
 

@@ -31,7 +31,7 @@ class View:
     """View of the frames of a simulation on the timeline "scene". The entity /NAME of a patch shows its taxels; the entity /NAME of an object shows
     its axes.
 
-    to: rerun.RecordingStream that receives the data; None: the active stream.
+    to: rerun.RecordingStream that receives the data. Default: the active stream.
     """
 
     def __init__(self, simulation: Simulation, to: rr.RecordingStream | None = None) -> None:

@@ -34,13 +34,13 @@ def read_recorded(
     folder (v2 or v3). The first line of a CSV file has the names of its columns; without names, all columns are readings. In a pattern such as
     "grasps/{label}/*.npy", `*` stands for any text, and the texts in the places of {label} and {group} are the label and the group of the file.
     frames: name of the array, column or feature with the readings; a dict of names reads several sensors. A list of columns of a Parquet or CSV file,
-    or a pattern such as "taxel_*", reads one taxel per column. None: `frames`; in a LeRobot folder the only feature with `tactile` or `touch` in its name.
-    labels: name of the array or column with the class of each touch, or an array of the classes. None: `labels` if it exists; in a LeRobot folder, the task.
-    groups: name of the array or column with the group of each touch, or an array of the groups. None: `groups` if it exists; in a folder of files, the name of the file.
+    or a pattern such as "taxel_*", reads one taxel per column. Default: `frames`; in a LeRobot folder the only feature with `tactile` or `touch` in its name.
+    labels: name of the array or column with the class of each touch, or an array of the classes. Default: `labels` if it exists; in a LeRobot folder, the task.
+    groups: name of the array or column with the group of each touch, or an array of the groups. Default: `groups` if it exists; in a folder of files, the name of the file.
     touches: name of the array or column with the number of the touch of each row, or with the row at which each touch ends. The rows of a touch are its
-    frames. None: each row is a touch; in a
+    frames. Default: each row is a touch; in a
     LeRobot folder, each episode. "index" makes each row of a LeRobot folder a touch; its group is then the episode.
-    order: letters of the axes of the returned frames, as in `recorded.order`, or a dict by sensor. None: the default order; "n t c" or "n t y x" if rows are
+    order: letters of the axes of the returned frames, as in `recorded.order`, or a dict by sensor. Default: the order of a study without `order`; "n t c" or "n t y x" if rows are
     joined to touches.
 
     A name with `*` (HDF5 and Zarr) matches one array per touch, whose first axis is time: "data/*/obs/tactile". Labels and groups with `*` have one

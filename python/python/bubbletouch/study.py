@@ -137,7 +137,7 @@ def run(
     """Runs a study on all cores. The tables are bitwise equal to the tables of `bubbletouch run`.
 
     study: path of a TOML file, or a dict with its tables.
-    out: result folder; an interrupted run in this folder is continued. None: a temporary folder that is deleted with the Study.
+    out: result folder; an interrupted run in this folder is continued. Default: a temporary folder that is deleted with the Study.
     seed: replaces the seed of the study.
     callback: function that is called as callback(stage, n_done, n_total), from any thread, at most 20 times per second. If the callback raises an
     exception, the run ends and the exception is passed on.

@@ -7,7 +7,8 @@ use glam::DVec3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-/// Contacts of presses at n poses: m pairs of a taxel and the part of an object (sphere or triangle) that touches it, ordered by pose and taxel.
+/// Contacts of presses at n poses, ordered by pose and taxel. Each of the m contacts is a pair of a taxel and the sphere or triangle of an object that
+/// touches it.
 #[pyclass(frozen, get_all, module = "bubbletouch")]
 pub struct Contacts {
     /// For each contact (m,), the number of its pose, from 0.
@@ -26,8 +27,8 @@ pub struct Contacts {
     point: Py<PyArray2<f64>>,
     /// For each contact (m, 3), the frictionless force of the taxel's spring on the object, newtons, in the patch frame.
     force: Py<PyArray2<f64>>,
-    /// For each contact (m, 3), the gradient ∂δ/∂x of the deflection δ for a motion x of the touching part in the patch frame, without the limit of the stroke.
-    /// For a sphere of radius R, the length of the gradient is ∂δ/∂R.
+    /// For each contact (m, 3), the gradient ∂δ/∂x of the deflection δ for a motion x of the touching part in the patch frame. The gradient ignores the
+    /// limit of the stroke. For a sphere of radius R, the length of the gradient is ∂δ/∂R.
     gradient: Py<PyArray2<f64>>,
     /// For each pose (n,), the travel of the patch along its z axis, metres; NaN if no taxel touched the object.
     travel: Py<PyArray1<f64>>,

@@ -1,5 +1,5 @@
-//! Presses of a patch from Python: goals of a press ([`goal`]), single presses and batches ([`batch_press`]), slides ([`slide`]), the type of the
-//! frames ([`output`]), [`contacts`], and derivatives ([`jacobian`]).
+//! Presses of a patch from Python. The modules are goals of a press ([`goal`]), single presses and batches ([`batch_press`]), slides ([`slide`]), the type
+//! of the frames ([`output`]), [`contacts`], and derivatives ([`jacobian`]).
 
 pub mod batch_press;
 pub mod contacts;

@@ -5,7 +5,7 @@ use crate::errors::bad_input;
 use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// Array of the caller that is filled with results. It is checked before the results are computed.
+/// Array of the caller that is filled with results. The array is checked before the results are computed.
 pub struct Target<'py, T: Element> {
     place: &'static str,
     array: Option<Bound<'py, PyArrayDyn<T>>>,

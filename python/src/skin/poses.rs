@@ -135,7 +135,8 @@ fn pair_of<'py>(
     Ok(None)
 }
 
-/// Returns the place of a pose in an argument, such as `body_poses[3, 0]`: number of the set, if there are several, and number of the patch or body.
+/// Returns the place of a pose in an argument, such as `body_poses[3, 0]`. The indices are the number of the set, if there are several, and the number of
+/// the patch or body.
 fn pose_place(place: &str, number: usize, n_each: usize, sets: PoseSets) -> String {
     match sets.n {
         1 => format!("{place}[{number}]"),

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 /// Shear springs with friction of all taxels of a skin. Skin.shear_state() creates the state, and each Skin.read advances it by one step.
 ///
-/// Between two reads, a body in contact drags the taxels sideways until they slip: the shear force is at most the friction coefficient times the normal
+/// Between two reads, a body in contact drags the taxels sideways until they slip. The shear force is at most the friction coefficient times the normal
 /// force.
 #[pyclass(module = "bubbletouch")]
 #[derive(Clone)]
@@ -123,8 +123,8 @@ fn force_on_taxel(patch: &world::Patch, state: &FrictionState, contact: &TaxelCo
 
 #[pymethods]
 impl ShearState {
-    /// Force of the bodies on each taxel after the last read, newtons, (n_taxels, 3) or (n, n_taxels, 3), in the frame of the taxel's patch: normal force,
-    /// friction, and the lateral force of an inclined contact.
+    /// Force of the bodies on each taxel after the last read, newtons, (n_taxels, 3) or (n, n_taxels, 3), in the frame of the taxel's patch. It is the sum
+    /// of the normal force, the friction, and the lateral force of an inclined contact.
     #[getter]
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let rows = to_rows(py, self.forces.iter().copied());

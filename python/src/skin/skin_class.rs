@@ -406,7 +406,7 @@ impl Skin {
     /// Presses one patch under each object within reach, and writes the largest deflections into the frame of zeros. The poses of the bodies in the frame
     /// of the patch, after the travel, are in `placed` afterwards. Returns whether a body is within reach.
     ///
-    /// If the call has a state of shear springs, the frame comes from a press under all bodies together, and only requested results of pairs are computed.
+    /// If the call has a state of shear springs, the frame comes from a press under all bodies together. Only requested results of pairs are then computed.
     fn press_pairs(
         &self,
         (index, number): (usize, usize),

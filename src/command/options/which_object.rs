@@ -1,4 +1,4 @@
-//! Object for which a command is run: a mesh file or a built-in object; its packing, with a progress display.
+//! Object for which a command is run: a mesh file or a built-in object. The object is packed with a progress display.
 
 use crate::command::options::unused::check_used;
 use crate::command::terminal::streams::note;

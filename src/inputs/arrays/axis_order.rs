@@ -1,8 +1,8 @@
 //! Axis order of recorded frames: touches, time, and positions on the skin.
 //!
-//! An order is a string with one letter per axis of the file: `n` touches, `t` frames of a touch, `y` rows, and `x` columns. If the order
-//! contains `y` and `x`, `c` is the axis of a taxel's values: each kind of value has rows and columns of its own. Otherwise `c` is the axis of the taxels of a skin without rows and columns. Several axes `c`
-//! without `y` and `x` are combined to one axis of taxels.
+//! An order is a string with one letter per axis of the file: `n` touches, `t` frames of a touch, `y` rows, and `x` columns. If the order contains `y` and
+//! `x`, `c` is the axis of a taxel's values; each kind of value has its own rows and columns. Otherwise `c` is the axis of the taxels of a skin without
+//! rows and columns. Several axes `c` without `y` and `x` are combined to one axis of taxels.
 
 use crate::error::{Error, Result};
 use crate::inputs::units::{MAX_FRAMES, MAX_SIDE};

@@ -205,7 +205,7 @@ impl LayoutFile {
         Self::new(place, taxels, &rows)
     }
 
-    /// Returns the default radius of the taxels, metres: half the median distance from a taxel to its nearest neighbour, or 1 mm for a single taxel.
+    /// Returns the default radius of the taxels, metres. It is half the median distance from a taxel to its nearest neighbour, or 1 mm for a single taxel.
     pub fn default_radius(&self) -> f64 {
         let centers = self.layout.centers();
         let nearest = |one: &DVec3| {

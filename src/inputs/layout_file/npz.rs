@@ -13,7 +13,7 @@ use ndarray_npy::{NpzWriter, WriteNpzError};
 use std::io::Cursor;
 use std::path::Path;
 
-/// Names of the arrays. The first name of a row is the name that is written; the reader accepts all names of the row.
+/// Names of the arrays of a layout file: one row per array. The reader accepts all names of a row; the writer uses the first name.
 const NAMES: [&[&str]; 5] = [
     &["positions", "position", "points", "centers", "xyz"],
     &["normals", "normal", "axes"],

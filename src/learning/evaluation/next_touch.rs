@@ -95,7 +95,7 @@ pub struct AnswerModel<'a> {
     answered: Vec<Vec<(usize, usize)>>,
     /// Bandwidth of each pose axis, in units of the axis range.
     bandwidths: Vec<f64>,
-    /// Weight of the prior, as a number of touches: the label frequencies over all poses count as much as this number of touches near the pose.
+    /// Weight of the prior, as a number of touches. The label frequencies over all poses count as much as this number of touches near the pose.
     strength: f64,
 }
 
@@ -202,7 +202,7 @@ impl PoseAnswers {
     }
 
     /// Updates the belief (the probability of each object) by Bayes' rule after the label `answer` is observed.
-    pub fn believe(&self, belief: &mut Array1<f64>, answer: usize) {
+    pub fn update_belief(&self, belief: &mut Array1<f64>, answer: usize) {
         *belief *= &self.given.column(answer);
         *belief /= belief.sum();
     }
@@ -223,7 +223,7 @@ pub fn most_informative(
     let n_objects = poses[left[0]].given.nrows();
     let mut belief = Array1::from_elem(n_objects, 1.0 / n_objects as f64);
     for &touch in made {
-        poses[touch].believe(&mut belief, answers[touch]);
+        poses[touch].update_belief(&mut belief, answers[touch]);
     }
     first_greatest(left.iter().map(|&touch| poses[touch].information(&belief)))
 }

@@ -187,7 +187,7 @@ impl Panel<'_> {
         self.frame.at(place.x, place.y)
     }
 
-    /// Returns the radius and colour of markers that are not on the Pareto front: paler if a front is drawn, smaller if there are many points.
+    /// Returns the radius and colour of markers that are not on the Pareto front. They are paler if a front is drawn, and smaller if there are many points.
     fn behind(&self, colour: Rgb) -> (f64, Rgb) {
         let radius = match self.view.places.len() > MANY {
             true => 0.55 * MARKER_RADIUS,

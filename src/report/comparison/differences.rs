@@ -131,8 +131,8 @@ struct Settings<'a> {
 }
 
 impl<'a> Settings<'a> {
-    /// Groups the rows of a table by their setting. Returns `None` if the table identifies configurations by numbers, which differ between runs, or if several
-    /// rows of a table without trials have the same setting.
+    /// Groups the rows of a table by their setting. Returns `None` if the table identifies configurations by numbers, because numbers differ between runs.
+    /// Also returns `None` if several rows of a table without trials have the same setting.
     fn new(table: &'a Table) -> Option<Self> {
         let columns = Setting::of_roles(table, &[Role::Choice, Role::Condition, Role::Subject]);
         let columns = columns.filter(|one| one.column.name != "trial");

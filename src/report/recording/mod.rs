@@ -1,8 +1,8 @@
 //! Recordings: skin readings over time, written frame by frame to an `.npz` file that NumPy opens.
 //!
-//! [`RecordingWriter`] receives the frames of a scene and writes a zip file of `.npy` members, stored without compression, as ZIP64 if
-//! necessary; `np.load(path)` opens it without pickle. Only a block of rows is in memory: earlier blocks are stored in an unnamed temporary file until the
-//! recording is complete. [`RecordingFile`] reads a recording row by row.
+//! [`RecordingWriter`] receives the frames of a scene and writes a zip file of `.npy` members. The members are stored without compression, as ZIP64 if
+//! necessary. `np.load(path)` opens the file without pickle. Only a block of rows is in memory: earlier blocks are stored in an unnamed temporary file
+//! until the recording is complete. [`RecordingFile`] reads a recording row by row.
 //!
 //! | member | shape | holds |
 //! |---|---|---|

@@ -142,8 +142,8 @@ impl RecordingFile {
     }
 }
 
-/// Opens an archive member and reads its header; returns the member and its number of rows. This number is computed from the size in the zip directory and must
-/// agree with the header, so no memory is allocated for a wrong header. An error describes a missing or invalid member.
+/// Opens an archive member and reads its header; returns the member and its number of rows. This number is computed from the size in the zip directory and
+/// must agree with the header. No memory is therefore allocated for a wrong header. An error describes a missing or invalid member.
 fn open_rows<'a>(
     archive: &'a mut ZipArchive<BufReader<File>>,
     member: &Member,

@@ -1,9 +1,9 @@
 //! Projection of a skin to a plane, which gives the position of each taxel in the picture.
 //!
-//! Flat skins are seen from above. Cylinders are unrolled. Parts of spheres are flattened about their middle with true distances from it (azimuthal equidistant
-//! projection). A skin is detected as a cylinder or sphere if its rest centres p and axes n satisfy p = c + R n (for a cylinder, without the axial parts). Any
-//! other skin is seen along the mean of its axes or, if there is none, on its broad side. If some taxels face away, the picture also shows the view from
-//! behind.
+//! Flat skins are seen from above. Cylinders are unrolled. Parts of spheres are flattened about their middle with true distances from it (azimuthal
+//! equidistant projection). A skin is detected as a sphere if its rest centres p and axes n satisfy p = c + R n. It is detected as a cylinder if this holds
+//! without the axial parts. Any other skin is seen along the mean of its axes or, if there is none, on its broad side. If some taxels face away, the
+//! picture also shows the view from behind.
 
 use crate::table::short_number;
 use glam::{DMat3, DVec2, DVec3};

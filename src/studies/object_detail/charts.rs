@@ -8,7 +8,7 @@ use crate::table::{ChartSpec, Table, short_number};
 type Named = (&'static str, &'static str, &'static str);
 
 /// Chart axes that show deflection errors.
-const FELT: [Named; 2] = [
+const DEFLECTION_ERRORS: [Named; 2] = [
     (
         "deflection_error",
         "Error of what the skin feels",
@@ -56,7 +56,11 @@ const LEARNED: [Named; 2] = [
 impl ObjectDetailStudy {
     /// Returns charts of the deflection error by cost. If classifiers were trained, charts of their accuracy follow.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        let by_cost = [(FELT, SPHERES), (FELT, TIME), (SURFACE, SPHERES)];
+        let by_cost = [
+            (DEFLECTION_ERRORS, SPHERES),
+            (DEFLECTION_ERRORS, TIME),
+            (SURFACE, SPHERES),
+        ];
         let errors = by_cost.into_iter().flat_map(|(errors, (by, of, x))| {
             errors.map(|(name, words, y)| {
                 let (name, title) = (format!("{name}_by_{by}"), format!("{words} by {of}"));

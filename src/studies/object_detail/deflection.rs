@@ -183,10 +183,10 @@ impl Truth {
 }
 
 impl Reading {
-    /// Returns |δ − δ\*| in metres for each touched taxel, where δ is the deflection by the model and δ\* by the mesh. The slice `felt` contains the
+    /// Returns |δ − δ\*| in metres for each touched taxel, where δ is the deflection by the model and δ\* by the mesh. The slice `deflection` contains the
     /// deflections δ, metres, shape (n_taxels,).
-    pub fn errors<'a>(&'a self, felt: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let pairs = felt.iter().zip(&self.deflections);
+    pub fn errors<'a>(&'a self, deflection: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let pairs = deflection.iter().zip(&self.deflections);
         let touched = pairs.filter(|(model, mesh)| **model > 0.0 || **mesh > 0.0);
         touched.map(|(model, mesh)| (model - mesh).abs())
     }

@@ -46,8 +46,8 @@ const DETAIL: File<(DetailConfiguration, DetailScore)> =
 const SUMMARY: File<DetailSummary> = File::new(
     "object_detail_summary.csv",
     "Models over all objects",
-    "Medians and quartiles over objects; deflection errors are means over touched taxels of |deflection − that of the exact mesh|, after \
-     offset with the best constant depth taken off.",
+    "Medians and quartiles over objects. Deflection errors are means of |deflection − deflection of the exact mesh| over touched taxels; \
+     errors after offset are without the best constant depth.",
 )
 .summary();
 const TIMING: File<(DetailConfiguration, DetailTime)> =

@@ -146,8 +146,8 @@ pub struct EnsembleStatistics {
     /// Median deviation over all drawn sets of atoms (supports). The deviation is max(1 − σ²_min, σ²_max − 1) for the smallest and largest singular value of
     /// the matrix of a set's measured atoms.
     deviation_median: f64 => Value(Less) "median deviation": Linear;
-    /// Largest deviation max(1 − σ²_min, σ²_max − 1) over all drawn sets of atoms; σ_min, σ_max: singular values of a set's measured atoms. The value is a
-    /// lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
+    /// Largest deviation max(1 − σ²_min, σ²_max − 1) over all drawn sets of atoms. σ_min and σ_max are singular values of a set's measured atoms. The value
+    /// is a lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
     delta_lower_bound: f64 => Value(Less) "lower bound of δ": Linear;
 } }
 

@@ -176,7 +176,7 @@ fn integrator(
                 },
                 _ => RapierSettings {
                     solver_iterations: n,
-                    ..RapierSettings::as_it_comes(system)
+                    ..RapierSettings::with_engine_defaults(system)
                 },
             };
             Ok(Box::new(RapierWorld::new(system, settings)?))
@@ -188,27 +188,27 @@ fn integrator(
 
 /// Computes the equilibrium of one free ball, or of several balls stacked in a tube, by the quasi-static method. The balls may rotate and move sideways.
 fn put_to_rest(scene: &ConfigurationScene, mass: f64, n_balls: usize) -> Result<Answer> {
-    let cradle = &scene.cradle;
-    let spheres = cradle.ball.spheres().expect("a ball is a sphere");
+    let test_bed = &scene.test_bed;
+    let spheres = test_bed.ball.spheres().expect("a ball is a sphere");
     let ball = FreeObject::new(spheres, mass, DVec3::ZERO)?;
-    let skin = PlacedSkin::new(&cradle.patch, Pose::IDENTITY);
+    let skin = PlacedSkin::new(&test_bed.patch, Pose::IDENTITY);
     let gravity = -GRAVITY * DVec3::Z;
     let planes = match n_balls {
         1 => Vec::new(),
-        _ => cradle.tube(),
+        _ => test_bed.tube(),
     };
     let ground = Ground {
         skins: vec![skin],
         planes,
         ..Ground::default()
     };
-    let starts: Vec<Pose> = cradle.stack(n_balls).collect();
+    let starts: Vec<Pose> = test_bed.stack(n_balls).collect();
     let balls = vec![ball; n_balls];
     let balances = EquilibriumSolver::new().solve_all(&balls, &ground, gravity, &starts)?;
     let mut workspace = Workspace::new();
     let poses: Vec<Pose> = balances.iter().map(|balance| balance.pose).collect();
-    let models = vec![cradle.ball.clone(); n_balls];
-    press_at_pose(&cradle.patch, &models, &poses, &mut workspace);
+    let models = vec![test_bed.ball.clone(); n_balls];
+    press_at_pose(&test_bed.patch, &models, &poses, &mut workspace);
     let imbalances = balances.iter().map(|balance| match balance.outcome {
         EquilibriumOutcome::AtRest => balance.imbalance,
         _ => f64::INFINITY,
@@ -222,15 +222,15 @@ fn put_to_rest(scene: &ConfigurationScene, mass: f64, n_balls: usize) -> Result<
 
 /// Lowers a ball that moves only vertically until the taxels' springs carry its weight, by the quasi-static method.
 fn press_to_weight(scene: &ConfigurationScene) -> Result<Answer> {
-    let (cradle, weight) = (&scene.cradle, scene.force);
-    let ball = from_ref(&cradle.ball);
+    let (test_bed, weight) = (&scene.test_bed, scene.force);
+    let ball = from_ref(&test_bed.ball);
     let above = [Pose::from_translation(
-        cradle.pose.translation + 1e-3 * DVec3::Z,
+        test_bed.pose.translation + 1e-3 * DVec3::Z,
     )];
     let mut workspace = Workspace::new();
-    let approach = Approach::new(&cradle.patch, DVec3::Z)?;
+    let approach = Approach::new(&test_bed.patch, DVec3::Z)?;
     let press = approach.press_to_force(ball, &above, weight, &mut workspace)?;
-    let carried = spring_load(&cradle.patch, workspace.contacts()).spring_force;
+    let carried = spring_load(&test_bed.patch, workspace.contacts()).spring_force;
     Ok(Answer {
         force_imbalance: press.map_or(f64::INFINITY, |_| (carried / weight - 1.0).abs()),
         deflection: workspace.deflections().to_vec(),
@@ -244,7 +244,7 @@ fn press_and_release(
     scene: &ConfigurationScene,
     plan: &VelocityPlan,
 ) -> Answer {
-    let (dt, patch) = (configuration.dt_s, &scene.cradle.patch);
+    let (dt, patch) = (configuration.dt_s, &scene.test_bed.patch);
     let frames = scene.frames(dt);
     let mut state = DamperState::at_rest(patch.n_taxels());
     let mut workspace = Workspace::new();
@@ -254,7 +254,12 @@ fn press_and_release(
     };
     for step in 1..=answer.n_steps {
         let pose = plan.pose_at(step as f64 * dt);
-        press_at_pose(patch, from_ref(&scene.cradle.ball), &[pose], &mut workspace);
+        press_at_pose(
+            patch,
+            from_ref(&scene.test_bed.ball),
+            &[pose],
+            &mut workspace,
+        );
         state.step(patch.taxels(), dt, workspace.deflections());
         if step == frames[0] {
             let force: f64 = state.force.iter().sum();

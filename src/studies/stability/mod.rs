@@ -3,9 +3,9 @@
 //! A file with a `[stability]` table is a stability study: [`StabilityStudySpec`] (as written) → [`StabilityPlan`] (checked, SI) →
 //! [`run_whole`](crate::studies::study::run_whole) → [its tables](rows).
 //!
-//! A ball is lowered onto a square array whose taxels it touches nearly at once (all within a quarter of their stroke), in one of five
-//! [scenes](StabilityScene). In two scenes, two or four balls are stacked in a smooth tube. Without friction, a free stack has no stable upright state. In the
-//! tube, the taxels carry the whole weight and the walls carry nothing.
+//! In each of five [scenes](StabilityScene), a ball is lowered onto a square array. The ball touches all taxels within a quarter of their stroke. In two
+//! scenes, two or four balls are stacked in a smooth tube. Without friction, a free stack has no stable upright state. In the tube, the taxels carry the
+//! whole weight and the walls carry nothing.
 //!
 //! In every scene, the exact result is known at one time without time stepping. Either the motion of the ball determines the deflections, or the springs carry
 //! the weight. Each method is evaluated at this time:

@@ -40,7 +40,7 @@ pub(super) struct TestBed {
 /// Scene of a configuration; it does not depend on the simulation method.
 #[derive(Clone, Debug)]
 pub(super) struct ConfigurationScene {
-    pub cradle: TestBed,
+    pub test_bed: TestBed,
     pub taxel: Taxel,
     /// Motion of the ball: an imposed motion, or free motion under gravity.
     pub drive: Drive,
@@ -81,7 +81,7 @@ impl TestBed {
         let innermost = DVec3::new(0.5 * grid.pitch, 0.5 * grid.pitch, 0.0).length_squared();
         let lift = reach - 0.25 * taxel.stroke * innermost / corner;
         Ok(Self {
-            patch: Patch::new("cradle", layout, Taxels::Equal(taxel))?,
+            patch: Patch::new("test_bed", layout, Taxels::Equal(taxel))?,
             ball: ball.into(),
             pose: Pose::from_translation(lift * DVec3::Z),
         })
@@ -141,20 +141,20 @@ impl TestBed {
 impl ConfigurationScene {
     /// Creates the scene of a configuration, given the taxel parameters without a damper.
     pub fn new(configuration: &StabilityConfiguration, undamped: Taxel) -> Result<Self> {
-        let cradle = TestBed::new(configuration.taxels, undamped)?;
+        let test_bed = TestBed::new(configuration.taxels, undamped)?;
         let mut scene = match configuration.object_mass_kg {
-            Some(mass) => Self::of_free(configuration, cradle, undamped, mass)?,
-            None => Self::of_imposed(configuration, cradle, undamped)?,
+            Some(mass) => Self::of_free(configuration, test_bed, undamped, mass)?,
+            None => Self::of_imposed(configuration, test_bed, undamped)?,
         };
-        let layout = scene.cradle.patch.layout().clone();
-        scene.cradle.patch = Patch::new("cradle", layout, Taxels::Equal(scene.taxel))?;
+        let layout = scene.test_bed.patch.layout().clone();
+        scene.test_bed.patch = Patch::new("test_bed", layout, Taxels::Equal(scene.taxel))?;
         Ok(scene)
     }
 
     /// Returns the dynamic system for methods that step through time.
     pub fn system(&self, configuration: &StabilityConfiguration) -> Result<System<'_>> {
         let reach = APPROACH + REACH * self.taxel.stroke;
-        self.cradle.system(configuration, &self.drive, reach)
+        self.test_bed.system(configuration, &self.drive, reach)
     }
 
     /// Returns the step numbers (from 1) after which the state is evaluated: at the evaluation time and at a later end. A step takes `dt` seconds.
@@ -168,7 +168,7 @@ impl ConfigurationScene {
 
     fn of_free(
         configuration: &StabilityConfiguration,
-        cradle: TestBed,
+        test_bed: TestBed,
         taxel: Taxel,
         mass: f64,
     ) -> Result<Self> {
@@ -178,7 +178,7 @@ impl ConfigurationScene {
             travel: 0.0,
         };
         let (k, m) = (taxel.stiffness, configuration.taxel_mass_kg);
-        let system = cradle.system(configuration, &drive, REACH * taxel.stroke)?;
+        let system = test_bed.system(configuration, &drive, REACH * taxel.stroke)?;
         let truth = rest(&system).expect("a free ball over taxels comes to rest");
         let n_touched = truth.deflection.iter().filter(|d| **d > 0.0).count();
         let all = configuration.scene.n_balls() as f64 * mass;
@@ -192,7 +192,7 @@ impl ConfigurationScene {
             .max(DECAY / slowest(k, damping, share))
             .max(LEAST_STEPS * configuration.dt_s);
         Ok(Self {
-            cradle,
+            test_bed,
             truth,
             force: all * GRAVITY,
             judged: end,
@@ -206,7 +206,7 @@ impl ConfigurationScene {
 
     fn of_imposed(
         configuration: &StabilityConfiguration,
-        cradle: TestBed,
+        test_bed: TestBed,
         taxel: Taxel,
     ) -> Result<Self> {
         let (k, m) = (taxel.stiffness, configuration.taxel_mass_kg);
@@ -223,8 +223,8 @@ impl ConfigurationScene {
             angular: DVec3::ZERO,
         };
         let phases = vec![phase(way, -SPEED), phase(hold, 0.0), phase(way, SPEED)];
-        let drive = Drive::Imposed(VelocityPlan::new(cradle.above(), phases)?);
-        let system = cradle.system(configuration, &drive, APPROACH + REACH * taxel.stroke)?;
+        let drive = Drive::Imposed(VelocityPlan::new(test_bed.above(), phases)?);
+        let system = test_bed.system(configuration, &drive, APPROACH + REACH * taxel.stroke)?;
         let travel = APPROACH + depth;
         let starts = system.starts().iter();
         let deflection: Vec<f64> = starts.map(|start| (travel - start).max(0.0)).collect();
@@ -241,7 +241,7 @@ impl ConfigurationScene {
             judged: way + hold,
             end: way + hold + way + hold,
             energy_limit: 4.0 * most,
-            cradle,
+            test_bed,
             taxel: Taxel { damping, ..taxel },
             drive,
         })

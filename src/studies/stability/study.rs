@@ -35,7 +35,7 @@ const TIMING: File<(StabilityConfiguration, StabilityTime)> =
 const JOINTS: File<Joints> = File::new(
     "joints.csv",
     "Taxels on joints",
-    "Plungers on SkinSim's springs and dampers whose taxels carry the same on all arrays. Quasi-static steps nothing: its time is that of the whole answer.",
+    "Plungers on SkinSim's springs and dampers with an equal load per taxel on all arrays. The quasi-static method has no time steps; its time is for the whole solution.",
 )
 .summary()
 .of_times();
@@ -168,7 +168,7 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
 }
 
 /// Minimum number of array sizes, with equal load per taxel, in a series of growing arrays.
-const LEAST_RUNGS: usize = 3;
+const MIN_ARRAY_SIZES: usize = 3;
 
 /// Returns the results of the plunger scene for the load per taxel that was simulated on the most array sizes. Returns no rows if fewer than three array sizes
 /// share a load.
@@ -194,7 +194,7 @@ fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
     };
     let loads = all.iter().map(|row| row.load_kg);
     let most = loads.max_by_key(|&load| n_sizes(load));
-    let most = most.filter(|&load| n_sizes(load) >= LEAST_RUNGS);
+    let most = most.filter(|&load| n_sizes(load) >= MIN_ARRAY_SIZES);
     all.retain(|row| most == Some(row.load_kg));
     all
 }

@@ -2,8 +2,8 @@
 
 use crate::table::{ChartSpec, Mark, Table};
 
-/// Returns the chart of recognition accuracy against the memory of the measurement matrix per taxel, with the Pareto front; returns `None` if the table has no
-/// rows.
+/// Returns the chart of recognition accuracy against the memory of the measurement matrix per taxel, with the Pareto front. Returns `None` if the table has
+/// no rows.
 pub(super) fn memory_chart(recognition: &Table) -> Option<ChartSpec> {
     (recognition.n_rows > 0).then(|| ChartSpec {
         lines: vec!["compression".to_owned()],

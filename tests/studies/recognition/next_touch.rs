@@ -78,7 +78,7 @@ fn a_pose_that_parts_two_objects_tells_one_bit_and_one_that_does_not_nothing() {
         let poses = [useless.clone(), useless.clone(), telling.clone()];
         assert_eq!(most_informative((&poses, &[0, 0, 0]), &[0], &[1, 2]), 1);
         let mut belief = even.clone();
-        telling.believe(&mut belief, 1);
+        telling.update_belief(&mut belief, 1);
         assert!((belief[1] - (1.0 - error)).abs() < 1e-15);
     }
     // Three objects: one pose separates the first from both others, another one separates the second. The current belief determines which pose is more

@@ -1,9 +1,9 @@
 //! Estimation of gains from the readings of taxels relative to the readings of their four neighbours.
 //!
-//! Let dᵢ be the median of ln xᵢ − ¼ Σⱼ ln xⱼ over frames in which all five taxels are well pressed. The pressure under a contact has an equal effect on every
-//! taxel on average, so the differences between taxels are ln gᵢ − ¼ Σⱼ ln gⱼ. The variance of ln g is the variance of d divided by ‖L S‖², the squared norm
-//! of this operator L after the smoothing S (5/4 without smoothing). Medians of even and of odd frames have independent errors, so their covariance over
-//! taxels is the variance of d without the effects of contacts and noise. Gains are log-normal: std² = exp(Var ln g) − 1.
+//! Let dᵢ be the median of ln xᵢ − ¼ Σⱼ ln xⱼ over frames in which all five taxels are well pressed. The pressure under a contact has an equal effect on
+//! every taxel on average, so the differences between taxels are ln gᵢ − ¼ Σⱼ ln gⱼ. Let L be this operator and S the smoothing. The variance of ln g is
+//! the variance of d divided by ‖L S‖² (5/4 without smoothing). Medians of even and of odd frames have independent errors. Their covariance over taxels is
+//! therefore the variance of d without the effects of contacts and noise. Gains are log-normal: std² = exp(Var ln g) − 1.
 
 use super::robust::{jackknife, mean, median};
 use super::{Estimate, RecordedSkin};
@@ -97,7 +97,8 @@ fn covariance(pairs: &[[f64; 2]]) -> f64 {
     mean(products)
 }
 
-/// Returns the squared norm of the operator that smooths a frame and then subtracts the neighbours' mean from a taxel, in the middle of the array.
+/// Returns the squared norm of an operator at a taxel in the middle of the array. The operator smooths a frame and then subtracts the neighbours' mean from
+/// the taxel.
 fn operator_norm((rows, columns): (usize, usize), width: f64) -> f64 {
     let grid = Grid {
         nx: columns,

@@ -10,11 +10,11 @@ use ndarray::Array2;
 /// Smallest reading, as a fraction of the full scale, at which a taxel may be at the end of its stroke. There, the force exceeds the spring force.
 const CLIPPED: f64 = 0.97;
 /// Minimum number of frames for an estimate of the stiffness.
-const FEWEST: usize = 40;
+const MIN_FRAMES: usize = 40;
 /// Smallest reading that the estimate uses if readings are clipped at zero, in standard deviations of the noise.
 const ABOVE_NOISE: f64 = 4.0;
 /// Largest noise standard deviation, relative to full scale, for which the stiffness can be estimated from clipped readings.
-const LITTLE: f64 = 0.03;
+const MAX_CLIPPED_NOISE: f64 = 0.03;
 
 /// Estimates the stiffness of the taxels' springs, N/m. `clipped_noise` is the standard deviation of the noise if readings are clipped at zero, otherwise
 /// `None`.
@@ -30,7 +30,7 @@ pub(super) fn estimate(
         return Estimate::unknown("nothing says how deep the full scale is");
     };
     let noise = clipped_noise.unwrap_or(0.0);
-    if noise > LITTLE {
+    if noise > MAX_CLIPPED_NOISE {
         return Estimate::unknown(
             "readings are clipped at the zero, and noise hides the light ones",
         );
@@ -46,7 +46,7 @@ pub(super) fn estimate(
     // Noise has the smallest effect on the sums of the hardest presses.
     let usual = median(&mut sums.iter().map(|(force, _)| *force).collect::<Vec<_>>());
     let hard: Vec<&(f64, f64)> = sums.iter().filter(|(force, _)| *force >= usual).collect();
-    if hard.len() < FEWEST {
+    if hard.len() < MIN_FRAMES {
         let n = sums.len();
         return Estimate::unknown(format!(
             "only {n} frames have a force and no taxel at its full scale"

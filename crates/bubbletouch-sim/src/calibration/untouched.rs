@@ -1,8 +1,7 @@
 //! Frames without contact: the zero offset of each taxel in runs of frames, even if a converter clips values below zero.
 //!
-//! Let a clipped reading be max(0, z), z ~ N(μ, σ²). If p is the fraction of a run's readings above 0, m their mean, and a = Φ⁻¹(p), then
-//! σ = m / (a p + φ(a)) and μ = a σ (Tobin, Econometrica 26, 1958, by moments). A converter of step q rounds values below q/2 to 0; for it, p
-//! and m refer to z − q/2.
+//! Let a clipped reading be max(0, z), z ~ N(μ, σ²). Let p be the fraction of a run's readings above 0, m their mean, and a = Φ⁻¹(p). Then σ = m / (a p +
+//! φ(a)) and μ = a σ (Tobin, Econometrica 26, 1958, by moments). A converter of step q rounds values below q/2 to 0; for it, p and m refer to z − q/2.
 
 use super::RecordedSkin;
 use super::faults::FoundFaults;

@@ -17,10 +17,10 @@
 //!
 //! ([`is_in_front`]). A press from the front has B = −∞: all spheres with q > 0 count.
 //!
-//! Every layout has its own evaluator of this law, which finds the pairs of taxels and spheres with q > 0 and shares q and h among taxels. The evaluators are
-//! `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), and `reach` (with derivatives). In `whole_body` they are `row_press`
-//! (extrusions), `dome_patch` (rings) and `draped_patch` (tiles). For a mesh the rule is applied to the heights at which the mesh stops a taxel
-//! ([`reaches_front`]).
+//! Every layout has its own evaluator of this law. The evaluator finds the pairs of taxels and spheres with q > 0, and shares q and h among taxels. The
+//! evaluators are `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), and `reach` (with derivatives). In `whole_body` they
+//! are `row_press` (extrusions), `dome_patch` (rings) and `draped_patch` (tiles). For a mesh the rule is applied to the heights at which the mesh stops a
+//! taxel ([`reaches_front`]).
 
 use super::LanesBelow;
 
@@ -34,8 +34,8 @@ pub fn saturation_limit(stroke: f64) -> f64 {
 /// comparisons; if smaller, roots are taken needlessly.
 const ALMOST: f64 = 1.0 - 1e-12;
 
-/// Returns the deflection √q − h that contact with a sphere requires, metres. The height h is along the taxel's axis; q is the squared sum of radii minus the
-/// squared distance from the axis, and must be positive.
+/// Returns the deflection √q − h that contact with a sphere requires, metres. The height h is along the taxel's axis. The argument q is the squared sum of
+/// radii minus the squared distance from the axis; q must be positive.
 #[inline(always)]
 pub(crate) fn deflection(q: f64, height: f64) -> f64 {
     q.sqrt() - height

@@ -10,11 +10,11 @@
 //! On a mesh the taxel stays on its substrate's side of every triangle swept by a ball of radius ρ. The module `swept_triangle` has the
 //! equations for faces, edges and corners.
 //!
-//! **Behind the substrate.** A press to a depth, a travel or a force approaches from the front, and all spheres count at any depth. The deflection of a taxel
-//! of a flat patch therefore never decreases with the depth. At a pose without a path ([`press_at_pose`], [`press_with_contacts`]) and for free objects, a
-//! sphere or a mesh counts until it is wholly behind the substrate. The rule is applied to each taxel separately. The obstacle is behind if a taxel resting on
-//! its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (module `law`). A ball that moves through a skin therefore leaves it taxel by taxel.
-//! In a time loop, and along the path of a press, a part that pushed a taxel in the step before continues to push this taxel.
+//! **Behind the substrate.** A press to a depth, a travel or a force approaches from the front, and all spheres count at any depth. The deflection of a
+//! taxel of a flat patch therefore never decreases with the depth. At a pose without a path ([`press_at_pose`], [`press_with_contacts`]) and for free
+//! objects, a sphere or a mesh counts until it is wholly behind the substrate. The rule is applied to each taxel separately. The obstacle is behind if a
+//! taxel resting on its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (module `law`). A ball that moves through a skin therefore leaves
+//! it taxel by taxel. In a time loop and along a press, a part that pushed a taxel in the previous step continues to push this taxel.
 //!
 //! A taxel that an object would push further than its stroke s is saturated; [`Contact`] counts such taxels.
 //!

@@ -227,7 +227,7 @@ pub fn press_to_travel(
     to_place(patch, placed, TravelGoal::Travel(travel), scratch).unwrap_or_default()
 }
 
-/// Presses a patch until the springs of all taxels together carry `force` newtons, to within a relative 1e-12 or the last bit of the travel.
+/// Presses a patch until the sum of all spring forces equals `force` newtons. The relative error is at most 1e-12, or what rounding of the travel causes.
 ///
 /// Returns `None`, with zero deflections, if the patch meets nothing. The travel of the patch may be negative. The result equals a press to the depth `travel
 /// − first_contact`, where `first_contact` is the travel at first contact.

@@ -13,7 +13,8 @@ pub(crate) struct Sample {
 const HALVED_EACH: usize = 3;
 
 /// Returns the argument at which a function reaches the value `wanted`. The function must be smaller than `wanted` at `low`, and not smaller at `high`. The
-/// search ends within `tolerance` of the value or at the last bit of the argument; if the tolerance is negative, only at the last bit.
+/// search ends within `tolerance` of the value, or when rounding prevents a further step of the argument. With a negative tolerance, only the second
+/// condition ends the search.
 ///
 /// If the function jumps past the value, the side of the jump with the larger function value is returned.
 pub(crate) fn crossing(

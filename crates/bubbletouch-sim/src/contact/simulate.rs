@@ -24,7 +24,7 @@ pub struct Recording {
 
 /// Moves the patch and the objects along their planned motions from t = 0 and records `n_frames` frames. Frame k is recorded at the time (k + 1) dt, seconds.
 ///
-/// A part of an object (sphere or triangle) that pushed a taxel in the previous frame continues to push this taxel, even from behind the substrate.
+/// A sphere or triangle of an object that pushed a taxel in the previous frame continues to push this taxel, even from behind the substrate.
 ///
 /// The list `world_from_objects` contains one plan per object; the plan of a fixed object has no phases. The simulation is stable for any `dt`.
 ///

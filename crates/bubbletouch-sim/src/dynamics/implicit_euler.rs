@@ -67,7 +67,7 @@ impl ImplicitEuler {
     }
 
     /// Computes the deflections that the taxels would have at the end of the time step if they were free.
-    fn let_go(&mut self, system: &System, dt: f64) {
+    fn compute_free_deflections(&mut self, system: &System, dt: f64) {
         let m = system.taxel_mass;
         let taxels = system.patch.taxels();
         for taxel in 0..system.n_taxels() {
@@ -167,7 +167,7 @@ impl ImplicitEuler {
 
 impl Integrator for ImplicitEuler {
     fn step(&mut self, system: &System, dt: f64) {
-        self.let_go(system, dt);
+        self.compute_free_deflections(system, dt);
         let time = self.state.time + dt;
         let travel = match &system.drive {
             Drive::Free { mass, gravity, .. } => self.balance(system, *mass, *gravity, dt),

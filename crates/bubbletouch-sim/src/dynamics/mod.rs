@@ -1,8 +1,8 @@
 //! Dynamics: a skin whose taxels have mass, with common time integrators, as a reference for the quasi-static model.
 //!
-//! A taxel i of mass m moves by `m δ̈ + c δ̇ + k δ = f − s`, where f ≥ 0 is the force of the object and s ≥ 0 the force of the stop at the stroke. The object
-//! is on a **guide**: it moves only along the taxels' common axis, by its travel x. An object of any shape pushes taxel i to the deflection `x − a`, where a is
-//! the travel at first contact with the taxel. The object is either free under gravity, `M ẍ = M g − Σ f`, or its motion is imposed ([`Drive`]).
+//! A taxel i of mass m moves by `m δ̈ + c δ̇ + k δ = f − s`. Here f ≥ 0 is the force of the object, and s ≥ 0 the force of the stop at the stroke. The
+//! object is on a **guide**: it moves only along the taxels' common axis, by its travel x. An object of any shape pushes taxel i to the deflection `x − a`,
+//! where a is the travel at first contact with the taxel. The object is either free under gravity, `M ẍ = M g − Σ f`, or its motion is imposed ([`Drive`]).
 //!
 //! | integrator | contact | damper and spring | breaks |
 //! |---|---|---|---|

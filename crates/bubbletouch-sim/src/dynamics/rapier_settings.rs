@@ -50,7 +50,7 @@ pub enum RapierContacts {
 
 impl RapierSettings {
     /// Returns the engine's default settings, with the stroke as unit of length.
-    pub fn as_it_comes(system: &System) -> Self {
+    pub fn with_engine_defaults(system: &System) -> Self {
         Self {
             solver_iterations: 4,
             sweeps: 1,
@@ -66,7 +66,7 @@ impl RapierSettings {
         Self {
             sweeps: 10,
             contacts: RapierContacts::Hard,
-            ..Self::as_it_comes(system)
+            ..Self::with_engine_defaults(system)
         }
     }
 
@@ -79,7 +79,7 @@ impl RapierSettings {
             joints: RapierJoints::SkinSim {
                 base_mass: skin_sim::BASE_MASS,
             },
-            ..Self::as_it_comes(system)
+            ..Self::with_engine_defaults(system)
         }
     }
 

@@ -1,5 +1,5 @@
-//! Parameters of SkinSim \[SK\], the simulator that the quasi-static model was built to replace. In SkinSim each taxel is a body on a spring-loaded joint in a
-//! dynamics engine, and a plug-in sets spring and damper forces before each step. SkinSim was reported to be unstable near 280 joints.
+//! Parameters of SkinSim \[SK\], the simulator that the quasi-static model was built to replace. In SkinSim, each taxel is a body on a spring-loaded joint
+//! in a dynamics engine. A plug-in sets the spring and damper forces before each step. SkinSim was reported to be unstable near 280 joints.
 
 use crate::world::Taxel;
 

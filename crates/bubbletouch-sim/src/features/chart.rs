@@ -3,8 +3,8 @@
 use glam::DVec2;
 use ndarray::{Array2, ArrayView2};
 
-/// Distance, in pitches, up to which a taxel contributes to a pixel. The largest distance of a point from a taxel is 0.62 on a hexagonal lattice with one
-/// taxel per square pitch, and 0.8 on rings on a sphere. If smaller, images have holes; if larger, images are blurred.
+/// Distance, in pitches, up to which a taxel contributes to a pixel. On a hexagonal lattice with one taxel per square pitch, the largest distance of a
+/// point from a taxel is 0.62. On rings on a sphere it is 0.8. If smaller, images have holes; if larger, images are blurred.
 const NEAR: f64 = 1.0;
 /// Maximum distance, in pitches, from a pixel of the patch to its nearest taxel. Pixels without a taxel within this distance lie beside the patch and are 0.
 const ON_PATCH: f64 = 0.8;

@@ -76,7 +76,7 @@ impl Feature for Descriptors {
 struct Counts {
     fixed: [u32; N_LEVELS],
     relative: [u32; N_LEVELS],
-    /// Numbers of taxels, counted by the smallest level ℓ for which the value is at least the largest value of the image minus ℓ.
+    /// Histogram of the taxels by their distance from the largest value of the image, in steps of the fixed levels; index N_LEVELS − ℓ counts distance ℓ.
     behind: [u32; N_LEVELS],
     /// Sum of the squared values of the image.
     squares: f64,

@@ -54,7 +54,7 @@ impl Foreign {
     /// Returns the identity with this name and version.
     ///
     /// # Errors
-    /// If features of this crate have the name. If the name or the version does not consist of 1 to 64 of the letters A to Z, a to z, 0 to 9, `_`, `-` and `.`.
+    /// If features of this crate have the name. If the name or the version does not consist of 1 to 64 letters (A–Z, a–z), digits, `_`, `-` and `.`.
     pub fn new(name: &str, version: &str) -> Result<Self> {
         let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "_-.".contains(letter);
         let is_word =
@@ -99,10 +99,10 @@ impl Foreign {
 
     /// Provides the code of these features until the returned value is dropped. Studies that this thread loads meanwhile may use the name alone.
     #[must_use = "the features are provided until the value is dropped"]
-    pub fn provide(self, features: Arc<dyn ForeignFeatures>) -> Provided {
+    pub fn provide(self, features: Arc<dyn ForeignFeatures>) -> CodeGuard {
         lock(&self.0.provided).push(features.clone());
         GIVEN.with_borrow_mut(|given| given.push(self));
-        Provided {
+        CodeGuard {
             foreign: self,
             features,
             of_thread: PhantomData,
@@ -200,15 +200,15 @@ impl fmt::Display for Foreign {
     }
 }
 
-/// Provision of the code of features; dropping the value ends it.
-pub struct Provided {
+/// Guard that makes user-defined feature code available to studies until the guard is dropped.
+pub struct CodeGuard {
     foreign: Foreign,
     features: Arc<dyn ForeignFeatures>,
     /// Marker that prevents the value from leaving the thread that created it.
     of_thread: PhantomData<*const ()>,
 }
 
-impl Drop for Provided {
+impl Drop for CodeGuard {
     fn drop(&mut self) {
         let mut provided = lock(&self.foreign.0.provided);
         let place = provided

@@ -58,7 +58,7 @@ mod tests {
         out
     }
 
-    /// Compares a tilted copy with the frame of the tilted surface where both are touched. The two frames are equal up to an offset, which is 0 if the
+    /// Compares a tilted copy with the frame of the tilted surface where both are touched. The two frames are equal up to an offset. The offset is 0 if the
     /// foremost point of the tilted surface was already touched before the tilt.
     #[test]
     fn a_copy_is_the_frame_of_the_tilted_surface_where_that_was_touched() {

@@ -62,7 +62,7 @@ pub fn read_to_string(path: &Path) -> io::Result<String> {
     Ok(text)
 }
 
-/// Returns an error if a file has been downloaded as a pointer of Git LFS instead of its content; `place` is the name of the file, and `bytes` its beginning.
+/// Returns an error if a file is a Git LFS pointer instead of the content. `place` is the name of the file, and `bytes` its beginning.
 ///
 /// # Errors
 /// If the bytes are a pointer of Git LFS.

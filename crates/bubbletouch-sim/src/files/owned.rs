@@ -111,7 +111,7 @@ impl OwnedFiles {
     /// The names of charts depend on the results. In a folder without a manifest, any existing picture is therefore an error.
     ///
     /// # Errors
-    /// If a file was not written by the program, is a link, or is an input; or if a picture exists that the program did not write.
+    /// If a file was not written by the program, is a link, or is an input. If a picture exists that the program did not write.
     pub fn check_results<'a>(&self, tables: impl IntoIterator<Item = &'a str>) -> Result<()> {
         self.check(["study.toml", "report.html"])?;
         self.check(tables)?;

@@ -115,8 +115,9 @@ impl Bvh {
         });
     }
 
-    /// Visits each triangle of another mesh whose bounding box, after a rotation and a translation (metres), is within `margin` metres of the bounding box of a
-    /// triangle of this mesh. The visited triangles may also include others. The order is that of the other tree.
+    /// Visits each triangle of another mesh that can be within `margin` metres of this mesh. The other mesh is first rotated and translated (metres). A
+    /// triangle is visited if the bounding boxes of the triangle and of a triangle of this mesh are within `margin`. More triangles may be visited.
+    /// Triangles are visited in the order of the other mesh's tree.
     pub fn each_near(
         &self,
         other: &Self,

@@ -1,7 +1,7 @@
-//! Faces, edges and corners of a mesh: on which of them the point nearest to a given point lies.
+//! Faces, edges and corners of a mesh, and the conditions under which the nearest point of the mesh lies on one of them.
 //!
-//! The point of a mesh nearest to a point c lies on a face if the foot of c is inside the face. It lies on an edge or at a corner, with d the unit vector
-//! from there to c, if no adjacent part is nearer:
+//! The point of a mesh nearest to a point c lies on a face if the foot of c is inside the face. The nearest point lies on an edge or at a corner if no
+//! adjacent part is nearer. Let d be the unit vector from the nearest point to c:
 //!
 //! | part | condition |
 //! |---|---|
@@ -20,8 +20,9 @@ use std::ops::Range;
 /// Largest cosine that counts as zero in the conditions above. If larger, parts that are not nearest are kept; if smaller, rounding can lose the nearest
 /// point on the boundary between two parts.
 const FLAT: f64 = 1e-9;
-/// Smallest angle between the normals of two faces at a crease, radians (30°, the usual limit of smooth shading). If larger, a corner that stands on a floor and at a
-/// wall has one contact, whose faces share the force; if smaller, a corner that slides over a finely triangulated surface loses its multiplier more often.
+/// Smallest angle between the normals of two faces at a crease, radians (30°, the usual limit of smooth shading). If larger, a corner that stands on a
+/// floor and at a wall has a single contact, in which floor and wall share the force. If smaller, a corner that slides over a finely triangulated surface
+/// loses its multiplier more often.
 pub(crate) const CREASE: f64 = std::f64::consts::FRAC_PI_6;
 
 /// Parts of a mesh that objects can touch; vertices with equal coordinates are one corner.
@@ -38,7 +39,7 @@ pub struct MeshFeatures {
     /// Unit vectors in the adjacent faces of each edge, perpendicular to the edge and into the face.
     sides: Lists<DVec3>,
     faces: Vec<Face>,
-    /// For each part, the number of the part that stands for its smooth patch.
+    /// For each part, the number of the part that represents its smooth patch.
     patches: Vec<u32>,
     normals: Pseudonormals,
     is_closed: bool,
@@ -273,8 +274,8 @@ impl MeshFeatures {
         }
     }
 
-    /// Returns the number that stands for the smooth patch of a part. A smooth patch consists of faces that are connected over edges without a crease, and of
-    /// the edges and corners that only these faces have. An edge or a corner of several patches stands for itself.
+    /// Returns the number of the part that represents the smooth patch of `part`. A smooth patch consists of faces that are connected over edges without a
+    /// crease, and of the edges and corners that only these faces have. An edge or a corner of several patches represents itself.
     pub fn smooth_patch(&self, part: u32) -> u32 {
         self.patches[part as usize]
     }
@@ -316,7 +317,7 @@ impl MeshFeatures {
     }
 }
 
-/// Returns, for each part, the number of the part that stands for its smooth patch ([`MeshFeatures::smooth_patch`]).
+/// Returns, for each part, the number of the part that represents its smooth patch ([`MeshFeatures::smooth_patch`]).
 fn smooth_patches(faces: &[Face], n_corners: usize, n_edges: usize) -> Vec<u32> {
     let mut of_edge: Vec<(u32, u32)> = faces
         .iter()
@@ -359,7 +360,7 @@ fn smooth_patches(faces: &[Face], n_corners: usize, n_edges: usize) -> Vec<u32> 
     patches
 }
 
-/// Returns the first face of the patch to which a face belongs, and shortens the way to it.
+/// Returns the first face of the patch to which a face belongs (union-find with path halving).
 fn root(first: &mut [u32], mut face: u32) -> u32 {
     while first[face as usize] != face {
         first[face as usize] = first[first[face as usize] as usize];

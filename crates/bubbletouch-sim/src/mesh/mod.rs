@@ -20,11 +20,10 @@
 //!
 //! # The solid of a mesh
 //!
-//! A point x is in the solid of a mesh if its winding number exceeds one half. If every edge has equally many faces in both
-//! directions, this number is an integer, and counting the crossings of a ray gives it exactly (`crossings`). The solid of closed parts that
-//! overlap is then their union. A part that faces inwards is a cavity in the part around it. Faces that coincide
-//! back to back cancel. On a mesh with holes the generalised winding number \[GWN\] is used, summed over a
-//! tree of dipoles \[FWN\], with an error of about 0.1.
+//! A point x is in the solid of a mesh if its winding number exceeds one half. If every edge has equally many faces in both directions, this number is an
+//! integer. Counting the crossings of a ray then gives the exact number (`crossings`). The solid of closed parts that overlap is then their union. A part
+//! that faces inwards is a cavity in the part around it. Faces that coincide back to back cancel. On a mesh with holes the generalised winding number
+//! \[GWN\] is used, summed over a tree of dipoles \[FWN\], with an error of about 0.1.
 //!
 //! Readers do not repair meshes. [`TriangleMesh::with_holes_closed`] closes holes, [`TriangleMesh::turned_outwards`] turns triangles.
 

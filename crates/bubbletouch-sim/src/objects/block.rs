@@ -239,8 +239,8 @@ impl Face {
         }
     }
 
-    /// Places balls on a grid of equal cells in the middle of the face, beside a border of width `covered`. `left` are the half sides of the grid, metres.
-    /// The smallest balls, which are the outermost, determine the number of cells.
+    /// Places balls on a grid of equal cells in the middle of the face, inside a border of width `covered` (metres). `left` contains the half sides of the
+    /// grid, metres. The smallest balls, which are the outermost, determine the number of cells.
     fn pack_grid(&self, covered: f64, left: [f64; 2], fit: Fit, spheres: &mut Vec<Sphere>) {
         let largest = (0.5 * fit.disc_squared(self.depth)).sqrt();
         let mut counts = left.map(|l| (l / largest).ceil());

@@ -1,9 +1,9 @@
 //! Packing of solids from which shapes are subtracted (cuts).
 //!
-//! The surface of A minus B consists of a part of A's surface and a part of B's surface. The two surfaces are divided into cells. A cell is halved until it is
-//! proved to lie in an empty ball, to lie in a solid ball, or to be covered by one sphere. In the first two cases the cell contains no surface. The depth
-//! inside A minus B is the minimum of the depth in A and the distance from B. A ball of this radius therefore lies inside, and after enlargement it reaches
-//! outside by at most the enlargement.
+//! The surface of A minus B consists of a part of A's surface and a part of B's surface. The two surfaces are divided into cells. A cell is halved until it
+//! is proved to lie in an empty ball, to lie in a solid ball, or to be covered by one sphere. In the first two cases the cell contains no surface. The
+//! depth inside A minus B is the minimum of the depth in A and the distance from B. A ball of this radius therefore lies inside, and after enlargement it
+//! reaches outside by at most the enlargement.
 //!
 //! A cut that ends exactly at the surface of a part would leave a membrane of zero thickness that passes all tests. Cuts are therefore
 //! enlarged by [`GROWTH`], and walls thinner than this beside a cut are lost.

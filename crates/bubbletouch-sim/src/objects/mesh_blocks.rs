@@ -1,10 +1,10 @@
 //! Triangles of a mesh in blocks of sixteen, with a tree of nodes with sixteen children. The tree is searched for the triangles that taxels of a grid touch.
 //!
-//! A ball of radius ρ that touches the mesh at a point p has its centre at p + ρ d, where the unit vector d is a *direction of contact*. On a face, d is the
-//! normal n of the face. On an edge, d is a vector between the normals of the two faces. On a corner, d is a vector among the normals of the faces around the
-//! corner. The `spread` of a triangle is the largest distance |d − n| between a direction of contact and the normal of the triangle. The spread covers the
-//! face, and the edges and corners that belong to the triangle. A node has an `axis` and a spread that contain the directions of all its triangles. The centres
-//! of balls in contact are thereby bounded far more tightly than by boxes enlarged by ρ.
+//! A ball of radius ρ that touches the mesh at a point p has its centre at p + ρ d. The unit vector d is a *direction of contact*. On a face, d is the
+//! normal n of the face. On an edge, d is a vector between the normals of the two faces. On a corner, d is a vector among the normals of the faces around
+//! the corner. The `spread` of a triangle is the largest distance |d − n| between a direction of contact and the normal of the triangle. The spread covers
+//! the face, and the edges and corners that belong to the triangle. A node has an `axis` and a spread that contain the directions of all its triangles. The
+//! centres of balls in contact are thereby bounded far more tightly than by boxes enlarged by ρ.
 //!
 //! For contact from the other side of the surface, all directions are reversed. A concave edge is touched from the other side only.
 //!
@@ -66,8 +66,9 @@ pub(crate) struct Block {
     pub normal: [Lane; 3],
     /// Largest distances of the directions of contact from the normals.
     pub spread: Lane,
-    /// Bits of the sides beyond which a triangle can stop balls: the side or a corner of the side is evaluated for the triangle. Bit [`ALL_SIDES`] + k is for
-    /// side k; bit [`OUTER_SIDES`] + k and [`INNER_SIDES`] + k are for contact from the side of the normal and from the other side, if the directions are certain.
+    /// Bits of the sides beyond which a triangle can stop balls: the side or a corner of the side is evaluated for the triangle. Bit [`ALL_SIDES`] + k is
+    /// for side k. If the directions are certain, bit [`OUTER_SIDES`] + k is for contact from the side of the normal, and bit [`INNER_SIDES`] + k for
+    /// contact from the other side.
     pub sides: [u32; LANES],
     /// Index of the first triangle; the triangles of the other lanes follow.
     pub first: u32,

@@ -35,13 +35,14 @@ struct Data {
 pub struct ContactFace {
     /// Unit normal of the triangle; zero if the triangle is too thin.
     pub normal: DVec3,
-    /// Largest distance of a direction of contact from the normal, for the face, its own edges and its own corners; 2 if the directions are unknown.
+    /// Largest distance of a direction of contact from the normal, over the face, its own edges and its own corners. The value is 2 if the directions are
+    /// unknown.
     pub spread: f64,
-    /// For each side, the largest distance beyond the side of a ball's centre in contact with the triangle, as a multiple of the ball's radius, relative to the
-    /// side moved by the radius along the normal; 2 if the directions are unknown.
+    /// For each side, the largest distance beyond the side at which the centre of a touching ball can be, in units of the ball's radius. The distance is
+    /// measured from the side moved by the radius along the normal. The value is 2 if the directions are unknown.
     pub side_spread: [f32; 3],
-    /// Bits for the edges and corners with which contact is evaluated for this triangle: bit k for the side from corner k to the next corner, bit 3 + k for
-    /// corner k, and bit 6 + k if corner k belongs to this triangle (and not to another triangle with the same corner).
+    /// Bits for the edges and corners with which contact is evaluated for this triangle. Bit k is for the side from corner k to the next corner, bit 3 + k
+    /// for corner k. Bit 6 + k is set if corner k belongs to this triangle, and not to another triangle with the same corner.
     ///
     /// A side is evaluated if it belongs to this triangle (not to the neighbouring triangle), and the two triangles do not lie in one plane. A corner is evaluated
     /// if it belongs to this triangle, and the triangles around the corner do not lie in one plane.
@@ -244,8 +245,8 @@ impl ContactFace {
     /// Sets the spreads of the triangle and of its sides. `around` contains, for each corner, the largest distance of a normal around the corner from the normal of
     /// the triangle that owns the corner.
     ///
-    /// A direction of contact with side k is n cos φ + o sin φ with the outward direction o of the side in the plane of the triangle. With s = |d − n|, the
-    /// centre of the ball is therefore at most ρ (s o·o' + s²/2) beyond a side with the outward direction o'.
+    /// A direction of contact with side k is n cos φ + o sin φ. Here o is the outward direction of the side in the plane of the triangle. With s = |d − n|,
+    /// the centre of the ball is therefore at most ρ (s o·o' + s²/2) beyond a side with the outward direction o'.
     fn measure_spread(&mut self, triangle: &Triangle, around: [f64; 3]) {
         let corners = triangle.0;
         let outward = [0, 1, 2].map(|side| {

@@ -172,8 +172,8 @@ impl SurfacePatch {
     }
 
     /// Creates the cell between two corners of the parameter rectangle, and computes its bulge. A map differs from its bilinear interpolant at the corners
-    /// by at most Σ a² |f''| / 8, summed over the two sides a with the second derivatives f'' along them. The interpolant lies in the convex hull of the
-    /// corners.
+    /// by at most Σ a² |f''| / 8. The sum is over the two sides a, with the second derivatives f'' along them. The interpolant lies in the convex hull of
+    /// the corners.
     fn cell(&self, low: DVec2, high: DVec2) -> PatchCell {
         let squared = (high - low) * (high - low);
         let second = match self.form {

@@ -10,8 +10,8 @@ use crate::objects::{Sphere, SphereUnion};
 /// Smallest radius of a sphere relative to the size of the mesh. Smaller spheres, which occur at sharp edges, are omitted.
 const THINNEST: f64 = 1e-6;
 
-/// Returns the largest spheres inside a closed mesh that touch it at `n` points distributed uniformly over its area, as in Ma, Bae and Choi (2012). Points at
-/// which no sphere fits are omitted.
+/// Returns the largest spheres inside a closed mesh that touch the mesh at `n` points (Ma, Bae and Choi, 2012). The points are distributed uniformly over
+/// its area. Points at which no sphere fits are omitted.
 ///
 /// The spheres lie inside the mesh and touch it. Between the points, the distance from the mesh to the spheres is not bounded. Stolpner, Kry and Siddiqi
 /// (2011) approximate shapes by such spheres.

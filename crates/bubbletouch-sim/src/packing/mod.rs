@@ -26,8 +26,7 @@
 //! The two surfaces need not be within e of each other everywhere. Spheres may close clefts narrower than e, and may leave hollows inside the solid, where
 //! nothing touches.
 //!
-//! Thin walls, edges and thin ends need no special treatment: a ball around a surface point (d = 0) always contains the surface
-//! within 3e/2 of this point.
+//! Thin walls, edges and thin ends need no special treatment. A ball around a surface point (d = 0) always contains the surface within 3e/2 of this point.
 //!
 //! Spheres that reach a full e outside would be fewest, but the middle of their surface would lie e/2 outside the mesh. With
 //! e/2 outside, bumps and hollows nearly cancel, and the error of the deflections halves for a third more spheres (`ball`).
@@ -45,9 +44,9 @@
 //! # How many spheres?
 //!
 //! Let h = 3e/2. On a flat face a ball of depth d covers a disc of radius `a = sqrt(h(2d + h))`. In the best covering of the plane by discs the area per
-//! disc is `(3√3/2)·a² ≈ 2.6·h(2d + h)`. A face needs its area divided by this value. Along a sharp
-//! right-angled edge the best ball has d = h and covers 2√2·h of the edge, so an edge needs its length divided by 2.8·h. Thin
-//! walls have small balls on both sides at once and need the most spheres.
+//! disc is `(3√3/2)·a² ≈ 2.6·h(2d + h)`. A face needs its area divided by this value. Along a sharp right-angled edge, the best ball has d = h and covers
+//! 2√2·h of the edge. The number of balls on an edge is therefore its length divided by 2.8·h. Thin walls have small balls on both sides at once and need
+//! the most spheres.
 //!
 //! # Sources
 //!

@@ -224,7 +224,7 @@ impl<'a> Cover<'a> {
                 self.remove(cheapest as usize);
                 self.moved_at[cheapest as usize] = step;
             }
-            let Some(out) = self.cheapest_of_some(just_added, rng) else {
+            let Some(out) = self.cheapest_of_sample(just_added, rng) else {
                 break;
             };
             self.remove(out as usize);
@@ -249,7 +249,7 @@ impl<'a> Cover<'a> {
         (self.scores[index], Reverse(self.moved_at[index]), set)
     }
 
-    fn cheapest_of_some(&self, except: Option<u32>, rng: &mut impl RngCore) -> Option<u32> {
+    fn cheapest_of_sample(&self, except: Option<u32>, rng: &mut impl RngCore) -> Option<u32> {
         let chosen = &self.chosen.members;
         let n = chosen.len();
         let tried = (0..TRIED.min(n)).map(|_| chosen[uniform_below(n, rng)]);

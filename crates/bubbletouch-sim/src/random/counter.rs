@@ -1,8 +1,8 @@
 //! Counter-based random numbers: functions of a name and of indices, for large sets of items of which only a few are needed.
 //!
-//! A random stream must be drawn from its start. Here the draws of group g at index t are functions of the counter (g, t) and
-//! a key, in any order and on any thread. Philox4x32-10 \[PX\] converts the counter to four words w of 32 bits, one for each item
-//! of the group: 4 g, 4 g + 1, 4 g + 2, 4 g + 3. The words are converted to
+//! A random stream must be drawn from its start. Here the draws of group g at index t are functions of the counter (g, t) and a key, in any order and on
+//! any thread. Philox4x32-10 \[PX\] converts the counter to four words w of 32 bits. Each word belongs to one of the items 4 g to 4 g + 3 of the group. The
+//! words are converted to
 //!
 //! - uniform numbers, (w + ½) / 2³²;
 //! - normal numbers in pairs by Box and Muller, √(−2 ln u₀) (cos, sin)(2π u₁). Their magnitude is at most 6.77, which a normal number exceeds

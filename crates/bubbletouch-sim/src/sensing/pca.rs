@@ -1,8 +1,8 @@
 //! Principal components of frames, by a randomised range finder.
 //!
-//! Algorithm 4.4 (subspace iteration) of Halko, Martinsson and Tropp (2011), *Finding structure with randomness*, then the
-//! Rayleigh–Ritz step: the frames restricted to the computed subspace are diagonalised exactly. If the number of directions is at least the
-//! rank of the frames, the result equals the full eigendecomposition.
+//! Algorithm 4.4 (subspace iteration) of Halko, Martinsson and Tropp (2011), *Finding structure with randomness*, is followed by a Rayleigh–Ritz step. This
+//! step diagonalises the frames in the computed subspace exactly. If the number of directions is at least the rank of the frames, the result equals the
+//! full eigendecomposition.
 
 use super::symmetric_eigen::symmetric_eigen;
 use crate::random::Seed;

@@ -31,7 +31,8 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Draws the projection of an ny × nx array to m measurements from its own streams of `seed`, or prepares an adaptive readout with m readings per frame.
+    /// Draws the projection of an ny × nx array to m measurements, or prepares an adaptive readout with m readings per frame. Random numbers come from
+    /// separate streams of `seed`.
     ///
     /// The identity ensemble and adaptive ensembles give one value per taxel for any m.
     ///

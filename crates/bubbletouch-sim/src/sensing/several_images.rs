@@ -14,9 +14,9 @@ fn shares(k: usize, m: usize) -> impl Iterator<Item = usize> {
 }
 
 impl Projection {
-    /// Prepares the projection of frames that consist of `k` images of equal shape, one after the other, such as one image for each kind of value of a taxel.
-    /// Each image has a projection of its own with the seed `seed`; m counts the measurements of all images, at least one each. Their numbers differ by at
-    /// most 1. One image is measured as by [`learned`](Self::learned).
+    /// Prepares the projection of frames that consist of `k` images of equal shape, one after the other. There may be one image for each kind of value of a
+    /// taxel. Each image has a projection of its own with the seed `seed`; m counts the measurements of all images, at least one each. Their numbers differ
+    /// by at most 1. One image is measured as by [`learned`](Self::learned).
     ///
     /// # Errors
     /// If m < k, or if an image has no projection.

@@ -139,8 +139,8 @@ impl TaxelEffect for ZerosByNumber {
     }
 }
 
-/// Returns the indices and weights of those normal numbers whose weighted sum is a Wiener process at a `time` from 0 to 1, by Lévy's construction. Number 0
-/// is the value at the end, and number 2ˡ + k displaces the middle of interval k of 2ˡ equal intervals.
+/// Returns the indices and weights of the normal numbers whose weighted sum is a Wiener process at `time`, 0 to 1 (Lévy's construction). Number 0 is the
+/// value at the end, and number 2ˡ + k displaces the middle of interval k of 2ˡ equal intervals.
 fn walk(time: f64) -> [(u64, f64); 1 + N_HALVINGS as usize] {
     let mut terms = [(0, time); 1 + N_HALVINGS as usize];
     for (halving, term) in terms[1..].iter_mut().enumerate() {

@@ -1,14 +1,14 @@
 //! Hysteresis: during unloading, a taxel reads a higher value than during loading at equal depth.
 //!
-//! A Prandtl–Ishlinskii model, as fitted to tactile sensors \[GPI\]: y = (1 − 4w) x + w Σⱼ Pⱼ(x), the sum over eight play
-//! operators of thresholds rⱼ = (j − ½) X/8, X the full scale. A play operator follows its input at a distance of at most r,
-//! Pⱼ ← max(x − rⱼ, min(x + rⱼ, Pⱼ)), and starts at 0. The model is rate-independent: only the turning points of the input matter.
+//! The hysteresis is a Prandtl–Ishlinskii model, as fitted to tactile sensors \[GPI\]: y = (1 − 4w) x + w Σⱼ Pⱼ(x). The sum is over eight play operators
+//! with thresholds rⱼ = (j − ½) X/8, where X is the full scale. A play operator starts at 0 and follows its input at a distance of at most rⱼ: Pⱼ ← max(x −
+//! rⱼ, min(x + rⱼ, Pⱼ)). The model is rate-independent: only the turning points of the input matter.
 //!
-//! - First loading of a fresh taxel follows y = (1 − 4w) x + w Σ max(0, x − rⱼ), a fixed curve without history that reaches X at the full scale.
+//! - The first loading of a fresh taxel follows y = (1 − 4w) x + w Σ max(0, x − rⱼ). This curve has no history and reaches X at the full scale.
 //! - Cycles between 0 and X form a closed loop of width w X in its middle and area 11/16 w X².
-//! - A taxel does not return to 0 after a press. The residual is 2 w X after a full press and a quarter of this value
-//!   after a press of half the depth, until the taxel is pressed deeper. The readings of a touch therefore depend on the touches before it.
-//!   (Skins that recover with time lie between this model and a fresh skin.)
+//! - A taxel does not return to 0 after a press. The residual is 2 w X after a full press, and a quarter of this value after a press of half the depth. It
+//!   remains until the taxel is pressed deeper. The readings of a touch therefore depend on the touches before it. (Skins that recover with time lie
+//!   between this model and a fresh skin.)
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::{Error, Result};

@@ -1,9 +1,8 @@
 //! Separable Gaussian smoothing of a physical width.
 //!
-//! G(t) ∝ exp(−½ (t p / w)²) for whole taxel steps |t| ≤ ⌊4 w/p + ½⌋, normalised to sum 1, along y and then along x. w is
-//! the width (σ) and p the pitch, both in metres, so w covers an equal area of skin at every pitch. Beyond its edge the frame
-//! is mirrored, edge taxel included (d c b a | a b c d | d c b a). Truncation and mirroring equal the defaults of
-//! `scipy.ndimage.gaussian_filter`.
+//! The kernel is G(t) ∝ exp(−½ (t p / w)²) for whole taxel steps |t| ≤ ⌊4 w/p + ½⌋, normalised to sum 1. The frame is convolved along y and then along x.
+//! The width w (σ) and the pitch p are in metres, so w covers an equal area of skin at every pitch. Beyond its edge, the frame is mirrored with the edge
+//! taxel included (d c b a | a b c d | d c b a). Truncation and mirroring equal the defaults of `scipy.ndimage.gaussian_filter`.
 
 use super::sensor_error::{Effect, TouchRead};
 use crate::error::{Error, Result};

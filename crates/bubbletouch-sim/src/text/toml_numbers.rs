@@ -156,8 +156,8 @@ pub fn with_line(place: &str, text: &str, error: Error) -> Error {
     Error::input(format!("{place}:{line}{rest}"), given, allowed)
 }
 
-/// Returns the line number of a key, or of the innermost existing table on its path; `None` if not even the first part of the path exists. A part of a path
-/// is a name, a name with a number from 1 (`parts[2]`), or the name of a table in an array (`objects.ball`).
+/// Returns the line number of a key, or of the innermost existing table on its path. Returns `None` if the first part of the path does not exist. A part of
+/// a path is a name, a name with a number from 1 (`parts[2]`), or the name of a table in an array (`objects.ball`).
 fn line_of_key(text: &str, path: &str) -> Option<usize> {
     let table = DeTable::parse(text).ok()?;
     let mut inside = table.get_ref();

@@ -89,7 +89,7 @@ impl BodyPatch {
     }
 
     /// Returns the patch's bounding ball in the patch frame. A sphere can push a taxel only if its distance from the ball's centre is less than the sum of
-    /// both radii and the taxel's radius.
+    /// the three radii.
     pub fn ball(&self) -> Sphere {
         match &self.surface {
             Surface::Rows(rows) => rows.ball(),
@@ -139,7 +139,7 @@ impl WholeBody {
     /// taxels have close indices, which `with_neighbours_together` ensures.
     ///
     /// # Errors
-    /// If two patches have equal names, a patch has taxels of more than one kind, or a dome is smaller than the depth of its taxels.
+    /// If two patches have equal names, a patch has unequal taxels, or a dome is smaller than the depth of its taxels.
     pub fn new(patches: &[Patch]) -> Result<Self> {
         let patches = patches.iter().map(BodyPatch::new);
         let patches = patches.collect::<Result<Vec<_>>>()?;

@@ -91,7 +91,7 @@ impl Foreign {
     /// Returns the identity with this name and version.
     ///
     /// # Errors
-    /// If a kind of this crate has the name. If the name or the version does not consist of 1 to 64 of the letters A to Z, a to z, 0 to 9, `_`, `-` and `.`.
+    /// If a kind of this crate has the name. If the name or the version does not consist of 1 to 64 letters (A–Z, a–z), digits, `_`, `-` and `.`.
     pub fn new(name: &str, version: &str) -> Result<Self> {
         let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "_-.".contains(letter);
         let is_word =
@@ -145,10 +145,10 @@ impl Foreign {
 
     /// Provides the code of this classifier until the returned value is dropped. Studies that this thread loads meanwhile may use the name alone.
     #[must_use = "the classifier is provided until the value is dropped"]
-    pub fn provide(self, classifier: Arc<dyn ForeignClassifier>) -> Provided {
+    pub fn provide(self, classifier: Arc<dyn ForeignClassifier>) -> CodeGuard {
         lock(&self.0.provided).push(classifier.clone());
         GIVEN.with_borrow_mut(|given| given.push(self));
-        Provided {
+        CodeGuard {
             foreign: self,
             classifier,
             of_thread: PhantomData,
@@ -268,15 +268,15 @@ impl Serialize for Foreign {
     }
 }
 
-/// Provision of a classifier's code; dropping the value ends it.
-pub struct Provided {
+/// Guard that makes a user-defined classifier's code available to studies until the guard is dropped.
+pub struct CodeGuard {
     foreign: Foreign,
     classifier: Arc<dyn ForeignClassifier>,
     /// Marker that prevents the value from leaving the thread that created it.
     of_thread: PhantomData<*const ()>,
 }
 
-impl Drop for Provided {
+impl Drop for CodeGuard {
     fn drop(&mut self) {
         let mut provided = lock(&self.foreign.0.provided);
         let place = provided

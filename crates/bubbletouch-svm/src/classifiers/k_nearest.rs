@@ -3,14 +3,14 @@
 //! **Ties.** If training rows have equal distances, the row with the lower index is the nearer one. If classes have equal votes, the lower label is predicted.
 //! The two rules equal scikit-learn's.
 //!
-//! Distances are computed by one matrix product per block in f32, `|a|² + |b|² − 2 a·b`, of rows that are moved to the mean of the training rows and divided by
-//! their largest value. The product only selects candidates: all rows that can be among the k nearest within the rounding error. The distances of the candidates
-//! are recomputed in f64 by `Σ (a − b)²`, so the result equals an exact pairwise search. If a few rows are much larger than the others, there are many
-//! candidates; scale the features.
+//! Distances are computed in f32 as `|a|² + |b|² − 2 a·b`, by one matrix product per block. The mean of the training rows is subtracted from the rows, and
+//! the result is divided by the largest value. The product only selects candidates: all rows that can be among the k nearest within the rounding error. The
+//! distances of the candidates are recomputed in f64 by `Σ (a − b)²`, so the result equals an exact pairwise search. If a few rows are much larger than the
+//! others, there are many candidates; scale the features.
 //!
-//! **Rounding.** Let u = 2⁻²⁴. Converting two rows changes their squared distance by at most 4u (|a|² + |b|²), and m products and their sum by (m + 6) u times the
-//! same sum of squares. The k rows with the smallest computed distances, at most r, have |b|² ≤ 2|a|² + 2r. Another row c can be nearer than one of them only
-//! if its computed distance is at most r + (m + 16) u (4|a|² + 2r + |c|²); the bound that is used is twice as large.
+//! **Rounding.** Let u = 2⁻²⁴. Converting two rows to f32 changes their squared distance by at most 4u (|a|² + |b|²). The m products and their sum add at
+//! most (m + 6) u (|a|² + |b|²). The k rows with the smallest computed distances, at most r, have |b|² ≤ 2|a|² + 2r. Another row c can be nearer than one
+//! of them only if its computed distance is at most r + (m + 16) u (4|a|² + 2r + |c|²). The code uses twice this bound.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::classifiers::parameters::{DefaultValue, MAX_COUNT, Parameter};
@@ -22,8 +22,9 @@ use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::linalg::products::multiply;
 use crate::{Error, Result};
 
-/// Number of rows whose distances to all training rows are computed together. With a larger value, the distances need more memory, 2 KiB per training row here. With
-/// a smaller value, each matrix product spends more time on copying the training rows into panels: 36 % of the whole time with 128 rows of 256 features.
+/// Number of rows whose distances to all training rows are computed together. With a larger value, the distances need more memory, 2 KiB per training row
+/// here. With a smaller value, each matrix product spends more time on copying the training rows into panels. With 128 rows of 256 features, copying takes
+/// 36 % of the time.
 const BLOCK_ROWS: usize = 512;
 
 /// Trained k-nearest-neighbours classifier: the training rows and their labels. Scores are the logarithms of smoothed vote fractions.
@@ -112,8 +113,8 @@ impl KNearest {
         Ok(neighbours)
     }
 
-    /// Returns the indices of the nearest training rows of one row, given in f64 and as it is screened, and the inner products of the latter with all screened
-    /// training rows. The products are overwritten.
+    /// Returns the indices of the nearest training rows of one row. The arguments are the row in f64, the screened row in f32, and the inner products of
+    /// the screened row with all screened training rows. The products are overwritten.
     fn nearest(
         &self,
         (row, screened): (ArrayView1<f64>, ArrayView1<f32>),

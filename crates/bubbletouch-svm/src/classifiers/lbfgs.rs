@@ -38,7 +38,7 @@ pub(crate) trait Objective {
 struct Pair {
     step: Array1<f64>,
     change: Array1<f64>,
-    /// Inner product of step and change, above 0.
+    /// Inner product of the step and the change of the gradient, above 0.
     curvature: f64,
 }
 

@@ -35,8 +35,8 @@ impl LinfaSvm {
     /// Trains one SVM per class with the penalty `c`. `tolerance` bounds the violation of the optimality conditions.
     ///
     /// # Errors
-    /// If C or the tolerance is not a positive number, or linfa-svm returns an error. If the data are empty or have a single class, a feature is NaN or
-    /// infinite, or the number of labels differs from the number of rows.
+    /// If C or the tolerance is not a positive number, or linfa-svm returns an error. If the data are empty or have a single class, a feature is not
+    /// finite, or the numbers of labels and rows differ.
     pub fn train(data: &Dataset, kernel: LinfaKernel, c: f64, tolerance: f64) -> Result<Self> {
         let classes = checked_classes(data)?;
         for (name, value) in [("C", c), ("tolerance", tolerance)] {

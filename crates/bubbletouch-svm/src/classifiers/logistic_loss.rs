@@ -1,11 +1,13 @@
 //! Loss of a multinomial logistic regression with its gradient, and an approximate inverse of its Hessian.
 //!
-//! With labels y, weights w_k, biases b_k and p(k | x) ∝ exp(w_k·x + b_k), the loss is `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k |w_k|²`. Rows are processed in
-//! blocks that stay in the cache: one matrix product gives the scores of a block, each exponential is computed once, and another product adds to the gradient.
+//! With labels y, weights w_k, biases b_k and p(k | x) ∝ exp(w_k·x + b_k), the loss is `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k |w_k|²`. Rows are
+//! processed in blocks that stay in the cache. One matrix product gives the scores of a block, and another one adds to the gradient; each exponential is
+//! computed once.
 //!
 //! **Inverse Hessian.** The Hessian block of class k is `(1/n) Σ_i p_ik (1 − p_ik) x_i x_iᵀ + penalty I`. Its mean over the K classes, with the weights
-//! `d_i = (1/K) Σ_k p_ik (1 − p_ik)` of the rows, is the same m × m matrix for all classes. L-BFGS starts from the inverse of this matrix, because features are
-//! strongly correlated: with 256 random projections of frames, 6,000 rows and 43 classes, 180 iterations reach the gradient that otherwise needs 420.
+//! `d_i = (1/K) Σ_k p_ik (1 − p_ik)` of the rows, is the same m × m matrix for all classes. L-BFGS starts from the inverse of this matrix, because features
+//! are strongly correlated. With 256 random projections of frames, 6,000 rows and 43 classes, this start reduces 420 iterations to 180 for an equal
+//! gradient.
 
 use crate::classifiers::lbfgs::Objective;
 use ndarray::linalg::general_mat_mul;

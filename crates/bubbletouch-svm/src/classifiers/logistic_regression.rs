@@ -34,8 +34,8 @@ pub struct LogisticParams {
 }
 
 impl Default for LogisticParams {
-    /// Returns the defaults: C = 1, tolerance 5e-5, [`MAX_ITERATIONS`]. Scikit-learn has the tolerance 1e-4. Preconditioning reduces the largest components of the gradient
-    /// first, so that the objective is larger than scikit-learn's at an equal gradient, and smaller at half of it.
+    /// Returns the defaults: C = 1, tolerance 5e-5, [`MAX_ITERATIONS`]. scikit-learn's tolerance is 1e-4. Preconditioning reduces the largest components of
+    /// the gradient first. At an equal gradient, the objective is therefore larger than scikit-learn's; at half of the gradient, it is smaller.
     fn default() -> Self {
         Self {
             c: 1.0,

@@ -23,7 +23,7 @@ impl NearestCentroid {
     /// Computes the mean of the training rows of each class.
     ///
     /// # Errors
-    /// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or there is a single class.
+    /// If the data are empty or have a single class, a feature is not finite, or the numbers of labels and rows differ.
     pub fn train(data: &Dataset) -> Result<Self> {
         let classes = checked_classes(data)?;
         let mut centroids = Array2::zeros((classes.len(), data.records.ncols()));

@@ -53,8 +53,8 @@ pub struct Chosen {
 /// matrix of products. Duplicated candidates count once.
 ///
 /// # Errors
-/// If there are no candidates or folds, a candidate is out of range, or a fold contains a row beyond the training rows or a single class. If a model cannot be
-/// trained, or the matrix exceeds the memory limit.
+/// If there are no candidates or folds, or a candidate is out of range. If a fold has a single class or contains a row beyond the training rows. If a model
+/// cannot be trained, or the matrix exceeds the memory limit.
 pub fn choose(
     params: &SvmParams,
     training: &Dataset,

@@ -35,8 +35,8 @@ pub(crate) struct FoldSolution {
 }
 
 impl FoldPath {
-    /// Solves the problem of a pair of classes on all cross-validation folds; passes each solved fold to a callback. The argument `folds` contains the labels
-    /// of each fold, one per row of the Gram matrix; the rows in the range `positive` have the label 1.
+    /// Solves the problem of a pair of classes on all cross-validation folds; passes each solved fold to a callback. The argument `folds` contains the
+    /// labels of each fold, one per row of the Gram matrix. Rows in the range `positive` have the label 1.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
         (folds, positive): (Vec<Vec<f64>>, &Range<usize>),

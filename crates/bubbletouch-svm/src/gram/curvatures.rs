@@ -8,7 +8,7 @@ use crate::linalg::scalar::Scalar;
 /// labels have zero curvature.
 const SMALLEST_CURVATURE: f64 = 1e-12;
 
-/// Maximum number of rows for which all inverse curvatures of a Gram matrix are stored (4 MB in f32); for larger matrices, one row is stored.
+/// Maximum number of rows for which all inverse curvatures of a Gram matrix are stored (4 MB in f32). For larger matrices, one row is stored.
 const MAX_KEPT: usize = 1000;
 
 /// Returns the minimum curvature that pairwise steps use, given the diagonal of the Gram matrix.

@@ -3,8 +3,8 @@
 //! The method minimises `½|w|² − Σ_i a_i` over `0 ≤ a_i ≤ C`, with `w = Σ_i y_i a_i x_i`. The coordinates are updated one by one, in random order. Each a_i is
 //! set to its optimum `clamp(a_i − G/|x_i|², 0, C)` with `G = y_i w·x_i − 1`, and w is updated.
 //!
-//! Shrinking: a row is skipped if its multiplier is at a bound and its gradient exceeds every violation of the last pass in the direction of the bound. When
-//! the remaining rows have converged, all rows are visited again.
+//! Shrinking: a row is skipped if its multiplier is at a bound and its gradient towards the bound exceeds every violation of the last pass. When the
+//! remaining rows have converged, all rows are visited again.
 
 use ndarray::{Array2, ArrayView2, s};
 use rand::Rng;

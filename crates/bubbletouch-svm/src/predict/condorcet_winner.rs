@@ -113,7 +113,7 @@ pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
 }
 
 /// Interface to the decision functions of all pairs of classes for one feature row.
-trait Decides<T> {
+trait PairwiseDecisions<T> {
     fn n_classes(&self) -> usize;
 
     /// Returns the weighted sum of a pair's decision function, the sum of its absolute terms, the number of terms, and the offset ρ.
@@ -140,7 +140,7 @@ struct ByKernel<'a, T, K> {
     kernel_values: K,
 }
 
-impl<T: Scalar, K: KernelValues<T>> Decides<T> for ByKernel<'_, T, K> {
+impl<T: Scalar, K: KernelValues<T>> PairwiseDecisions<T> for ByKernel<'_, T, K> {
     #[inline(always)]
     fn n_classes(&self) -> usize {
         self.pairs.n_classes
@@ -222,7 +222,7 @@ struct Hyperplanes<'a, T> {
     row: &'a [T],
 }
 
-impl<T: Scalar> Decides<T> for Hyperplanes<'_, T> {
+impl<T: Scalar> PairwiseDecisions<T> for Hyperplanes<'_, T> {
     #[inline(always)]
     fn n_classes(&self) -> usize {
         self.n_classes
@@ -237,7 +237,7 @@ impl<T: Scalar> Decides<T> for Hyperplanes<'_, T> {
 }
 
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn condorcet_winner<T: Scalar, P: Decides<T>>(pairs: &mut P) -> Option<usize> {
+fn condorcet_winner<T: Scalar, P: PairwiseDecisions<T>>(pairs: &mut P) -> Option<usize> {
     let mut champion = 0;
     for other in 1..pairs.n_classes() {
         if !wins(pairs, (champion, other))? {
@@ -255,7 +255,10 @@ fn condorcet_winner<T: Scalar, P: Decides<T>>(pairs: &mut P) -> Option<usize> {
 
 /// Returns whether class `first` wins against class `second` (first < second); `None` if rounding errors could change the result.
 #[inline(always)]
-fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize)) -> Option<bool> {
+fn wins<T: Scalar>(
+    pairs: &mut impl PairwiseDecisions<T>,
+    (first, second): (usize, usize),
+) -> Option<bool> {
     let pair = first * (2 * pairs.n_classes() - first - 1) / 2 + second - first - 1;
     let (sum, size, n_terms, rho) = pairs.value(pair);
     let value = sum.wide() - rho;

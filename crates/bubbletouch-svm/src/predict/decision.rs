@@ -15,8 +15,8 @@ use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
-/// Number of rows for which decision values are computed together. With a smaller value, packing the support vectors dominates the time; with a larger value,
-/// the kernel values (10 MB with 5,000 support vectors) take much memory.
+/// Number of rows for which decision values are computed together. With a smaller value, packing the support vectors dominates the time. With a larger
+/// value, the kernel values take more memory; with this value, they take 10 MB for 5,000 support vectors.
 const BLOCK_ROWS: usize = 512;
 
 /// Decision functions `Σ y_i a_i K(x_i, x) − ρ` of all binary problems.

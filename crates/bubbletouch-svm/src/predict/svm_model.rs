@@ -123,8 +123,8 @@ impl<F: Precision, D: Data<Elem = F>> PredictInplace<ArrayBase<D, Ix2>, Array1<u
     /// Writes the predicted labels into `targets`.
     ///
     /// # Panics
-    /// If the number of columns differs from training, a feature is not finite, or `targets` has a wrong length, because linfa's trait cannot return an
-    /// error. The method `labels` returns errors instead.
+    /// If the number of columns differs from training, a feature is not finite, or `targets` has a wrong length. linfa's trait cannot return an error. The
+    /// method `labels` returns errors instead.
     fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<usize>) {
         match self.labels(F::double_features(features).view()) {
             Ok(labels) => targets.assign(&labels),

@@ -128,7 +128,7 @@ impl<T: SolverScalar> MarginPair<T> {
             );
         }
         let [first, second] = &*rows;
-        // Products of the new rows of the first class with all rows of the second, and of its old rows with the new rows of the second.
+        // Products of new rows of the first class with all rows of the second, and of old rows of the first with new rows of the second.
         let n_new = second.len() - before[1];
         across.resize(first.len() * second.len(), T::zero());
         let (right, below) = across.split_at_mut(before[0] * n_new);

@@ -41,11 +41,11 @@ pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
     let by_equations = ActiveSetGoal {
         c: goal.c,
         tolerance: goal.tolerance,
-        most_ways: labels.len() as u64,
+        max_steps: labels.len() as u64,
     };
-    let n_ways = solve_by_active_set(gram, labels, (&mut beta, &mut f), by_equations);
+    let n_steps = solve_by_active_set(gram, labels, (&mut beta, &mut f), by_equations);
     let (state, last) = reach(gram, (labels, (beta, f), goal.c), goal);
-    let n_iterations = first.n_iterations + n_ways + last.n_iterations;
+    let n_iterations = first.n_iterations + n_steps + last.n_iterations;
     let reached = Reached {
         n_iterations,
         ..last

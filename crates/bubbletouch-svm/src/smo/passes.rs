@@ -2,7 +2,7 @@
 //! processor supports them.
 //!
 //! The length of every slice is a multiple of [`LANES`] ([`padded`]). Each lane has its own extreme value. The position of the overall extreme is searched
-//! afterwards; if values are equal, the lowest index is chosen, so results do not depend on the processor.
+//! afterwards. Of equal values, the one with the lowest index is chosen, so results do not depend on the processor.
 
 use crate::linalg::lanes::LANES;
 use crate::linalg::scalar::Scalar;

@@ -105,7 +105,7 @@ impl<G> Smo<'_, G> {
                 let goal = ActiveSetGoal {
                     c,
                     tolerance: search.tolerance,
-                    most_ways: self.y.len() as u64,
+                    max_steps: self.y.len() as u64,
                 };
                 let variables = (&mut self.beta[..], &mut self.f[..]);
                 search.n_iterations += solve_by_active_set(self.gram, self.y, variables, goal);

@@ -645,8 +645,8 @@ fn accuracies(params: SvmParams, data: &Dataset, folds: &[Split], chosen: &Chose
     chosen.tried.iter().map(|t| of(t.c, t.gamma)).collect()
 }
 
-// One-vs-rest is compared for larger classes (`choice`). With four rows against 168, most classes have the constant decision value −1, and rounding decides
-// between equal values (labels change between tolerances of 1e-8 and 1e-10).
+// One-vs-rest is compared for larger classes (`choice`). With four rows against 168, most classes have the constant decision value −1. Rounding then
+// decides between equal values: labels differ between the tolerances 1e-8 and 1e-10.
 #[test]
 fn of_43_small_classes_the_choice_on_one_matrix_is_that_of_training_one_by_one() {
     let data = clouds(&[8; 43], 12, 0.8, 16);

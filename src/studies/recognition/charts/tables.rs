@@ -42,7 +42,7 @@ const CONFUSION: File<Confusion> = File::new("confusion.csv", "Confusion matrix"
 const COMPARISON: File<Comparison> = File::new(
     "comparison.csv",
     "Configurations against the best of their condition",
-    "A t-test paired over trials, corrected for their overlap; the p-value of Holm is corrected for the number of configurations too.",
+    "A t-test paired over trials, corrected for their overlap; Holm's p-value is also corrected for the number of configurations.",
 )
 .summary();
 const TIMING: File<(Configuration, TrialTime)> =
@@ -53,24 +53,24 @@ const STAGES: File<StageTime> = File::new("stages.csv", "Times of the stages", "
 const CONFUSED: File<Confused> = File::new(
     "confused.csv",
     "Most frequent confusions",
-    "The pairs of objects that the best configuration confuses most often, all trials together.",
+    "The pairs of objects that the best configuration confuses most often in all trials.",
 )
 .summary();
 const PUBLISHED: File<(Configuration, Published)> = File::new(
     "published.csv",
     "Published accuracies",
-    "Ours: the most accurate of the configurations that have the settings of the claim, in each condition that these were measured in.",
+    "Ours: for each condition, the most accurate configuration with the settings of the claim.",
 )
 .summary();
 const VARIANCE: File<Variance> =
-    File::new("variance.csv", "What makes trials differ", "").summary();
+    File::new("variance.csv", "Sources of the variance between trials", "").summary();
 /// Name of the table of selected taxels.
 pub(crate) const SELECTED_TAXELS: &str = "selected.csv";
 
 const SELECTED: File<(Configuration, SelectedTaxel)> = File::new(
     SELECTED_TAXELS,
     "Selected taxels of the first trial",
-    "Taxels are selected on training touches alone. Of configurations with equal measurements, the first has rows.",
+    "Taxels are selected on training touches alone. If configurations have equal measurements, only the first one is listed.",
 )
 .summary();
 const LIMITS: File<Limit> = File::new(LIMITS_FILE, "How often limits were reached", "").summary();
@@ -105,7 +105,7 @@ pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
     From::Rows(tables).all(axes.collect(), tables.has_folds)
 }
 
-/// Reads all tables of a folder in the order of their files, followed by [`CONFIGURATIONS`].
+/// Reads all tables of a result folder in the order of their files. The last table is [`CONFIGURATIONS`].
 ///
 /// # Errors
 /// If a table cannot be read; the error names its file, line and column.

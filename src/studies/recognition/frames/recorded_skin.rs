@@ -45,7 +45,7 @@ impl RecordedSkinFiles {
     /// Reads the recorded files of the skin.
     ///
     /// # Errors
-    /// If a file cannot be read or does not fit the others, if ranges exceed the frames, or if the full scale is not above the zero.
+    /// If a file cannot be read or does not fit the others, a range exceeds the frames, or the full scale is not above the zero.
     pub fn read(&self) -> Result<RecordedSkin> {
         let (frames, shape) = self.frames_of(&self.frames)?;
         let n = frames.nrows();

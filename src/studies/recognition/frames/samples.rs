@@ -22,9 +22,9 @@ use ndarray::{Array2, ArrayView1};
 const N_SAMPLES: usize = 4;
 
 /// Returns the sample pictures of a study. The first picture shows the first touch of the objects that the study lists, by default of four spread over the
-/// list. The finest array reads them at the highest noise, without smoothing. In a study of one sensor error at a time, it shows the first touch of the first
-/// object, read with each error at its last value. On a skin with memory, each touch follows the touch of the last object. A second picture shows the first
-/// touch of every object at the highest noise.
+/// list. The finest array reads them at the highest noise, without smoothing. In a study of one sensor error at a time, the picture shows the first touch
+/// of the first object with each error at its last value. On a skin with memory, each touch follows the touch of the last object. A second picture shows
+/// the first touch of every object at the highest noise.
 ///
 /// # Errors
 /// If a signal step is invalid.
@@ -86,8 +86,8 @@ pub fn sample_frames(
     Ok(Samples { shown, each })
 }
 
-/// Returns the reading along the taxel axes for the first touch of each object, shape (ny, nx). If the skin has memory, the touch of another object precedes
-/// each touch.
+/// Returns the readings along the taxel axes in the first touch of each object: one array of shape (ny, nx) per object. If the skin has memory, the touch
+/// of another object precedes each touch.
 fn read(
     plan: &Plan,
     group: &MeasurementGroup,

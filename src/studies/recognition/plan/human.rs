@@ -76,7 +76,7 @@ impl Check<'_> {
         arrays.try_for_each(|array| self.fits_around(human, array))
     }
 
-    /// Checks that the array leaves a gap of at least one pitch on the far side of the arm, and that its layout has rows and columns.
+    /// Checks that the array leaves a gap of at least one pitch on the far side of the arm. Also checks that its layout has rows and columns.
     fn fits_around(&self, human: &HumanTouchSpec, array: &TaxelArray) -> Result<()> {
         let grid = array.grid();
         let radius = human.surface() - array.taxel().radius;

@@ -223,7 +223,8 @@ impl ListedTaxels {
         }
     }
 
-    /// Returns the number of sensors, and the numbers of rows and columns that all of them have; `None` if these numbers differ or a sensor has none.
+    /// Returns the number of sensors, and the numbers of rows and columns that all of them have. Returns `None` if these numbers differ or a sensor has
+    /// none.
     pub fn equal_sides(&self) -> Option<(usize, (usize, usize))> {
         let first = self.sensors.first()?.sides?;
         let is_equal = |sensor: &ListedSensor| sensor.sides == Some(first);
@@ -244,7 +245,7 @@ impl ListedTaxels {
         })
     }
 
-    /// Returns the positions of the taxels in pictures, metres.
+    /// Returns the two-dimensional positions of the taxels for charts, metres.
     pub fn places(&self) -> &[DVec2] {
         &self.places
     }

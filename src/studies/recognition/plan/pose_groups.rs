@@ -2,10 +2,10 @@
 //!
 //! If the values are listed, touches with equal values on the grouping axes form a group, for any object.
 //!
-//! If the values are drawn uniformly, groups consist of neighbours. Two touches of an object are neighbours if their listed values are equal and they differ by
-//! less than the stated distance on *each* drawn axis (the yaws 359° and 1° differ by 2°). A group contains all touches that are connected by neighbours
-//! (single linkage). Touches of different groups are therefore at least the stated distance apart on some axis. Touches of different objects are never
-//! neighbours, because their labels differ.
+//! If the values are drawn uniformly, groups consist of neighbours. Two touches of an object are neighbours if their listed values are equal and, on *each*
+//! axis, their drawn values differ by less than the stated distance. The yaws 359° and 1° differ by 2°. A group contains all touches that are connected by
+//! neighbours (single linkage). Touches of different groups are therefore at least the stated distance apart on some axis. Touches of different objects are
+//! never neighbours, because their labels differ.
 
 use crate::error::{Error, Result};
 use crate::studies::recognition::spec::pose_split::GroupSpec;

@@ -138,7 +138,7 @@ impl TaxelArray {
         }
     }
 
-    /// Returns the position of the taxel that belongs to a frame value, along x and y of the array, mm; `None` if the positions are unknown.
+    /// Returns the position of the taxel that belongs to a frame value, along x and y of the array, mm. Returns `None` if the positions are unknown.
     pub fn place_mm(&self, value: usize) -> Option<[f64; 2]> {
         let taxel = value % self.n_taxels();
         let place = match &self.listed {
@@ -258,8 +258,9 @@ impl TaxelArray {
         (self.sensed.n_channels() * rows, columns)
     }
 
-    /// Returns the images of a frame that an ensemble of rows and columns measures one by one: their number, and the rows and columns of each. An image
-    /// contains one kind of value of all taxels of a sensor. Returns `None` if a sensor has no rows and columns, or if sensors differ in them.
+    /// Returns the images of a frame that an ensemble of rows and columns measures one by one. The result contains their number, and the rows and columns
+    /// of each. An image contains one kind of value of all taxels of a sensor. Returns `None` if a sensor has no rows and columns, or if sensors differ in
+    /// them.
     pub fn equal_images(&self) -> Option<(usize, (usize, usize))> {
         let (n_sensors, sides) = match &self.listed {
             Some(listed) => listed.equal_sides()?,

@@ -37,7 +37,7 @@ impl Check<'_> {
     /// Returns the plan of the test touches, given the plan of the study without `[test]`; `None` if the study has no table `[test]`.
     ///
     /// # Errors
-    /// If a key cannot differ for test touches or is out of its range, or if a taxel of the test touches has no counterpart in training touches.
+    /// If a key cannot differ for test touches or is out of its range. If a taxel of the test touches has no counterpart in training touches.
     pub fn tested(&self, plan: &Plan) -> Result<Option<Arc<Plan>>> {
         let spec = &plan.spec;
         if spec.test.is_empty() {

@@ -100,8 +100,8 @@ pub struct Configuration {
     temporal_features: Option<TemporalFeatures> => if_given of "recognition.temporal_features";
     /// Features that are computed from the measurements of a touch, such as `raw`.
     features: Features => always of "recognition.features";
-    /// Depth window of image features, as a fraction of the full scale. Image features use only deflections that are within the window below the largest
-    /// deflection of a frame. 1 for features of measurements, which have no window. The column is present only if the study has the key.
+    /// Depth window of image features, as a fraction of the full scale. Image features use only deflections within this window below the largest deflection
+    /// of a frame. The value is 1 for features of measurements, which have no window. The column is present only if the study has the key.
     depth_window_full_scale: Option<f64> => if_given of "recognition.depth_window_full_scale";
     /// Number of randomly tilted copies that are added for each training touch. The column is present only if the study has the key.
     tilt_augmentation: Option<usize> => if_given of "recognition.tilt_augmentation";

@@ -14,7 +14,8 @@ pub struct FeaturesOfImages {
     pub measurements: usize,
 }
 
-/// Returns the number of values of a combination of image features for a frame with one image for each sensor, given as numbers of rows and columns.
+/// Returns the number of values of a combination of image features for a frame. The frame has one image for each sensor, given as numbers of rows and
+/// columns.
 pub fn join_values(join: Join, shapes: &[(usize, usize)]) -> usize {
     shapes.iter().map(|&shape| join.n_values(shape)).sum()
 }

@@ -84,8 +84,8 @@ pub struct ConfigurationScore {
     /// Lower end of the 95 % interval of the mean accuracy, 0 to 1.
     ///
     /// The interval is Wilson's for the counts of all trials, at the number of test rows of one trial, or of all folds. If groups are held out, it is the
-    /// interval over all groups that the trials hold out. Trials split the same touches again, so counting the test rows of all trials would make the interval
-    /// too narrow; each fold and each group counts once.
+    /// interval over all groups that the trials hold out. Trials split the same touches again, so counting the test rows of all trials would make the
+    /// interval too narrow. Each fold and each group counts once.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of the mean accuracy, computed as `accuracy_low`.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
@@ -280,7 +280,7 @@ pub struct SelectedTaxel {
     /// Position of the taxel along x of the array, mm; on a curved array, of its projection along the axis of the middle. Several sensors
     /// are side by side. Empty for taxels without a layout.
     x_mm: Option<f64> => Note "x" in "mm": Linear;
-    /// Position of the taxel along y of the array, mm, as `x_mm`.
+    /// Position of the taxel along y of the array, mm; see `x_mm`.
     y_mm: Option<f64> => Value(Neither) "y" in "mm": Linear;
 } }
 
@@ -350,6 +350,6 @@ pub struct Variance {
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
     /// Fraction of the variance of a trial's accuracy that is due to the source, 0 to 1; negative variance estimates count as zero. Empty if nothing varies.
     fraction: Option<f64> => Value(Less) "fraction of the variance": Share;
-    /// p-value of an F test; null hypothesis: the source contributes no variance; empty for `rest`.
+    /// p-value of an F test of the null hypothesis that the source contributes no variance; empty for `rest`.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
 } }

@@ -19,8 +19,8 @@ sensor_spec! {
     /// Keys of `[recorded]`: frames that a real skin recorded, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). The table `[skin]` gives the pitch and the
     /// stroke of the taxels. `frames` contains the frames of one sensor; `[[recorded.sensors]]` lists several sensors that recorded the same touches.
     pub struct RecordedSpec {
-        /// File with the frames, shape (n, rows, columns); (n, F, rows, columns) for F frames per touch; (n, taxels) without rows and columns. Any numeric type of
-        /// up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
+        /// File with the frames. Its shape is (n, rows, columns), (n, F, rows, columns) for F frames per touch, or (n, taxels) without rows and columns.
+        /// Any numeric type of up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
         #[serde(
             default,
             skip_serializing_if = "is_empty",
@@ -45,8 +45,8 @@ sensor_spec! {
         /// File with the group of every touch, such as its grasp or day, shape (n,). A split never divides a group.
         #[serde(default, deserialize_with = "optional_file_path")]
         pub groups: Option<PathBuf>,
-        /// Number F of frames to which each touch is resampled, at least 1: linear interpolation at F instants, evenly spaced from its first to its last frame. If F
-        /// is 1, the last frame is used. Default: all frames.
+        /// Number F of frames to which each touch is resampled, at least 1. Frames are interpolated linearly at F instants, evenly spaced from the first to
+        /// the last frame. If F is 1, the last frame is used. Default: all frames.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub resampled_frames: Option<usize>,
         /// Sensors that recorded the same touches, instead of `frames`. Their readings are joined to one frame, each with its own zero and full scale.

@@ -23,16 +23,17 @@ macro_rules! sensor_spec {
                 deserialize_with = "optional_file_path"
             )]
             pub frames_test: Option<PathBuf>,
-            /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels. The axis
-            /// `c` contains the values of a taxel (each with an image of its own) if the frames have rows and columns, otherwise the taxels. Default: `n y x`, `n t y x` or `n c`.
+            /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels.
+            /// If the frames have rows and columns, the axis `c` contains the values of a taxel, and each value has an image. Otherwise `c` contains the
+            /// taxels. Default: `n y x`, `n t y x` or `n c`.
             #[serde(skip_serializing_if = "Option::is_none")]
             pub order: Option<String>,
             /// Numbers of rows and columns of the sensor, if the axis `c` of the frames lists its taxels row by row.
             #[serde(skip_serializing_if = "Option::is_none")]
             pub grid: Option<[usize; 2]>,
-            /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames: `.csv`, `.npz`, `.txt` or `.ini` (iCub), `.json`
-            /// (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid. If one of several axes `c` counts the positions, the other axes count
-            /// values at each position, such as events of two signs.
+            /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames. Formats: `.csv`, `.npz`, `.txt` or
+            /// `.ini` (iCub), `.json` (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid. If one of several axes `c` counts the
+            /// positions, the other axes count values at each position, such as events of two signs.
             #[serde(
                 default,
                 skip_serializing_if = "Option::is_none",

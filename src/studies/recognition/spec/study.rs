@@ -102,9 +102,9 @@ pub struct SensingSpec {
     pub ratio: Option<Axis<f64>>,
     /// Axis: number m of measurements per frame, at least 1. Replaces `ratio`.
     pub measurements: Option<Axis<usize>>,
-    /// Axis: method by which the ensemble `selected` selects the m taxels to read, on training touches only: `greedy` (default; highest validation accuracy of a
-    /// nearest-neighbour classifier), `pivoted_qr` (pivots of m principal components) or `random` (a control). At most 4,096 frames of the training split are
-    /// used, whatever `recognition.train_touches` is.
+    /// Axis: method by which the ensemble `selected` selects the m taxels to read, from training touches only. Values: `greedy` (default; highest
+    /// validation accuracy of a nearest-neighbour classifier), `pivoted_qr` (pivots of m principal components) or `random` (a control). At most 4,096
+    /// frames of the training split are used, whatever `recognition.train_touches` is.
     #[schemars(with = "Option<Axis<Names<Selection>>>")]
     pub selection: Option<Axis<Selection>>,
     /// Number of measurements that the skin reads out per second. Adds the column `readout_ms`, the time to read a frame. Default: no such column.
@@ -134,16 +134,16 @@ pub struct RecognitionSpec {
     /// of force, add `"force"` to `signal.steps`.
     #[serde(default = "default_features")]
     pub features: Axis<FeatureChoice>,
-    /// Axis: depth window of the image features, as a fraction of the full scale. Image features use only deflections that are within the window below the
-    /// largest deflection of a frame, so that the features do not depend on the press depth. Default: the whole image.
+    /// Axis: depth window of the image features, as a fraction of the full scale. Image features use only deflections within this window below the largest
+    /// deflection of a frame. They therefore do not depend on the press depth. Default: the whole image.
     pub depth_window_full_scale: Option<Axis<f64>>,
     /// Axis: number of additional copies of each training touch, whose images are randomly tilted. The copies make recognition robust to tilts that do not
     /// occur in training. Copies require image features. Default: 0.
     pub tilt_augmentation: Option<Axis<usize>>,
     /// Maximum tilt of a copy about the array's x and y axes, degrees; the tilts are uniformly distributed. Default: 5.
     pub tilt_augmentation_deg: Option<f64>,
-    /// Axis: method that combines the frames of a touch into features. Values: `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in
-    /// time), `moments` of each measurement, `course` of the touch, or `summarised` (moments and course). Default: all frames are concatenated.
+    /// Axis: method that combines the frames of a touch into features. Values: `deepest` (deepest frame), `stacked_8` (8 or another number of evenly spaced
+    /// frames), `moments` (of each measurement), `course` (of the touch) or `summarised` (moments and course). Default: all frames are concatenated.
     pub temporal_features: Option<Axis<TemporalFeatures>>,
     /// Axis: kind of classifier, such as `linear_svm`, or a command that trains a classifier, such as `{ command = ["python", "mine.py"] }`.
     pub classifier: Axis<ClassifierChoice>,

@@ -75,9 +75,9 @@ pub fn first_equal(splits: &[Split]) -> Vec<usize> {
     first
 }
 
-/// Returns the values of the axis `train_touches`: the numbers of training touches per object. The default is the maximum number that every object has in every
-/// training split. Also checks that every object has enough touches in every trial: test touches for at least one group, and training touches for each inner
-/// fold and each imbalance.
+/// Returns the values of the axis `train_touches`: the numbers of training touches per object. The default is the maximum number that every object has in
+/// every training split. Also checks that every object has enough touches in every trial. Test touches must suffice for at least one group, and training
+/// touches for each inner fold and each imbalance.
 ///
 /// # Errors
 /// If a split has fewer training touches of an object than the study requires.

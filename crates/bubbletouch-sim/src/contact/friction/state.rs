@@ -1,8 +1,8 @@
 //! Three-axis contact forces: shear springs and Coulomb friction at the taxels.
 //!
 //! In addition to the spring (k, δ) along its axis n, a taxel has a shear spring with stiffness k_t and displacement u perpendicular to the axis. While the
-//! taxel is in contact, the object drags the end of the shear spring. During a step the object moves from the pose X₀ to X₁ (patch frame). Let a be the
-//! material point of the object that touches the taxel at the start of the step, and b the point that touches at the end:
+//! taxel is in contact, the object drags the end of the shear spring. During a step the object moves from the pose X₀ to X₁ (patch frame). Let a and b be
+//! the material points of the object that touch the taxel at the start and at the end of the step:
 //!
 //! ```text
 //! Δ = P ½ [(X₁ a − X₀ a) + (X₁ b − X₀ b)],   P = 1 − n nᵀ         tangential motion; the spring carries the motion along n

@@ -106,7 +106,7 @@ impl Mask {
         self.0[0].bitmask() | self.0[1].bitmask() << 4
     }
 
-    /// Returns the numbers of `yes` in lanes that are true, otherwise those of `no`.
+    /// Returns the numbers of `yes` in lanes that are true, and the numbers of `no` in the other lanes.
     #[inline(always)]
     pub fn select(self, yes: Eight, no: Eight) -> Eight {
         Eight([

@@ -1,12 +1,12 @@
 //! Bounds, in vectors of single precision, of the heights at which the triangles of a mesh can stop taxels on given lines.
 //!
-//! If a triangle stops a taxel of radius ρ, the centre of the taxel is at p + ρ d, where p is a point of the triangle and d a direction of contact
-//! ([`mesh_blocks`](crate::objects::mesh_blocks)). The taxel moves along the unit vector u and comes from below, so d·u < 0. Normals that certainly point down,
-//! or up, determine the side of the surface. If the side is not certain, d is any unit vector. Triangles that may lie behind the substrate are enlarged by the
-//! whole radius.
+//! A taxel of radius ρ that a triangle stops has its centre at p + ρ d. Here p is a point of the triangle and d a direction of contact
+//! ([`mesh_blocks`](crate::objects::mesh_blocks)). The taxel moves along the unit vector u and comes from below, so d·u < 0. Normals that certainly point
+//! down, or up, determine the side of the surface. If the side is not certain, d is any unit vector. Triangles that may lie behind the substrate are
+//! enlarged by the whole radius.
 //!
 //! Let a line have the direction u and contain the point o, and let a box with the half sizes h have its centre at m. The line misses the box if
-//! |(m − o) × u| exceeds `h_j |u_k| + h_k |u_j|` in a component i. The same functions compare one line with eight boxes, and eight lines with one box: the
+//! |(m − o) × u| exceeds `h_j |u_k| + h_k |u_j|` in a component i. The functions compare one line with eight boxes, and eight lines with one box. The
 //! values of the single line or box are repeated in all lanes.
 //!
 //! All bounds are enlarged by `slack`, far more than the rounding of single precision, so they never exclude a contact.

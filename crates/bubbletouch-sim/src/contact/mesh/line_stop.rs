@@ -1,8 +1,8 @@
 //! Height at which one triangle of a mesh stops a taxel on a given ray, in double precision.
 //!
-//! The equations are those of [`swept_triangle`](super::swept_triangle), written without a rotation: z is the height along the ray's direction u, relative to
-//! its origin o. For a side e of the triangle the vector g = e × u is perpendicular to both; its length is the length of the side seen along the ray. A point y
-//! relative to the ray's origin is at the distance y·g / |g| beside the side.
+//! The equations are those of [`swept_triangle`](super::swept_triangle), written without a rotation: z is the height along the ray's direction u, relative
+//! to its origin o. For a side e of the triangle, the vector g = e × u is perpendicular to e and u. Its length is the length of the side seen along the
+//! ray. A point y relative to the ray's origin is at the distance y·g / |g| beside the side.
 
 use super::swept_triangle::{FACE_SLACK, HIDDEN_SLACK, STEEP};
 use super::taxel_lines::Ray;

@@ -45,8 +45,8 @@ impl<'a> MeshAt<'a> {
         }
     }
 
-    /// Returns whether the mesh may push one of the taxels of a node: the bounding box of the mesh and the box around the taxels overlap, seen along the axes
-    /// of both boxes.
+    /// Returns whether the mesh may push one of the taxels of a node. The condition is that the bounding box of the mesh overlaps the box around the taxels
+    /// along each axis of both boxes.
     #[inline]
     pub fn is_near(&self, node: &Node) -> bool {
         let (away, reach) = (self.center - node.bounds.center(), node.reach());
@@ -110,7 +110,8 @@ impl<'a> MeshAt<'a> {
         AxisView::new(self, taxel).stop(&self.mesh.mesh().triangle(triangle))
     }
 
-    /// Returns the height at which one triangle stops a taxel, even if the triangle is behind the taxel's substrate; `None` if the triangle misses the taxel.
+    /// Returns the height at which one triangle stops a taxel, even if the triangle is behind the taxel's substrate. Returns `None` if the triangle misses
+    /// the taxel.
     pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<Stop> {
         let view = AxisView::new(self, taxel);
         let turned = view.turned(&self.mesh.mesh().triangle(triangle));
@@ -118,8 +119,8 @@ impl<'a> MeshAt<'a> {
         Some(Stop { height, triangle })
     }
 
-    /// Returns the height at which the mesh stops a taxel of a flat grid whose substrate is inside the solid mesh; `None` if the substrate is outside.
-    /// The taxel has its centre at `center`, and its substrate at height `behind`. All lengths are in metres.
+    /// Returns the height at which the mesh stops a taxel of a flat grid whose substrate is inside the solid mesh. Returns `None` if the substrate is
+    /// outside. The taxel has its centre at `center`, and its substrate at height `behind`. All lengths are in metres.
     pub fn entered_on_grid(&self, center: DVec3, radius: f64, behind: f64) -> Option<f64> {
         let taxel = PlacedTaxel {
             number: 0,

@@ -141,7 +141,8 @@ pub(crate) struct SweptEdge {
     /// Squared length of the edge's projection onto the ground, m².
     length2: f64,
     radius: f64,
-    /// Range of distances beside the edge, positive to the left, in which the edge can stop the ball; stored as multiples of the edge's projected length.
+    /// Range of distances beside the edge in which the edge can stop the ball, positive to the left. The distances are multiples of the edge's projected
+    /// length.
     beside: [f64; 2],
     /// Normals of the two adjacent faces, pointing down, if the faces lie on different sides of the edge; otherwise `None`.
     between: Option<[DVec3; 2]>,
@@ -150,8 +151,8 @@ pub(crate) struct SweptEdge {
 impl SweptEdge {
     /// Creates the swept edge; `None` if the edge is vertical or wholly hidden by its faces.
     ///
-    /// `faces` contains the unit normals of the faces at the edge, zero for a missing face. Seen from above, a face lies to the left of the edge if its normal
-    /// points up, and to the right if its normal points down.
+    /// `faces` contains the unit normals of the faces at the edge, zero for a missing face. Seen from above, a face whose normal points up lies to the left
+    /// of the edge. A face whose normal points down lies to the right.
     ///
     /// A face hides the edge if the direction from the edge to the centre of the stopped ball points towards the face. The hidden region begins where
     /// the face, moved down by the radius, begins: at the distance ρ n·aside beside the edge.
@@ -207,7 +208,7 @@ impl SweptEdge {
         (low + a.min(b) - arc, high + a.max(b) + arc)
     }
 
-    /// Returns the height of the ball's centre at which the visible part of the edge stops the ball, metres; `None` if the ball misses this part.
+    /// Returns the height of the ball's centre at which the visible part of the edge stops the ball, metres. Returns `None` if the ball misses this part.
     #[inline]
     pub fn height(&self, at: DVec2) -> Option<f64> {
         let from = at - self.from.xy();

@@ -1,8 +1,9 @@
 //! Lines along the axes of eight neighbouring taxels, in the frame of a mesh.
 //!
-//! The lines are stored in double precision for evaluation and in single precision for the search. One *thick line* contains all lines: the line through the
-//! point ō along the unit vector ū, with bounds of the distances of the taxels' centres from it. Let p(t) = o + t u be the centre of a taxel at the height t.
-//! A triangle that stops the taxel does so at a height between the substrate, or the far end of the mesh, and the limit of the search.
+//! The lines are stored in double precision for evaluation and in single precision for the search. One *thick line* contains all lines. It is the line
+//! through the point ō along the unit vector ū, with bounds of the distances of the taxels' centres from the line. Let p(t) = o + t u be the centre of a
+//! taxel at the height t. Heights of stops are at most the limit of the search. They are at least the height of the substrate or of the far end of the
+//! mesh.
 
 use super::eight::{Eight, Eight3, Mask, cross, difference, dot};
 use super::skin_mesh::MeshAt;
@@ -81,10 +82,11 @@ impl Lines {
 /// Bounds of the deviations of taxels from a thick line; all are 0 for the line of one taxel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Thickness {
-    /// Bounds of |(p(t) − ō) × ū| for the heights t at which triangles stop a taxel: by component, and of the length, metres.
+    /// Bounds of |(p(t) − ō) × ū| for the heights t at which triangles stop a taxel, metres. `across` bounds the components, `radius` the length.
     pub across: [f32; 3],
     pub radius: f32,
-    /// Bounds of |(p(t) − ō) × ū| for all heights t at which the line meets the ball around the mesh: by component, and of the length, metres.
+    /// Bounds of |(p(t) − ō) × ū| for all heights t at which the line meets the ball around the mesh, metres. `across_far` bounds the components,
+    /// `radius_far` the length.
     pub across_far: [f32; 3],
     pub radius_far: f32,
     /// Largest distance between a taxel's axis and ū.
@@ -115,7 +117,7 @@ pub(super) struct TaxelLines {
     /// The thick line in all lanes.
     pub middle: Lines,
     pub thickness: Thickness,
-    /// Largest height along the thick line of a taxel's centre when a triangle stops the taxel, metres.
+    /// Largest height of a stopped taxel's centre, measured along the thick line, metres.
     top: f32,
     /// Heights along the thick line of the taxels' centres at rest, metres; −∞ for taxels that are not active.
     ahead: Eight,
@@ -227,8 +229,9 @@ impl Ends {
     }
 }
 
-/// Returns the thick line around the active lines in all lanes, and its thickness. At least one line is active. The function also returns, for each lane, the
-/// largest height along the thick line of a taxel's centre at a stop, the height at rest (metres), and the cosine between the axis and the thick line.
+/// Returns the thick line around the active lines in all lanes, and its thickness. At least one line is active. The function also returns three values for
+/// each lane. They are the largest height of a stopped taxel's centre along the thick line, its height at rest (both metres), and the cosine between axis
+/// and thick line.
 #[inline(always)]
 fn thick_line((lines, ends): (&Lines, &Ends), active: u32) -> (Lines, Thickness, [Eight; 3]) {
     let is_active = Mask::of_bits(active);

@@ -158,7 +158,7 @@ impl<'a> Approach<'a> {
     /// Presses the patch to a depth (metres, positive) past first contact and records the contacts in the workspace. Returns `None`, with zero deflections,
     /// if the path misses all objects.
     ///
-    /// A part of an object that pushes a taxel continues to push this taxel even from behind the substrate, so no object passes through the skin.
+    /// A part of an object that pushes a taxel continues to push this taxel even from behind the substrate. No object can therefore pass through the skin.
     ///
     /// # Panics
     /// If the number of poses differs from the number of objects.

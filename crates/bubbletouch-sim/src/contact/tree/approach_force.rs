@@ -12,12 +12,13 @@ use crate::objects::Model;
 use crate::text::in_range::positive;
 
 impl Approach<'_> {
-    /// Presses the patch until the springs of all taxels together carry `force` newtons, to within a relative 1e-12 or the last bit of the travel.
+    /// Presses the patch until the sum of all spring forces equals `force` newtons. The relative error is at most 1e-12, or what rounding of the travel
+    /// causes.
     ///
-    /// `patch_from_objects` contains the objects' poses before the motion, one per object. Returns `None` if the path misses all objects; the workspace then
-    /// contains the last press on the path. On a curved skin several travels can have this force; the first travel found by steps of half a stroke is
-    /// returned. If the total force jumps past `force` (an edge meets a taxel from the side), the side of the jump with the larger force is returned. A part
-    /// of an object that pushes a taxel continues to push this taxel even from behind the substrate, so no object passes through the skin.
+    /// `patch_from_objects` contains the objects' poses before the motion, one per object. Returns `None` if the path misses all objects; the workspace
+    /// then contains the last press on the path. On a curved skin several travels can have this force; the first travel found by steps of half a stroke is
+    /// returned. The total force can jump past `force` if an edge meets a taxel from the side. The side of the jump with the larger force is then returned.
+    /// A part of an object that pushes a taxel continues to push this taxel even from behind the substrate. No object can therefore pass through the skin.
     ///
     /// # Errors
     /// If `force` is not a positive number or is not reached on the path past the objects. The message contains the largest force and its travel.

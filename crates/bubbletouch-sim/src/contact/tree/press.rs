@@ -218,10 +218,10 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
 
 /// Presses a patch on objects at their given poses and records the contacts; `patch_from_objects` contains one pose per object.
 ///
-/// Parts of objects behind the substrate of a taxel do not push this taxel (rule in the module `contact`). An object below a forearm therefore does not press
-/// the taxels on the upper side. A part pushed far past the stroke is also behind the substrate; only a press to a depth includes such parts, because the
-/// path is known. One part determines each deflection. If several parts require equal deflections, the first sphere of the first object determines the
-/// deflection.
+/// Parts of objects behind the substrate of a taxel do not push this taxel (rule in the module `contact`). An object below a forearm therefore does not
+/// press the taxels on the upper side. A part that is pushed far past the stroke is also behind the substrate. Only a press to a depth includes such parts,
+/// because its path is known. One part determines each deflection. If several parts require equal deflections, the first sphere of the first object
+/// determines the deflection.
 ///
 /// A free object at rest often lies on taxels that two of its parts push equally far, such as two faces of a valley. Their shares of the force are needed for the balance;
 /// [`EquilibriumSolver::loads`](crate::contact::equilibrium::EquilibriumSolver::loads) contains them.

@@ -17,7 +17,7 @@ const FAN: u32 = 6;
 /// Reads the mesh in a glTF file, metres. All meshes of the scene form one mesh; without a scene, all meshes of the file. Skins are read in their bind pose.
 ///
 /// # Errors
-/// If the file is cut off or not glTF 2.0, has no triangles, or contains wrong counts, indices that do not exist or numbers that are not finite. The error
+/// If the file is truncated or not glTF 2.0, has no triangles, or contains wrong counts, indices out of range or numbers that are not finite. The error
 /// begins with `place`, the path of the file; buffers in other files are searched beside this path.
 pub fn read_gltf(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     let mut bytes = Vec::new();

@@ -14,8 +14,8 @@ const UNUSED: u32 = u32::MAX;
 /// Only vertices that faces use are returned, in the order of their first use.
 ///
 /// # Errors
-/// If the file has no faces, a face has fewer than three corners, a coordinate is not a finite number, or a vertex index does not
-/// exist. The error begins with `place` and the line.
+/// If the file has no faces, a face has fewer than three corners, a coordinate is not finite, or a vertex index is out of range. The error begins with
+/// `place` and the line.
 pub fn read_obj(place: &str, source: impl BufRead) -> Result<MeshFile> {
     let mut vertices: Vec<DVec3> = Vec::new();
     // Corners of each face with the line of the face; indices count from 1. A face may precede its vertices.

@@ -51,7 +51,7 @@ struct AdaptiveLearned {
     variance: Array1<f64>,
     /// Variance τ of the remainder, per taxel.
     rest: f64,
-    /// Sums of the k components and of the mean frame over all taxels above and to the left of a corner, shape ((ny + 1)(nx + 1), k + 1).
+    /// Sums of the k components and of the mean frame over all taxels above and to the left of a corner. Shape ((ny + 1)(nx + 1), k + 1).
     sums: Array2<f64>,
     is_nonnegative: bool,
 }

@@ -87,9 +87,9 @@ const LEAST_NOISE: f64 = 1e-3;
 impl<'a> Reconstructor<'a> {
     /// Prepares a solver for noise of standard deviation σ (in the unit of the frames, zero or positive) on each taxel.
     ///
-    /// All solvers also treat the part of a frame that the atoms cannot represent as noise. The standard deviation of the total noise is √(σ² + τ) per taxel,
-    /// where τ is the mean square of this part in training frames. Matching pursuit and the ℓ1 problem multiply this noise by the root mean square norm of a
-    /// row of Φ to obtain the noise of a measurement. The linear estimate uses ΦΦᵀ itself.
+    /// All solvers also treat the part of a frame that the atoms cannot represent as noise. The standard deviation of the total noise is √(σ² + τ) per
+    /// taxel, where τ is the mean square of this part in training frames. For matching pursuit and the ℓ1 problem, the noise of a measurement is this noise
+    /// times the root mean square norm of a row of Φ. The linear estimate uses ΦΦᵀ itself.
     ///
     /// # Errors
     /// If the linear estimate cannot be prepared. The limits in `effort` are checked by `reconstruct`.

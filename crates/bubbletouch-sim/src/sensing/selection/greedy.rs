@@ -4,8 +4,8 @@
 //! validated against all frames of other groups (leave one group out); it is correct if its nearest frame has its class. Let dᵢⱼ be the squared distance of
 //! frames i and j in the taxels selected so far. A candidate with readings a gives dᵢⱼ + (aᵢ − aⱼ)², so that each candidate costs one pass over all pairs.
 //!
-//! Each step adds the candidate with the most correct frames. If these numbers are equal, the candidate is added that has the largest sum of margins (o − s) /
-//! (o + s). Here s is the distance of a frame to the nearest frame of its class, and o is the distance to the nearest frame of other classes.
+//! Each step adds the candidate with the most correct frames. If these numbers are equal, the candidate is added that has the largest sum of margins (o −
+//! s) / (o + s). Here s is the distance of a frame to the nearest frame of its class, and o the distance to the nearest frame of other classes.
 
 use crate::error::{Error, Result};
 use crate::random::Seed;

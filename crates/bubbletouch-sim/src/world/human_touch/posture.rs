@@ -71,8 +71,8 @@ impl Posture {
         }
     }
 
-    /// Closes each finger up to the bending at which it would be `grip` metres deep in the skin. The hand is at the depth `depth`, on an arm of radius
-    /// `surface`. A finger that misses the arm closes to a fist.
+    /// Bends each finger until it would be `grip` metres deep in the skin. The hand is at the depth `depth`, on an arm of radius `surface`. A finger that
+    /// misses the arm closes to a fist.
     pub fn close(&mut self, surface: f64, depth: f64, grip: f64) {
         let height = self.first_contact(surface) - depth;
         let fist = Hand::curled(1.0);

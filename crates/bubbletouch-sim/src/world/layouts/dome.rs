@@ -6,7 +6,7 @@ use crate::text::in_range::positive;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Dome: a slice (lune) of a sphere around the origin, from its pole at +z, divided into rings of taxels whose axes point away from the centre.
+/// Dome: a slice (lune) of a sphere around the origin, from its pole at +z. The dome is divided into rings of taxels whose axes point away from the centre.
 ///
 /// Taxels are numbered ring by ring from the pole, each ring by ascending angle. Invariant: the polar angles of the rings ascend, no ring is empty, and each
 /// vector in `directions` has length one.

@@ -43,8 +43,8 @@ impl Layout {
     /// sides of a box flat. If a ray along a mean normal meets the mesh again, the axis is the normal of the taxel's own triangle.
     ///
     /// # Errors
-    /// If the pitch is not positive, the surface has no area, or the outside of an open mesh is not known. Also if the region
-    /// contains no point of the outer surface, or the pitch is so fine that more than some 100,000 taxels would be needed.
+    /// If the pitch is not positive, the surface has no area, or the outside of an open mesh is not known. If the region contains no point of the outer
+    /// surface, or if the pitch requires more than about 100,000 taxels.
     pub fn draped_on(
         mesh: &TriangleMesh,
         pitch: f64,

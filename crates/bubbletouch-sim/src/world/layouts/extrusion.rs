@@ -53,7 +53,8 @@ impl Extrusion {
         })
     }
 
-    /// Creates a grid bent around a cylinder, with the arguments and taxels of the layout `cylinder`. The coordinates u, v, w are the patch's x, y, z.
+    /// Creates a grid bent around a cylinder. The arguments and the taxels equal those of the layout `cylinder`. The coordinates u, v, w are the patch's x,
+    /// y, z.
     ///
     /// # Errors
     /// If an argument is out of its range, or the layout has too many taxels.

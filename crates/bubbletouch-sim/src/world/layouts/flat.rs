@@ -11,8 +11,8 @@ use glam::DVec3;
 const ROWS: f64 = 0.866_025_403_784_438_6;
 
 impl Layout {
-    /// Creates `ny` rows of `nx` taxels, every other row shifted by half a pitch, so that each inner taxel has six neighbours at exactly
-    /// `pitch` metres. Taxels are numbered row by row (patch y, ascending) and centred on the origin.
+    /// Creates `ny` rows of `nx` taxels, with every other row shifted by half a pitch. Each inner taxel has six neighbours at exactly `pitch` metres.
+    /// Taxels are numbered row by row (patch y, ascending) and centred on the origin.
     ///
     /// # Errors
     /// If the pitch is not positive, or the number of taxels is zero or exceeds `MAX_TAXELS`.

@@ -16,8 +16,8 @@ const UNIT_ROUNDING: f64 = 1e-9;
 
 /// Arrangement of taxels: their centres (at rest) and axes, in the patch frame.
 ///
-/// Invariant: there are as many axes as centres, all finite, and axes are unit vectors. A layout that follows a rule (a grid, an [`Extrusion`], a [`Dome`])
-/// stores the rule, and computes the centres and axes (48 bytes per taxel) only on demand.
+/// Invariant: there are as many axes as centres, all finite, and axes are unit vectors. A layout that follows a rule (a grid, an [`Extrusion`] or a
+/// [`Dome`]) stores only the rule. The centres and axes (48 bytes per taxel) are computed on demand.
 ///
 /// | family | shape | taxels |
 /// |---|---|---|
@@ -178,11 +178,11 @@ impl Layout {
         &self.rule
     }
 
-    /// Returns the rotation from one taxel's frame to the patch frame: the columns are x and y (perpendicular to the taxel's axis) and z (the axis).
+    /// Returns the rotation from one taxel's frame to the patch frame. Its columns are x and y (perpendicular to the taxel's axis) and z (the axis).
     ///
-    /// If the axis points above the patch's xy plane, the frame is the patch frame, rotated by the smallest rotation that takes the patch's z to the axis.
-    /// Otherwise the frame consists of x and −y of the patch, rotated by the smallest rotation from −z to the axis. The taxels of a flat skin therefore have
-    /// the patch's x and y, and frames on a dome vary as little as their axes. Frames are discontinuous only where axes cross the xy plane.
+    /// If the axis points above the patch's xy plane, the frame is the patch frame after the smallest rotation that aligns the patch's z with the axis.
+    /// Otherwise the frame consists of x and −y of the patch, rotated by the smallest rotation from −z to the axis. The taxels of a flat skin therefore
+    /// have the patch's x and y, and frames on a dome vary as little as their axes. Frames are discontinuous only where axes cross the xy plane.
     ///
     /// # Panics
     /// If the taxel does not exist.

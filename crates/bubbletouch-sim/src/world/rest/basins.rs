@@ -116,8 +116,8 @@ impl Merging {
         label
     }
 
-    /// Merges basins across low passes, lowest pass first. Two basins are merged if the pass between them is less than `barrier` (metres) above the higher of
-    /// their minima.
+    /// Merges basins that a low barrier separates, in order of the barriers' heights. Two basins are merged if the pass between them is less than `barrier`
+    /// (metres) above the higher of their minima.
     fn merge(&mut self, passes: &[Pass], barrier: f64) {
         let mut by_height: Vec<&Pass> = passes.iter().collect();
         by_height.sort_by(|a, b| a.height.total_cmp(&b.height));

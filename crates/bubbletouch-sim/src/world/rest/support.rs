@@ -19,7 +19,7 @@ pub(crate) struct Support {
     pub directions: Vec<DVec3>,
     /// Height of the point above the table for each direction of the mesh, metres.
     pub heights: Vec<f64>,
-    /// Triangles of the finest level of the mesh, as indices of directions; triangle t of a level contains triangles 4t … 4t + 3 of the next level.
+    /// Triangles of the finest level of the mesh, as indices of directions. Triangle t of a level contains triangles 4t … 4t + 3 of the next level.
     pub triangles: Vec<[usize; 3]>,
     /// Triangles of every level of the mesh except the finest.
     coarse: Vec<Vec<[usize; 3]>>,

@@ -81,7 +81,7 @@ impl JointKind {
         ("fixed", Self::Fixed),
         ("floating", Self::Floating),
         ("planar", Self::Planar),
-        // Of Bullet, which MuJoCo reads, too.
+        // Extension of URDF by Bullet, which MuJoCo also reads.
         ("spherical", Self::Ball),
     ];
 

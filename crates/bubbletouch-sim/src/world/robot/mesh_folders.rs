@@ -81,7 +81,7 @@ impl MeshFolders {
     }
 }
 
-/// Returns the spellings under which a file is searched: as written, with `/` for the separator `\` of Windows, and with the decoded `%20` of an address.
+/// Returns the spellings of a file name that are searched: as written, with `/` in place of Windows' `\`, and with decoded escapes such as `%20`.
 pub(super) fn spellings(path: &str) -> Vec<String> {
     let mut all = vec![path.to_owned()];
     if path.contains('\\') {

@@ -249,8 +249,8 @@ impl Robot {
         Ok(())
     }
 
-    /// Returns the position that moves a joint of one coordinate, as `(index of the position, multiplier, offset)`. Returns `None` for other joints and for
-    /// joints that mimic a fixed joint, which no position moves. A joint that mimics no other joint has multiplier 1 and offset 0.
+    /// Returns the entry of the position vector that moves a joint with one degree of freedom, as `(index, multiplier, offset)`. Returns `None` for other
+    /// joints and for joints that mimic a fixed joint, which no position moves. A joint that mimics no other joint has multiplier 1 and offset 0.
     pub fn drive_of(&self, joint: usize) -> Option<(usize, f64, f64)> {
         let drive = self.drives[joint];
         let is_one = self.joints[joint].kind.has_one_coordinate() && drive.multiplier != 0.0;

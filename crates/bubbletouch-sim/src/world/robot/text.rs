@@ -95,8 +95,8 @@ pub(super) fn unreadable(place: &str, text: &str, error: &Error, format: &str) -
     InputError::input(place, given, format!("{format}: well-formed XML"))
 }
 
-/// Returns a predicate for the match of `<?xml` at a byte position after the beginning of the text. The predicate is true for a declaration, and false for
-/// another instruction such as `<?xml-model`.
+/// Returns a predicate for pairs of a byte position and the text `<?xml` found there. The predicate is true for an XML declaration that is not at the
+/// beginning of the text, and false for other instructions such as `<?xml-model`.
 fn is_late_declaration(text: &str) -> impl Fn((usize, &str)) -> bool + '_ {
     move |(start, found)| {
         let after = text[start + found.len()..].chars().next();

@@ -44,7 +44,7 @@ impl Lines {
         self.places.len() - 1
     }
 
-    /// Adds the lines of a range of the file's `text`, which is at byte position `offset` of the whole text.
+    /// Adds the start positions of the lines in a byte range of the file's `text`. `offset` is the byte position of this range in the whole text.
     pub fn add(&mut self, place: usize, offset: usize, text: &str, range: Range<usize>) {
         let first = 1 + text[..range.start].matches('\n').count();
         let ends = text[range].match_indices('\n').map(|(end, _)| end + 1);

@@ -317,7 +317,8 @@ fn others_that_push_the_taxels_take_their_part() {
     );
 }
 
-/// Returns the deflection of each taxel of a flat bed at the origin by spheres, computed from the formula, metres; `None` if a deflection exceeds the stroke.
+/// Returns the deflection of each taxel of a flat bed at the origin by spheres, computed from the formula, metres. Returns `None` if a deflection exceeds
+/// the stroke.
 fn pushed(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> Option<Vec<f64>> {
     let Taxel { radius, stroke, .. } = *bed.taxels().at(0);
     let places: Vec<(DVec3, f64)> = spheres

@@ -40,7 +40,7 @@ fn ellipsoid(radii: DVec3, tolerance: f64) -> Model {
     MeshModel::new(TriangleMesh::ellipsoid("egg", radii, tolerance).unwrap()).into()
 }
 
-/// Returns a tray whose origin is the middle of its base: an open box of the outer size `width` and `height`, with walls and a floor of `wall` metres.
+/// Returns a tray: an open box of the outer size `width` and `height`, with walls and a floor of `wall` metres. Its origin is the middle of its base.
 fn tray(width: f64, height: f64, wall: f64) -> Model {
     let (o, i) = (0.5 * width, 0.5 * width - wall);
     let ring = |half: f64, z: f64| {
@@ -162,8 +162,8 @@ fn residual(patch: &Patch, free: &[Free], rest: &Rest) -> f64 {
     worst
 }
 
-/// Smooth walls hold the box in the middle. Without them, a box whose sides are between two rows slides and tilts until a side meets a row, because the taxels
-/// that carry it do not move with it.
+/// Smooth walls hold the box in the middle. Without them, a box whose sides are between two rows slides and tilts until a side meets a row. The taxels that
+/// carry the box do not move with it.
 #[test]
 fn a_box_sinks_evenly_by_its_weight_over_the_stiffness_below_it() {
     let patch = bed(64, 4e-3, 100.0);

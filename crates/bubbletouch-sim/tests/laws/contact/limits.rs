@@ -239,7 +239,7 @@ fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
         .unwrap();
         let middle = workspace.deflections()[GRID.n_taxels() / 2];
         assert!((middle - 2e-3).abs() < 1e-15, "{thickness} m: {middle}");
-        // If the patch is pressed past the stroke, the end of the object is behind the substrate and the rest is not; the taxel is still saturated.
+        // If the patch is pressed past the stroke, only the end of the object is behind the substrate. The taxel is still saturated.
         let deep = press_to_depth(
             &scene.patch,
             &scene.objects,

@@ -493,8 +493,9 @@ fn skins() -> [Patch; 3] {
     [soft, stiff, bed.clone()]
 }
 
-/// Solves a random scene of two to eight objects above a skin, half of them balls and half scans (all balls if there are no scans). Every second scene also has
-/// objects beside the skin and a table below, level or tilted. Returns the violations, and the numbers of objects that are at rest and that have left.
+/// Solves a random scene of two to eight objects above a skin. Half of the objects are balls and half are scans; all are balls if there are no scans. Every
+/// second scene also has objects beside the skin and a table below, level or tilted. Returns the violations, and the numbers of objects that are at rest
+/// and that have left.
 fn random_scene(case: u64, scans: &[SphereUnion], skins: &[Patch]) -> (Vec<String>, [usize; 2]) {
     let mut rng = Seed::new(case).named("many bodies").rng();
     let mut random = |a: f64, b: f64| rng.gen_range(a..b);

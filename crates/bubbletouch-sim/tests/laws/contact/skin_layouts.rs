@@ -163,7 +163,7 @@ fn without(mesh: &TriangleMesh, triangles: std::ops::Range<usize>) -> TriangleMe
     TriangleMesh::new("open", mesh.vertices().to_vec(), kept).unwrap()
 }
 
-/// Returns meshes with inner faces: a housing with a cavity, a housing that holds loose parts, two plates that face each other, and a housing without its lid.
+/// Returns meshes with inner faces: a housing with a cavity, a housing with loose parts inside, two plates that face each other, and an open housing.
 fn hollow_meshes() -> [(&'static str, TriangleMesh); 4] {
     let at = |mesh: TriangleMesh, x: f64| {
         let shift = bubbletouch_sim::geometry::Pose::from_translation(DVec3::new(x, 0.0, 0.0));

@@ -31,7 +31,7 @@ pub(crate) struct ActiveSetGoal {
     /// Maximum violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,
     /// Maximum number of active-set steps of the solver. Each step ends at the optimum of the free variables, or at a bound that removes one variable.
-    pub most_ways: u64,
+    pub max_steps: u64,
 }
 
 /// Improves the coefficients β by active-set steps and updates their gradient f. Returns the number of steps; 0 if fewer than two variables are free.
@@ -44,10 +44,10 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     let Some(mut active_set) = ActiveSet::new(gram, labels, (beta, f), goal.c) else {
         return 0;
     };
-    let (mut n_ways, mut n_repeats) = (0, 0);
-    while n_ways < goal.most_ways {
+    let (mut n_steps, mut n_repeats) = (0, 0);
+    while n_steps < goal.max_steps {
         // At least one step is counted, so that the loop ends if nothing can move.
-        n_ways += active_set.solve_free(goal.most_ways - n_ways).max(1);
+        n_steps += active_set.solve_free(goal.max_steps - n_steps).max(1);
         active_set.follow(gram);
         if active_set.violation() <= goal.tolerance {
             break;
@@ -58,7 +58,7 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
             break;
         }
     }
-    n_ways
+    n_steps
 }
 
 /// State of the active-set method: coefficients, gradient, and factors of the linear equations.
@@ -116,11 +116,11 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// Moves the free variables to their common optimum; variables that reach a bound stay there. Returns the number of steps.
-    fn solve_free(&mut self, most_ways: u64) -> u64 {
+    fn solve_free(&mut self, max_steps: u64) -> u64 {
         let mut f = self.factor.values(&self.f[..]);
-        for n_ways in 0..most_ways {
+        for n_steps in 0..max_steps {
             let Some((steps, level)) = self.factor.solve(&f) else {
-                return n_ways;
+                return n_steps;
             };
             self.level = level;
             let (share, blocked) = self.step_fraction(&steps);
@@ -132,7 +132,7 @@ impl<'a> ActiveSet<'a> {
                 f[place] -= share * (f[place] - level) - ridge * step;
             }
             let Some((place, bound)) = blocked else {
-                return n_ways + 1;
+                return n_steps + 1;
             };
             let variable = self.factor.variable(place);
             self.changes[variable] += bound - self.beta[variable];
@@ -141,7 +141,7 @@ impl<'a> ActiveSet<'a> {
             self.has_place[variable] = false;
             self.factor.leave(place);
         }
-        most_ways
+        max_steps
     }
 
     /// Returns the fraction of the given steps at which the first variable reaches a bound, at most 1. If a variable blocks the step, returns its position and
@@ -246,7 +246,7 @@ mod tests {
         ActiveSetGoal {
             c,
             tolerance,
-            most_ways: 5000,
+            max_steps: 5000,
         }
     }
 
@@ -257,8 +257,8 @@ mod tests {
         let expected = Smo::new(&mut gram, labels).solve(c, 1e-7).objective;
         let (mut beta, mut f) = (start.clone(), f_of(kernel, &start, labels));
         let before = objective(&beta, &f, labels);
-        let n_ways = solve_by_active_set(&mut gram, labels, (&mut beta, &mut f), goal(c, 1e-7));
-        assert!(n_ways > 0);
+        let n_steps = solve_by_active_set(&mut gram, labels, (&mut beta, &mut f), goal(c, 1e-7));
+        assert!(n_steps > 0);
         let found = objective(&beta, &f, labels);
         assert!(found >= before, "{found} {before}");
         assert!(
@@ -321,14 +321,14 @@ mod tests {
         let mut gram = Dense::<f64>::default();
         gram.of_whole(kernel.view());
         let start: Vec<f64> = labels.iter().map(|y| 0.1 * y).collect();
-        for most_ways in [0, 1, 7] {
+        for max_steps in [0, 1, 7] {
             let (mut beta, mut f) = (start.clone(), f_of(&kernel, &start, &labels));
             let goal = ActiveSetGoal {
-                most_ways,
+                max_steps,
                 ..goal(1.0, 1e-9)
             };
-            let n_ways = solve_by_active_set(&mut gram, &labels, (&mut beta, &mut f), goal);
-            assert_eq!(n_ways, most_ways);
+            let n_steps = solve_by_active_set(&mut gram, &labels, (&mut beta, &mut f), goal);
+            assert_eq!(n_steps, max_steps);
             for (f, expected) in f.iter().zip(f_of(&kernel, &beta, &labels)) {
                 assert!((f - expected).abs() < 1e-9, "{f} {expected}");
             }

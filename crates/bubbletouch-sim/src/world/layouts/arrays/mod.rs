@@ -3,8 +3,8 @@
 //! An array has one taxel per square of side pitch, and its taxels cover the area of a square grid, n × n pitches. The number of taxels is within a few
 //! per cent of n². In the patch frame the middle is at the origin, with its axis along +z.
 //!
-//! In every layout, the pitch is the side of a square whose area is the mean area per taxel. In a hexagonal lattice of this density, the six neighbours of a
-//! taxel are farther away than the pitch (2.149 mm at a pitch of 2 mm). In a foveated grid, the distance varies over the array.
+//! In every layout, the pitch is the side of a square whose area is the mean area per taxel. In a hexagonal lattice of this density, the distance to the
+//! six neighbours exceeds the pitch (2.149 mm at a pitch of 2 mm). In a foveated grid, the distance varies over the array.
 
 #[macro_use]
 mod about;

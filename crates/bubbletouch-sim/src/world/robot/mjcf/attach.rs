@@ -27,7 +27,7 @@ struct Attached {
 }
 
 impl<'a> Parts<'a> {
-    /// Adds a body of another model, or all that is in the world of the other model, in the frame of `<attach>` to the body `index`.
+    /// Adds a body of another model, or the whole content of its world, to the body `index`, in the frame of `<attach>`.
     ///
     /// # Errors
     /// If the model or the body does not exist, or a name is taken.

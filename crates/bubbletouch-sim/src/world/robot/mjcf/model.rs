@@ -108,7 +108,7 @@ struct Site<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// Reads the bodies of the model in the file `place`, or of a frame of the model; `around` are the models of the file that attaches it.
+    /// Reads the bodies of the model in the file `place`, or of a frame of this model. `around` contains the models of the file that attaches this model.
     pub fn read(
         root: Element<'a>,
         place: &str,

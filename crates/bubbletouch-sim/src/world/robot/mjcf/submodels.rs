@@ -14,7 +14,7 @@ use std::rc::Rc;
 pub(super) struct SubModels {
     /// Path of each model by its name.
     pub paths: BTreeMap<String, PathBuf>,
-    /// Number of models around this one.
+    /// Nesting depth: the number of models that contain this one.
     pub depth: usize,
     /// Number of models that have been read.
     pub n_read: Rc<Cell<usize>>,
