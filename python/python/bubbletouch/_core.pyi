@@ -623,8 +623,7 @@ class Patch:
         *,
         format: Literal["csv", "npz", "dex-01", "icub", "paxini", "urdf"] | None = None,
     ) -> None:
-        """Writes the layout to a file that Patch.read can read. The file contains positions and normals. It also contains radii and pixels
-        if the format has them.
+        """Writes the layout to a file that Patch.read can read. The file contains positions and normals, and radii and pixels if the format has them.
 
         format: csv, npz, dex-01 (poses and taxel2pixel in a .npz file), icub (.txt or .ini), paxini (.json) or urdf. None selects the format by the extension.
 

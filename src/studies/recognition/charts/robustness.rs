@@ -118,7 +118,7 @@ impl Curve {
         self.chance + 0.5 * (accuracy - self.chance)
     }
 
-    /// Returns the indices of the values of the condition, from the most accurate value to the last value in a direction.
+    /// Returns the indices of the condition's values, from the value with the highest accuracy to the smallest or the largest value.
     fn outwards(&self, direction: Direction) -> Vec<usize> {
         match direction {
             Direction::Smaller => (0..=self.best()).rev().collect(),

@@ -73,7 +73,7 @@ pub struct MeasuredTrial<'a> {
     pub group_keys: Option<&'a Hashed<Array1<usize>>>,
 }
 
-/// Inputs of the signal chain; steps without effect are omitted.
+/// Inputs of the signal chain. Signal steps without effect are omitted.
 #[derive(Clone, Debug)]
 pub struct SignalInputs {
     /// Steps of the signal chain, in order of application.

@@ -13,7 +13,7 @@ use crate::world::robot::xml::Element;
 use crate::world::robot::{Joint, JointKind, Link, LinkGeometry};
 use std::path::Path;
 
-/// Largest number of models inside each other. A file that attaches itself exceeds the number.
+/// Maximum nesting depth of attached models. A file that attaches itself exceeds this depth.
 const MAX_DEPTH: usize = 20;
 /// Largest number of models that are attached to a model and to each other. With a larger value, a few small files can take minutes.
 const MAX_MODELS: usize = 1_000;
