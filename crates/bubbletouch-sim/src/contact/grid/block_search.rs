@@ -151,9 +151,10 @@ pub(super) struct PlacedBlock {
     pub candidates: Candidates,
     /// Largest number of candidates among the triangles with few candidates.
     pub n_few: u32,
-    /// Numbers of columns and rows of the candidates of triangles with few candidates; no rows for other triangles.
-    n_columns: Lane,
-    n_rows: Lane,
+    /// Column and row of the candidate that is tested next.
+    next: [Lane; 2],
+    /// Row after the last candidate of triangles with few candidates; zero for other triangles.
+    end: Lane,
     /// Corners, metres.
     corners: [[Lane; 3]; 3],
     /// Vector (x, y) by which the face is moved, metres: the radius along the normal that points down; zero if the triangle is steep.
@@ -177,8 +178,8 @@ impl PlacedBlock {
     pub const EMPTY: Self = Self {
         candidates: Candidates::NONE,
         n_few: 0,
-        n_columns: [0.0; LANES],
-        n_rows: [0.0; LANES],
+        next: [[0.0; LANES]; 2],
+        end: [0.0; LANES],
         corners: [[[0.0; LANES]; 3]; 3],
         moved: [[0.0; LANES]; 2],
         sign: [0.0; LANES],
@@ -192,7 +193,7 @@ impl PlacedBlock {
 }
 
 /// One candidate of each triangle of a block.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub(super) struct Tested {
     pub columns: [u32; LANES],
@@ -525,8 +526,9 @@ impl BlockSearch {
             let n_rows = found.rows[1] - found.rows[0];
             let n = integer(n_columns * n_rows);
             let has_few = found.is_wanted & (n <= few);
-            placed.n_columns[lane] = n_columns;
-            placed.n_rows[lane] = if has_few { n_rows } else { 0.0 };
+            placed.next[0][lane] = found.columns[0];
+            placed.next[1][lane] = found.rows[0];
+            placed.end[lane] = if has_few { found.rows[1] } else { 0.0 };
             n_few = n_few.max(if has_few { n } else { 0 });
             for k in 0..2 {
                 placed.candidates.columns[k][lane] = found.columns[k];
@@ -541,31 +543,22 @@ impl BlockSearch {
         placed.candidates.behind = behind & block.used;
     }
 
-    /// Tests candidate `number` of each triangle with few candidates. The triangle may stop the taxel below `limit`, metres, if the taxel is under the face, moved by
-    /// the radius, or at most `wide` beyond a side that the triangle evaluates.
+    /// Tests the next candidate of each triangle with few candidates. The triangle may stop the taxel below `limit`, metres, if the taxel is under the face, moved
+    /// by the radius, or at most `wide` beyond a side that the triangle evaluates.
     #[inline(always)]
-    pub fn test(&self, block: &Block, placed: &PlacedBlock, (number, limit): (u32, f32)) -> Tested {
-        let mut tested = Tested {
-            columns: [0; LANES],
-            rows: [0; LANES],
-            taxels: [0; LANES],
-            x: [0.0; LANES],
-            y: [0.0; LANES],
-            low: [0.0; LANES],
-            high: [0.0; LANES],
-            lanes: 0,
-            faces: 0,
-        };
+    pub fn test(&self, block: &Block, placed: &mut PlacedBlock, limit: f32, tested: &mut Tested) {
         let (mut lanes, mut faces) = (0, 0);
-        let number = number as f32;
         let n_of_row = self.columns.n as u32;
         for lane in 0..LANES {
-            let n_columns = placed.n_columns[lane];
-            // Rounded down; numbers below zero are not rounded to whole numbers.
-            let row = nearest_whole((number + 0.5) / n_columns + 0.5) - 1.0;
-            let is_candidate = row < placed.n_rows[lane];
-            let column = placed.candidates.columns[0][lane] + (number - row * n_columns);
-            let row = placed.candidates.rows[0][lane] + row;
+            let (column, row) = (placed.next[0][lane], placed.next[1][lane]);
+            let is_candidate = row < placed.end[lane];
+            let is_last_of_row = column + 1.5 > placed.candidates.columns[1][lane];
+            placed.next[0][lane] = if is_last_of_row {
+                placed.candidates.columns[0][lane]
+            } else {
+                column + 1.0
+            };
+            placed.next[1][lane] = if is_last_of_row { row + 1.0 } else { row };
             let (x, y) = (self.columns.at(column), self.rows_of_taxels.at(row));
             (tested.x[lane], tested.y[lane]) = (x, y);
             let (x, y) = (x - placed.moved[0][lane], y - placed.moved[1][lane]);
@@ -609,7 +602,6 @@ impl BlockSearch {
         }
         tested.lanes = lanes & block.used;
         tested.faces = faces;
-        tested
     }
 
     /// Bounds the heights at which triangles stop taxels that are not certainly under their faces.

@@ -38,7 +38,16 @@ pub(crate) struct Envelope {
     /// Smallest of the heights, metres; infinite if the goal of the press does not depend on it.
     pub first: f64,
     /// Scratch memory of the search.
-    pairs: Option<Box<([PairList; 2], FacePairs, EdgePairs)>>,
+    scratch: Option<Box<Scratch>>,
+}
+
+/// Scratch memory of a search; [`Sweep`] describes the fields.
+#[derive(Clone, Debug, Default)]
+struct Scratch {
+    waiting: [PairList; 2],
+    tests: [Tested; TESTS],
+    faces: FacePairs,
+    edges: EdgePairs,
 }
 
 impl Envelope {
@@ -80,8 +89,7 @@ impl Envelope {
             placed.lines.y.positions.len(),
         );
         let mut has_meshes = false;
-        let mut pairs = self.pairs.take().unwrap_or_default();
-        let (waiting, faces, edges) = &mut *pairs;
+        let mut scratch = self.scratch.take().unwrap_or_default();
         for (object, pose) in placed.objects.iter().zip(placed.patch_from_objects) {
             let Model::Mesh(mesh) = object else {
                 continue;
@@ -101,11 +109,12 @@ impl Envelope {
                 goal,
                 others: first,
                 bound: f64::INFINITY,
-                waiting: &mut *waiting,
+                waiting: &mut scratch.waiting,
+                tests: &mut scratch.tests,
                 beside: PlacedPairs::EMPTY,
                 is_in_front: false,
-                faces: &mut *faces,
-                edges: &mut *edges,
+                faces: &mut scratch.faces,
+                edges: &mut scratch.edges,
                 envelope: self,
                 behind_substrate: [0..0, 0..0],
             };
@@ -115,7 +124,7 @@ impl Envelope {
             let may_enter = sweep.behind_substrate;
             self.enter(&MeshAt::new(mesh, pose), placed, may_enter);
         }
-        self.pairs = Some(pairs);
+        self.scratch = Some(scratch);
         has_meshes
     }
 
@@ -176,13 +185,17 @@ fn cover(range: &mut Range<usize>, part: Range<usize>) {
     };
 }
 
-/// Maximum number of candidate taxels of a node or triangle for which the search tests whether all are already stopped below it. If larger, tests are wasted on
-/// large triangles; if smaller, small triangles are evaluated needlessly.
-const FEW: usize = 4;
+/// Maximum number of rows and of columns of the candidate taxels of a node for which the search tests whether all are already stopped below it. The test reads the
+/// four taxels in the corners of the rectangle: these are all taxels up to two rows and columns.
+const FEW: usize = 2;
 
 /// Maximum number of candidate taxels of a triangle whose pairs are evaluated in batches. If larger, more candidates are tested one after the other; if smaller,
 /// more triangles are evaluated row by row, each with its own branches.
 const MAX_PAIRS: u32 = 8;
+
+/// Number of candidates of each triangle that are tested before their pairs are added in one loop, whose end the processor cannot predict. The tested pairs are the
+/// bits of one u64. If smaller, more loops end.
+const TESTS: usize = 4;
 
 /// State of the search over one mesh.
 struct Sweep<'a> {
@@ -193,6 +206,8 @@ struct Sweep<'a> {
     bound: f64,
     /// Pairs of taxels and triangles that are not yet evaluated: pairs whose taxels are certainly under the faces, and other pairs.
     waiting: &'a mut [PairList; 2],
+    /// Memory for the tested candidates of a block.
+    tests: &'a mut [Tested; TESTS],
     /// Pairs whose taxels may be beside the faces of the triangles, and whose bounds are not yet computed.
     beside: PlacedPairs,
     /// Whether certainly no triangle is behind the substrate.
@@ -258,9 +273,12 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
                     sweep.lower(block.first as usize + lowest, rectangle);
                 }
             }
-            for number in 0..placed.n_few {
-                let tested = bounds.test(block, &placed, (number, limit));
-                sweep.pair(bounds, (block.first, &placed), &tested);
+            for first in (0..placed.n_few as usize).step_by(TESTS) {
+                let n_tests = TESTS.min(placed.n_few as usize - first);
+                for tested in &mut sweep.tests[..n_tests] {
+                    bounds.test(block, &mut placed, limit, tested);
+                }
+                sweep.pair(bounds, (block.first, &placed), n_tests);
             }
             continue;
         }
@@ -291,11 +309,17 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
 
 /// Returns the indices of the set bits, ascending.
 #[inline(always)]
-fn lanes(mut bits: u32) -> impl Iterator<Item = usize> {
+fn lanes(bits: u32) -> impl Iterator<Item = usize> {
+    set_bits(u64::from(bits))
+}
+
+/// Returns the indices of the set bits, ascending.
+#[inline(always)]
+fn set_bits(mut bits: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
-        let lane = bits.trailing_zeros();
+        let bit = bits.trailing_zeros();
         bits &= bits.wrapping_sub(1);
-        (lane < 32).then_some(lane as usize)
+        (bit < 64).then_some(bit as usize)
     })
 }
 
@@ -322,35 +346,38 @@ impl Sweep<'_> {
         }
     }
 
-    /// Returns whether the taxels of a rectangle, if they are few, are already stopped below triangles with the lower bound `low`, metres.
+    /// Returns whether the taxels of a rectangle, if they are few, are already stopped below triangles with the lower bound `low`, metres. The function has no
+    /// branches, because the processor cannot predict them.
     #[inline(always)]
     fn is_hidden(&self, [columns, rows]: &[Range<usize>; 2], low: f32) -> bool {
-        let (low, n_columns) = (f64::from(low), self.envelope.n_columns);
-        let first = rows.start * n_columns + columns.start;
-        match columns.len() * rows.len() {
-            1 => self.envelope.heights[first] <= low,
-            2..=FEW => rows.clone().all(|row| {
-                let heights = &self.envelope.heights[row * n_columns..][columns.clone()];
-                heights.iter().all(|&height| height <= low)
-            }),
-            _ => false,
-        }
+        let is_hidden = |row: usize, column: usize| {
+            self.envelope.heights[row * self.envelope.n_columns + column] <= f64::from(low)
+        };
+        let (last_row, last_column) = (rows.end - 1, columns.end - 1);
+        (rows.len() <= FEW)
+            & (columns.len() <= FEW)
+            & is_hidden(rows.start, columns.start)
+            & is_hidden(rows.start, last_column)
+            & is_hidden(last_row, columns.start)
+            & is_hidden(last_row, last_column)
     }
 
-    /// Adds the pairs of the triangles of a block, the first of which has the index `first`, and the tested taxels that are not stopped below. The loops have no
-    /// branches that depend on heights, because the processor cannot predict them.
+    /// Adds the pairs of the first `n_tests` tests of a block whose taxels are not stopped below; `first` is the index of the block's first triangle. The loops have
+    /// no branches that depend on heights, because the processor cannot predict them.
     #[inline(always)]
-    fn pair(
-        &mut self,
-        bounds: &BlockSearch,
-        (first, placed): (u32, &PlacedBlock),
-        tested: &Tested,
-    ) {
-        self.waiting[0].reserve(LANES);
-        for lane in lanes(tested.lanes & tested.faces) {
+    fn pair(&mut self, bounds: &BlockSearch, (first, placed): (u32, &PlacedBlock), n_tests: usize) {
+        let (mut faces, mut beside) = (0_u64, 0_u64);
+        for (number, tested) in self.tests.iter().take(n_tests).enumerate() {
+            faces |= u64::from(tested.lanes & tested.faces) << (number * LANES);
+            beside |= u64::from(tested.lanes & !tested.faces) << (number * LANES);
+        }
+        self.waiting[0].reserve(TESTS * LANES);
+        for bit in set_bits(faces) {
+            let (tested, lane) = (&self.tests[bit / LANES % TESTS], bit % LANES);
             self.wait(0, tested.pair(first, lane), tested.high[lane]);
         }
-        for lane in lanes(tested.lanes & !tested.faces) {
+        for bit in set_bits(beside) {
+            let (tested, lane) = (&self.tests[bit / LANES % TESTS], bit % LANES);
             let pair = tested.pair(first, lane);
             let is_open = self.envelope.heights[pair.taxel as usize] > f64::from(pair.low);
             self.beside.add((pair, is_open), (placed, tested), lane);
