@@ -4,11 +4,12 @@ use crate::arrays::{numbers, shape_of};
 use crate::errors::{bad_input, exception, guarded};
 use crate::study::{ColumnsOfTable, columns};
 use crate::threads::aside;
-use bubbletouch::audit::{AuditData, AuditOptions, Finding, audit, audit_files};
+use bubbletouch::audit::{AuditData, AuditFiles, AuditOptions, Finding, audit, audit_files};
 use bubbletouch::report::folder::write_files;
 use ndarray::Ix2;
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Finding of an audit: check, subject, verdict, value, interval, baseline, p-value, corrected p-value, sentence and advice.
@@ -99,32 +100,83 @@ pub fn run_audit<'py>(
             }
             data.sort_by_time(&times);
         }
-        let before_contact = before_contact.map(|(from, to)| from..to);
-        if let Some(range) = &before_contact
-            && (range.is_empty() || range.end > n_frames)
-        {
-            let given = format!("{}..{}", range.start, range.end);
-            let allowed = format!("(start, stop) with start < stop ≤ {n_frames}");
-            return Err(bad_input("before_contact", given, allowed));
-        }
-        let options = AuditOptions {
-            seed,
-            n_permutations: permutations,
-            before_contact,
-        };
-        let found = aside(py, move |_| -> bubbletouch::Result<_> {
-            let found = audit(data, options)?;
-            let (findings, tables) = (found.findings.clone(), found.tables.clone());
-            let command = "bubbletouch.audit(frames, labels, …)";
-            let files = audit_files(found, &name, command)?;
-            write_files(&out, files)?;
-            Ok((findings, tables))
-        });
-        let (findings, tables) = found?.map_err(exception)?;
-        let tables = tables.iter().map(|table| columns(py, table));
-        Ok((
-            findings.iter().map(said).collect(),
-            tables.collect::<PyResult<_>>()?,
-        ))
+        audit_of(py, data, (before_contact, seed, permutations), (name, out))
     })
+}
+
+/// Audits files, by their names `data`, `labels`, `groups`, `sessions`, `times`, `lengths`, `frames_test`, `labels_test`, `groups_test` and `lengths_test`, as the
+/// command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the findings and the tables.
+#[pyfunction]
+#[pyo3(signature = (files, order, full_scale, before_contact, seed, permutations, name, out))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "called by bubbletouch.audit alone"
+)]
+pub fn run_audit_files<'py>(
+    py: Python<'py>,
+    mut files: BTreeMap<String, PathBuf>,
+    order: Option<String>,
+    full_scale: Option<f64>,
+    before_contact: Option<(usize, usize)>,
+    seed: u64,
+    permutations: usize,
+    name: String,
+    out: PathBuf,
+) -> PyResult<(Vec<SaidFinding>, Vec<ColumnsOfTable<'py>>)> {
+    guarded(|| {
+        let mut file = |name: &str| files.remove(name);
+        let files = AuditFiles {
+            data: file("data").unwrap_or_default(),
+            labels: file("labels"),
+            groups: file("groups"),
+            sessions: file("sessions"),
+            times: file("times"),
+            lengths: file("lengths"),
+            lengths_test: file("lengths_test"),
+            frames_test: file("frames_test"),
+            labels_test: file("labels_test"),
+            groups_test: file("groups_test"),
+            order,
+            full_scale,
+            ..AuditFiles::default()
+        };
+        let data = aside(py, move |_| files.read())?.map_err(exception)?;
+        audit_of(py, data, (before_contact, seed, permutations), (name, out))
+    })
+}
+
+/// Audits data; the options are the frames before contact, the seed and the number of permutations. Writes the page, tables and charts to a folder.
+fn audit_of<'py>(
+    py: Python<'py>,
+    data: AuditData,
+    (before_contact, seed, n_permutations): (Option<(usize, usize)>, u64, usize),
+    (name, out): (String, PathBuf),
+) -> PyResult<(Vec<SaidFinding>, Vec<ColumnsOfTable<'py>>)> {
+    let before_contact = before_contact.map(|(from, to)| from..to);
+    if let Some(range) = &before_contact
+        && (range.is_empty() || range.end > data.n_frames)
+    {
+        let given = format!("{}..{}", range.start, range.end);
+        let allowed = format!("(start, stop) with start < stop ≤ {}", data.n_frames);
+        return Err(bad_input("before_contact", given, allowed));
+    }
+    let options = AuditOptions {
+        seed,
+        n_permutations,
+        before_contact,
+    };
+    let found = aside(py, move |_| -> bubbletouch::Result<_> {
+        let found = audit(data, options)?;
+        let (findings, tables) = (found.findings.clone(), found.tables.clone());
+        let command = "bubbletouch.audit(frames, labels, …)";
+        let files = audit_files(found, &name, command)?;
+        write_files(&out, files)?;
+        Ok((findings, tables))
+    });
+    let (findings, tables) = found?.map_err(exception)?;
+    let tables = tables.iter().map(|table| columns(py, table));
+    Ok((
+        findings.iter().map(said).collect(),
+        tables.collect::<PyResult<_>>()?,
+    ))
 }

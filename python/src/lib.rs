@@ -36,7 +36,7 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use audit::run_audit;
+    use audit::{run_audit, run_audit_files};
     #[pymodule_export]
     use catalogue::{Catalogue, Solid};
     #[pymodule_export]

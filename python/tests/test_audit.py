@@ -86,3 +86,85 @@ def test_wrong_test_sets_are_named() -> None:
         bt.audit(frames, labels, test=frames)
     with pytest.raises(ValueError, match="^test: labels are numbers and texts"):
         bt.audit(frames, labels, test=(frames, np.zeros(len(frames), dtype=int)))
+
+
+def said(found: bt.Audit) -> str:
+    return repr(found.findings)
+
+
+def test_paths_are_read_as_by_the_command(tmp_path: Path) -> None:
+    frames, labels = data()
+    groups = np.arange(120) // 5
+    np.savez(tmp_path / "recording.npz", frames=frames, labels=labels, groups=groups)
+    np.save(tmp_path / "touches.npy", frames)
+    np.save(tmp_path / "classes.npy", labels)
+    whole = said(bt.audit(frames, labels, groups, permutations=399))
+    assert said(bt.audit(tmp_path / "recording.npz", permutations=399)) == whole
+    assert said(bt.audit(str(tmp_path / "touches.npy"), labels, groups, permutations=399)) == whole
+    assert said(bt.audit(frames, tmp_path / "classes.npy", groups, permutations=399)) == whole
+    days = np.datetime64("2024-01-01") + groups // 3
+    assert said(bt.audit(tmp_path / "recording.npz", sessions=days, permutations=399)) == said(
+        bt.audit(frames, labels, groups, sessions=groups // 3, permutations=399)
+    )
+    test = (tmp_path / "touches.npy", labels)
+    assert said(bt.audit(frames + 0.01, labels, test=test, permutations=399)) == said(
+        bt.audit(frames + 0.01, labels, test=(frames, labels), permutations=399)
+    )
+    with pytest.raises(FileNotFoundError, match=r"^frames: .*absent\.npz: no such file; an array, or the path of a file$"):
+        bt.audit(tmp_path / "absent.npz")
+    with pytest.raises(FileNotFoundError, match="^labels: object: no such file; an array, or the path of a file$"):
+        bt.audit(frames, "object")
+    with pytest.raises(ValueError, match=r"^labels: 119 values; 120, one for each touch of .*touches\.npy$"):
+        bt.audit(tmp_path / "touches.npy", labels[1:])
+    with pytest.raises(ValueError, match="^frames: dict; an array, or the path of a file$"):
+        bt.audit({"thumb": frames}, labels)  # type: ignore[arg-type]
+
+
+def test_files_of_other_formats_are_read(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    frames, labels = data()
+    with h5py.File(tmp_path / "touches.h5", "w") as file:
+        file["frames"], file["labels"] = frames, labels.astype("S")
+    assert said(bt.audit(tmp_path / "touches.h5", permutations=399)) == said(bt.audit(frames, labels, permutations=399))
+
+
+def test_masked_readings_are_missing_and_masked_labels_are_refused() -> None:
+    frames, labels = data()
+    masked = np.ma.masked_array(frames, mask=np.zeros(frames.shape, bool))
+    masked[3, 5, 5] = np.ma.masked
+    found = bt.audit(masked, labels, permutations=399)
+    missing = next(finding for finding in found.findings if finding.check == "missing_readings")
+    assert missing.value == 1 / frames.size
+    numbers = np.unique(labels, return_inverse=True)[1]
+    with pytest.raises(ValueError, match="^labels, position 7: nan; integers or texts$"):
+        bt.audit(frames, np.ma.masked_array(numbers, mask=np.arange(120) == 7))
+    with pytest.raises(ValueError, match="^groups, position 0: None; integers or texts$"):
+        bt.audit(frames, labels, [None] * 120)
+    with pytest.raises(ValueError, match="^labels, position 2: nan; integers or texts$"):
+        bt.audit(frames, [np.nan if touch == 2 else label for touch, label in enumerate(labels.tolist())])
+    one_hot = bt.audit(frames, np.eye(3, dtype=int)[numbers], permutations=399)
+    assert said(one_hot) == said(bt.audit(frames, numbers, permutations=399))
+
+
+def test_padding_of_unequal_touches_is_not_missing(tmp_path: Path) -> None:
+    random = np.random.default_rng(11)
+    frames, labels = data()
+    lengths = random.integers(3, 8, len(frames))
+    touches = [frame + 0.02 * random.standard_normal((n, 12, 12)) for frame, n in zip(frames, lengths, strict=True)]
+    found = bt.audit(touches, labels, permutations=399)
+    missing, _, repeated = (finding for finding in found.findings if finding.check == "missing_readings")
+    assert (missing.verdict, missing.value, repeated.verdict) == ("passed", 0.0, "passed")
+    assert "Touches have 3 to 7 frames; frames after the end of a touch are not counted." in missing.sentence
+    assert not found.faults
+    # Touches may be padded by any number if their lengths are given, in memory and in files.
+    padded = np.zeros((len(frames), 7, 12, 12))
+    for row, touch in zip(padded, touches, strict=True):
+        row[: len(touch)] = touch
+    recorded = bt.Recorded(padded, labels, lengths=lengths)
+    assert said(bt.audit(recorded, permutations=399)) == said(found)
+    np.savez(tmp_path / "touches.npz", frames=padded, labels=labels, lengths=lengths)
+    assert said(bt.audit(tmp_path / "touches.npz", permutations=399)) == said(found)
+    # A length that names the class is a confound.
+    of_class = [frame[None].repeat(3 + 2 * number, axis=0) for frame, number in zip(frames, np.unique(labels, return_inverse=True)[1], strict=True)]
+    noisy = [touch + 0.02 * random.standard_normal(touch.shape) for touch in of_class]
+    assert "frames_of_padding" in {name for name in bt.audit(noisy, labels, permutations=399).tables["confounds"]["source"]}

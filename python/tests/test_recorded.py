@@ -414,3 +414,31 @@ def test_several_values_per_taxel_are_channels():
     assert seen["rows"]
     for rows, of in seen["rows"]:
         assert all(known[row.astype(np.float32).tobytes()] == label for row, label in zip(rows, of, strict=True))
+
+
+def test_links_of_hdf5_files_are_followed(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    frames = np.arange(96, dtype=float).reshape(6, 4, 4)
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["frames"] = frames
+    with h5py.File(tmp_path / "links.h5", "w") as file:
+        file["data/frames"], file["data/labels"] = frames, np.arange(6) % 2
+        file["soft"], file["far"] = h5py.SoftLink("/data/frames"), h5py.ExternalLink("other.h5", "/frames")
+        file["data/up"], file["none"] = h5py.SoftLink("/"), h5py.SoftLink("/absent")
+    for name in ("data/frames", "/data/frames", "soft", "far"):
+        found = bt.read_recorded(tmp_path / "links.h5", name, labels="/data/labels")
+        assert np.array_equal(found.frames, frames) and found.labels.tolist() == [0, 1] * 3
+    with pytest.raises(ValueError, match="no array `none`; one of data/frames, data/labels, far, soft"):
+        bt.read_recorded(tmp_path / "links.h5", "none")
+
+
+def test_dates_are_groups():
+    study = {"question": "?", "trials": 2, "skin": {"pitch_mm": 2.0, "stroke_mm": 1.0}, "recognition": {"classifier": "nearest_centroid"}}
+    frames = np.random.default_rng(1).random((40, 4, 4))
+    labels, days = np.arange(40) % 2, np.arange(40) // 4
+    dates = np.datetime64("2024-02-27") + days
+    run = [bt.run(study, recorded={"frames": frames, "labels": labels, "groups": groups}) for groups in (days, dates)]
+    assert run[0]["accuracy"]["accuracy"].tolist() == run[1]["accuracy"]["accuracy"].tolist()
+    dates[3] = np.datetime64("NaT")
+    with pytest.raises(ValueError, match="^recorded.groups, position 3: NaT; integers or texts$"):
+        bt.run(study, recorded={"frames": frames, "labels": labels, "groups": dates})

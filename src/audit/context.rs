@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::quantile::quantile;
 use crate::random::Seed;
 use bubbletouch_sim::audit::dependence::{max_permutations, permutes_again};
-use bubbletouch_sim::audit::missing::{count_missing, fill_missing};
+use bubbletouch_sim::audit::missing::{count_missing, fill_missing, fill_padding};
 use bubbletouch_sim::audit::pooled::{blocks_of, pooled, spans};
 use bubbletouch_sim::audit::taxels::{
     TaxelReadings, active_std, constant_contact, contact_sums, taxel_readings, untouched_taxels,
@@ -62,7 +62,9 @@ pub struct Context {
     pub data: AuditData,
     /// Options of the audit.
     pub options: AuditOptions,
-    /// Number of missing readings of each taxel.
+    /// Number of padded frames at the end of each touch; their readings are replaced by other frames of the touch.
+    pub n_padded: Vec<usize>,
+    /// Number of missing readings of each taxel, without padded frames.
     pub n_missing: Vec<usize>,
     /// Class of each touch; 0 without labels.
     pub labels: Vec<usize>,
@@ -114,7 +116,12 @@ impl Context {
     pub fn new(mut data: AuditData, options: AuditOptions) -> Result<Self> {
         data.check()?;
         let seed = Seed::new(options.seed).named("audit");
-        let n_missing = count_missing(data.frames.view());
+        let mut n_missing = count_missing(data.frames.view());
+        let n_padded = fill_padding(&mut data.frames, data.n_frames);
+        let n_frames_of_padding: usize = n_padded.iter().sum();
+        for count in &mut n_missing {
+            *count -= n_frames_of_padding;
+        }
         fill_missing(&mut data.frames, &n_missing);
         let n = data.n_touches();
         let labels = data.labels.clone().unwrap_or_else(|| vec![0; n]);
@@ -166,6 +173,7 @@ impl Context {
         };
         let plateau = plateau_of(&skin, &taxels);
         Ok(Self {
+            n_padded,
             n_missing,
             labels,
             n_classes,

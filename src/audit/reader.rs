@@ -6,8 +6,9 @@ use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::{
     ClassLabels, KeyValue, group_keys, is_member, read_class_values, read_group_values,
 };
+use crate::studies::recognition::frames::touch_lengths::lengths_of_file;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
-use ndarray::{Array2, Axis, concatenate};
+use ndarray::{Array2, Axis, concatenate, s};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +30,10 @@ pub struct AuditFiles {
     pub sessions: Option<PathBuf>,
     /// File with the time of each touch, a number; `None` for an array or file `times` beside the frames, if there is one.
     pub times: Option<PathBuf>,
+    /// File with the number of frames of each touch; `None` for an array or file `lengths` beside the frames, if there is one.
+    pub lengths: Option<PathBuf>,
+    /// File with the number of frames of each touch of the test set; `None` for an array or file `lengths_test` beside the frames, if there is one.
+    pub lengths_test: Option<PathBuf>,
     /// File with the frames of a given test set; `None` for an array or file `frames_test` beside the frames, if there is one.
     pub frames_test: Option<PathBuf>,
     /// File with the class of each touch of the test set; `None` for an array or file `labels_test` beside the frames.
@@ -110,6 +115,8 @@ impl AuditFiles {
             data: spec.frames.clone(),
             labels: self.labels.clone().or_else(|| given("labels")),
             groups: self.groups.clone().or_else(|| given("groups")),
+            lengths: given("lengths"),
+            lengths_test: given("lengths_test"),
             frames_test: given("frames_test"),
             labels_test: given("labels_test"),
             groups_test: given("groups_test"),
@@ -129,6 +136,7 @@ impl AuditFiles {
             let of_test = Self {
                 labels: self.labels_test.clone(),
                 groups: self.groups_test.clone(),
+                lengths: self.lengths_test.clone(),
                 sessions: None,
                 times: None,
                 ..self.clone()
@@ -223,11 +231,20 @@ impl AuditFiles {
         spec.frames_test = (!end.is_empty()).then(|| frames.to_owned());
         let shape = spec.shape_of(&key_of_frames).map_err(key)?;
         let array = FileArray::read(frames, &spec.array_name(&key_of_frames))?;
-        let readings = shape.arrange(array.into_numbers()?);
+        let mut readings = shape.arrange(array.into_numbers()?);
         let n = shape.n_touches;
         let file = |given: &Option<PathBuf>, name: &str| {
             beside((frames, folder), given, &format!("{name}{end}"))
         };
+        if let Some(path) = file(&self.lengths, "lengths") {
+            let lengths = lengths_of_file((&path, &format!("lengths{end}")), &shape, frames)?;
+            // Frames after the end of a touch are padding.
+            for (touch, length) in lengths.into_iter().enumerate() {
+                let first = touch * shape.n_frames;
+                let padding = first + length..first + shape.n_frames;
+                readings.slice_mut(s![padding, ..]).fill(f64::NAN);
+            }
+        }
         let of_length = |values: Vec<KeyValue>, path: &Path| match values.len() == n {
             true => Ok(values),
             false => {

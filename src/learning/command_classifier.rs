@@ -135,6 +135,11 @@ fn is_program(program: &str) -> bool {
 }
 
 impl ForeignModel for CommandModel {
+    /// Returns true: the program trains and predicts in one call.
+    fn trains_in_predictions(&self) -> bool {
+        true
+    }
+
     fn predict(&self, rows: ArrayView2<f64>) -> Result<Vec<usize>> {
         let of = &self.classifier;
         let unwritten = |error: &dyn std::fmt::Display| {

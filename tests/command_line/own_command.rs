@@ -76,6 +76,19 @@ fn a_command_is_a_classifier_of_a_study() {
             .contains("mine")
     );
 
+    // The program trains and decides in one call, whose time is the time of decisions and a part of the training time.
+    let table = fs::read_to_string(case.path("out/timing.csv")).unwrap();
+    let mut times = csv::Reader::from_reader(table.as_bytes());
+    let headers = times.headers().unwrap().clone();
+    let place = |name: &str| headers.iter().position(|header| header == name).unwrap();
+    for row in times.records().map(Result::unwrap) {
+        let seconds = |name: &str| -> f64 { row[place(name)].parse().unwrap() };
+        if &row[place("classifier")] == "mine" {
+            assert!(seconds("predict_s") > 1e-4, "{row:?}");
+            assert!(seconds("fit_s") >= seconds("predict_s"), "{row:?}");
+        }
+    }
+
     // A second run and a report use the stored results and do not call the program.
     assert_eq!(n_calls(&case), 2);
     case.succeeds(&run);
@@ -155,6 +168,10 @@ fn a_command_that_fails_is_named_with_its_message() {
     );
     let output = case.run(&["run", "study.toml", "--out", "others"]);
     assert!(!output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr);
+    let reason = "others/failures.csv: 2 of 5 work items failed; the file says why, and the same command tries them again. The first reason: \
+        configuration 1 (mine, raw), trial 0, classifier mine: sh ended with exit status: 3: no convergence";
+    assert!(said.contains(reason), "{said}");
     let failures = fs::read_to_string(case.path("others/failures.csv")).unwrap();
     assert_eq!(failures.matches("no convergence").count(), 2, "{failures}");
     assert!(case.path("others/summary.csv").exists());

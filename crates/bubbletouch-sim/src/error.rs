@@ -33,7 +33,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// Failure of some work items of a study; the results of all other work items are written. The command exits with code 1.
-    #[error("{path}: {n_failed} of {n_all} work items failed; the file says why, and the same command tries them again", path = path.display())]
+    #[error("{path}: {n_failed} of {n_all} work items failed; the file says why, and the same command tries them again{reason}", path = path.display(), reason = first_reason(first))]
     WorkItems {
         /// Path of the table of failures.
         path: PathBuf,
@@ -41,7 +41,17 @@ pub enum Error {
         n_failed: usize,
         /// Number of all work items.
         n_all: usize,
+        /// Cause of the first failure in the table; empty if unknown.
+        first: String,
     },
+}
+
+/// Returns the end of the message on failed work items, with the cause of the first failure.
+fn first_reason(cause: &str) -> String {
+    match cause {
+        "" => String::new(),
+        cause => format!(". The first reason: {cause}"),
+    }
 }
 
 impl Error {

@@ -32,6 +32,11 @@ pub trait ClassModel: Debug + Send + Sync {
         0
     }
 
+    /// Returns whether the model is trained anew in each call that predicts. The time of such a call is training time, too.
+    fn trains_in_predictions(&self) -> bool {
+        false
+    }
+
     /// Returns for each row of scores the label with the largest sum of score and log-prior; if several are equal, the lowest label.
     fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         let prior = self

@@ -160,12 +160,22 @@ def _open_hdf5(file: Path) -> Source:
     opened = h5py.File(file, "r")
     names: list[str] = []
 
-    def visit(name: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset):
-            # A table has an array for each of its columns.
-            names.extend([f"{name}/{column}" for column in item.dtype.names or ()] or [name])
+    def visit(group: Any, prefix: str, above: tuple[Any, ...]) -> None:
+        for key in group:
+            try:
+                item = group[key]
+            except (KeyError, OSError):
+                # A link to an object that does not exist.
+                continue
+            name = f"{prefix}{key}"
+            if isinstance(item, h5py.Dataset):
+                # A table has an array for each of its columns.
+                names.extend([f"{name}/{column}" for column in item.dtype.names or ()] or [name])
+            elif isinstance(item, h5py.Group) and item not in above:
+                # Links are followed, but not to a group that contains the link.
+                visit(item, f"{name}/", (*above, item))
 
-    opened.visititems(visit)
+    visit(opened, "", (opened["/"],))
 
     def read(name: str) -> Array:
         table, _, column = name.rpartition("/")

@@ -21,7 +21,9 @@ def as_array(place: str, values: Any) -> Array:
             values = values.detach().cpu()
             # NumPy has no type bfloat16.
             values = values.float() if "bfloat16" in str(values.dtype) else values
-        array = np.asarray(values)
+        # NumPy would convert the numbers of a list with texts to texts, also NaN.
+        is_mixed = isinstance(values, list | tuple) and len({isinstance(value, str) for value in values}) > 1
+        array = np.asarray(values, dtype=object if is_mixed else None)
     except (TypeError, ValueError, RuntimeError) as error:
         raise ValueError(f"{place}: {type(values).__name__} that cannot be converted to an array ({error}); an array") from None
     if array.ndim == 0:
@@ -54,6 +56,11 @@ def as_keys(place: str, values: ArrayLike, n: int | None = None) -> Array:
     if array.dtype.kind == "T":
         # Texts of any length, as Zarr stores them.
         array = np.asarray(array.tolist(), dtype=str)
+    if array.dtype.kind == "M":
+        # Dates, such as those of sessions.
+        if np.isnat(array).any():
+            raise ValueError(f"{place}, position {np.flatnonzero(np.isnat(array))[0]}: NaT; integers or texts")
+        array = array.astype(str)
     if array.dtype.kind in "SO":
         decoded = [value.decode() if isinstance(value, bytes) else value for value in array.ravel().tolist()]
         if not all(isinstance(value, str | int) for value in decoded):

@@ -31,6 +31,7 @@ __all__ = [
     "advise",
     "choose_svm",
     "run_audit",
+    "run_audit_files",
     "run_study",
     "toml_of",
     "touch_poses",
@@ -1303,6 +1304,20 @@ def run_audit(
 ) -> tuple[list[tuple[Any, ...]], list[tuple[str, str, str, dict[str, Any]]]]:
     """Audits frames, shape (n_touches, n_frames, n_taxels), with one label, group, session and time per touch. Touches from number `n_training` on are a
     given test set. Writes the page, tables and charts to a folder. Returns the findings and the tables.
+    """
+
+def run_audit_files(
+    files: Mapping[str, _Path],
+    order: str | None,
+    full_scale: float | None,
+    before_contact: tuple[int, int] | None,
+    seed: int,
+    permutations: int,
+    name: str,
+    out: _Path,
+) -> tuple[list[tuple[Any, ...]], list[tuple[str, str, str, dict[str, Any]]]]:
+    """Audits files, by their names `data`, `labels`, `groups`, `sessions`, `times`, `lengths`, `frames_test`, `labels_test`, `groups_test` and `lengths_test`, as the
+    command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the findings and the tables.
     """
 
 def run_study(

@@ -13,8 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bubbletouch import _core
-from bubbletouch.recorded import Recorded
+from bubbletouch._arrays import Array, as_array, as_keys, as_numbers, padded
+from bubbletouch.recorded import Recorded, named
+from bubbletouch.recorded_files import read_recorded
 from bubbletouch.study import Table
+
+# Findings and tables of an audit, as the core returns them.
+_Found = tuple[list[tuple[Any, ...]], list[tuple[str, str, str, dict[str, Any]]]]
 
 
 @dataclass(frozen=True)
@@ -75,14 +80,20 @@ class Audit:
         return f"<bubbletouch.Audit in {self.folder}: {names or 'no faults'}>"
 
 
+# Order, full scale, frames before contact, seed and number of permutations.
+_Options = tuple[str | None, float | None, tuple[int, int] | None, int, int]
+# A path of a file stands for the array in it.
+_Given = ArrayLike | PathLike[str] | None
+
+
 def audit(
-    frames: ArrayLike | Recorded,
-    labels: ArrayLike | None = None,
-    groups: ArrayLike | None = None,
+    frames: ArrayLike | Sequence[ArrayLike] | Recorded | PathLike[str],
+    labels: _Given = None,
+    groups: _Given = None,
     *,
-    sessions: ArrayLike | None = None,
-    times: ArrayLike | None = None,
-    test: Recorded | ArrayLike | tuple[ArrayLike, ...] | None = None,
+    sessions: _Given = None,
+    times: _Given = None,
+    test: Recorded | PathLike[str] | tuple[_Given, ...] | None = None,
     order: str | None = None,
     full_scale: float | None = None,
     before_contact: tuple[int, int] | None = None,
@@ -92,64 +103,135 @@ def audit(
 ) -> Audit:
     """Audits a data set; equals the command `bubbletouch audit`.
 
-    frames: readings, shape (n, rows, columns), (n, n_frames, rows, columns) or (n, n_taxels); NaN for a missing reading. A Recorded of one sensor
-    contains labels, groups, order and full scale, too.
-    labels: class of each touch, numbers or texts, shape (n,). If None, only checks without classes are made.
+    frames: readings, shape (n, rows, columns), (n, n_frames, rows, columns) or (n, n_taxels); NaN or a masked value is a missing reading. A list contains
+    touches of unequal length. A Recorded of one sensor contains labels, groups, order and full scale, too.
+    A path is read as by the command, with the labels, groups, sessions, times and the test set beside the frames. Formats that the command does not read,
+    such as HDF5 and LeRobot, are read by `read_recorded`. Each of the other arrays may also be the path of a file.
+    labels: class of each touch, integers or texts, shape (n,), or entries 0 and 1, shape (n, classes). If None, only checks without classes are made.
     groups, sessions: group (grasp, pose, subject) and session (file, day, mounting) of each touch, shape (n,).
     times: time of each touch, shape (n,). If None, the order of the touches is their order in time.
-    test: given test set, one more split: a tuple (frames, labels) or (frames, labels, groups), or a Recorded. Its touches follow those of `frames`, so
-    that `sessions` and `times`, if given, contain the values of both. None: a Recorded may contain `frames_test`, `labels_test` and `groups_test` in its keys.
+    test: given test set, one more split: a tuple (frames, labels) or (frames, labels, groups), a Recorded, or the path of the frames. Its touches follow those
+    of `frames`, so that `sessions` and `times`, if given, contain the values of both. None: a Recorded may contain `frames_test`, `labels_test` and
+    `groups_test` in its keys.
     order: one letter for each axis of `frames`: n touches, t frames, y rows, x columns, c taxels. None: "nc", "nyx" or "ntyx".
     full_scale: reading at full scale. If None, a plateau of the largest readings counts as saturation.
     before_contact: range (start, stop) of the frames of each touch before the contact. If None, the audit detects the frames without contact.
     out: folder of the page, tables and charts. If None, a temporary folder is used and deleted with the Audit.
     seed, permutations: seed of splits and permutations, and number of permutations of each test.
 
-    Raises ValueError if an argument is invalid, and OSError if a file cannot be written.
+    Raises ValueError if an argument is invalid, and OSError if a file does not exist or cannot be written.
     """
-    if isinstance(frames, Recorded):
-        recorded = frames
-        if isinstance(recorded.frames, Mapping):
-            raise ValueError(f"frames: sensors {', '.join(recorded.frames)}; one sensor, because checks compare readings: Recorded.frames[NAME]")
+    if not 399 <= permutations <= 100_000:
+        raise ValueError(f"permutations: {permutations}; 399 to 100000")
+    data: Any = frames
+    lengths: Any = None
+    if _is_path(data) and _needs_reader(Path(data)):
+        data = read_recorded(data)
+    if isinstance(data, Recorded):
+        recorded = _of_one_sensor("frames", data)
         labels = recorded.labels if labels is None else labels
         groups = recorded.groups if groups is None else groups
         order = order or (recorded.order if isinstance(recorded.order, str) else None)
         test = _test_of_keys(recorded) if test is None else test
         full_scale = recorded.keys.get("full_scale") if full_scale is None else full_scale
-        frames = recorded.frames
-    array, n_frames, grid = _arranged(np.asarray(frames), order)
-    if not 399 <= permutations <= 100_000:
-        raise ValueError(f"permutations: {permutations}; 399 to 100000")
+        lengths = recorded.lengths if recorded.lengths is not None else recorded.keys.get("lengths")
+        data = recorded.frames
+    tested = _test_set(test, order)
+    given = {"data": data, "labels": labels, "groups": groups, "sessions": sessions, "times": times, "lengths": lengths} | tested[0]
+    kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
+    folder = Path(kept.name) if kept is not None else Path(out or "")
+    options = (before_contact, seed, permutations)
+    if any(_is_path(values) for values in given.values()):
+        found = _of_files(given, (order, full_scale, *options), (None if _is_path(data) else "arrays", folder))
+    else:
+        found = _of_arrays(given, (order, tested[1], full_scale, options), ("arrays" if out is None else folder.name, folder))
+    return Audit(folder, *found, kept)
+
+
+def _of_arrays(
+    given: Mapping[str, Any],
+    how: tuple[str | None, str | None, float | None, tuple[tuple[int, int] | None, int, int]],
+    name: tuple[str, Path],
+) -> _Found:
+    """Audits arrays by their names. The first two options are the orders of the axes of the frames and of the test set."""
+    order, order_of_test, full_scale, options = how
+    array, n_frames, grid = _arranged("frames", given["data"], given.get("lengths"), order)
+    labels, groups = given["labels"], given["groups"]
     n_training = len(array)
-    if test is not None:
-        tested, *of_test = _test_set(test, order)
+    has_test = given.get("frames_test") is not None
+    if has_test:
+        tested = _arranged("test", given["frames_test"], given.get("lengths_test"), order_of_test)[0]
         if tested.shape[1:] != array.shape[1:]:
             raise ValueError(f"test: frames of shape {tested.shape[1:]} a touch; {array.shape[1:]}, as the other frames")
         array = np.concatenate([array, tested])
         labels, groups = (
-            _joined(name, (first, n_training), (second, len(tested)))
-            for name, first, second in zip(("labels", "groups"), (labels, groups), of_test, strict=True)
+            _joined(name, (given[name], n_training), (given.get(f"{name}_test"), len(tested))) for name in ("labels", "groups")
         )
     classes, numbers = _numbered("labels", labels)
-    kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
-    folder = Path(kept.name) if kept is not None else Path(out or "")
-    findings, tables = _core.run_audit(
+    return _core.run_audit(
         array.reshape(len(array), n_frames, -1),
         grid,
         numbers,
         classes,
         _numbered("groups", groups)[1],
-        _numbered("sessions", sessions)[1],
-        None if times is None else np.asarray(times, dtype=np.float64).ravel().tolist(),
-        None if test is None else n_training,
+        _numbered("sessions", given["sessions"])[1],
+        None if given["times"] is None else _times(given["times"]).tolist(),
+        n_training if has_test else None,
         full_scale,
-        before_contact,
-        seed,
-        permutations,
-        "arrays" if out is None else folder.name,
-        folder,
+        *options,
+        *name,
     )
-    return Audit(folder, findings, tables, kept)
+
+
+def _of_files(given: Mapping[str, Any], options: _Options, name: tuple[str | None, Path]) -> _Found:
+    """Audits files by their names, as the command does. Arrays are written to temporary files."""
+    with tempfile.TemporaryDirectory(prefix="bubbletouch-") as folder:
+        files = {key: Path(value) for key, value in given.items() if _is_path(value)}
+        for key, path in files.items():
+            if not path.exists():
+                raise FileNotFoundError(f"{_ARGUMENTS.get(key, key)}: {path}: no such file; an array, or the path of a file")
+        arrays = {key: value for key, value in given.items() if value is not None and key not in files}
+        for key in ("data", "frames_test"):
+            if key in arrays and isinstance(arrays[key], list | tuple):
+                arrays[key], lengths = padded(_ARGUMENTS[key], arrays[key])
+                arrays |= {} if lengths is None else {key.replace("data", "lengths").replace("frames", "lengths"): lengths}
+        for key, values in arrays.items():
+            files[key] = Path(folder) / f"{key}.npy"
+            place = _ARGUMENTS.get(key, key)
+            is_key = key.removesuffix("_test") in ("labels", "groups", "sessions")
+            array = as_keys(place, values) if is_key else _times(values) if key == "times" else as_numbers(place, as_array(place, values))
+            np.save(files[key], array, allow_pickle=False)
+        try:
+            return _core.run_audit_files(files, *options, name[0] or files["data"].stem, name[1])
+        except ValueError as error:
+            raise named(error, {str(files[key]): _ARGUMENTS.get(key, key) for key in arrays}) from None
+
+
+# Arguments whose arrays have other names in `run_audit_files`.
+_ARGUMENTS = {"data": "frames", "frames_test": "test", "labels_test": "test, labels", "groups_test": "test, groups"}
+
+
+def _times(values: Any) -> Array:
+    """Returns times as numbers; dates become seconds."""
+    array = as_array("times", values)
+    if array.dtype.kind == "M":
+        array = array.astype("datetime64[ns]").astype(np.float64) / 1e9
+    return as_numbers("times", array).astype(np.float64).ravel()
+
+
+def _is_path(values: Any) -> bool:
+    return isinstance(values, str | PathLike)
+
+
+def _needs_reader(path: Path) -> bool:
+    """Returns whether `read_recorded` alone reads a file: HDF5, Zarr, Parquet and LeRobot."""
+    return path.suffix.lower() in (".h5", ".hdf5", ".zarr", ".parquet") or (path / "meta" / "info.json").is_file()
+
+
+def _of_one_sensor(place: str, recorded: Recorded) -> Recorded:
+    if isinstance(recorded.frames, Mapping):
+        raise ValueError(f"{place}: sensors {', '.join(recorded.frames)}; one sensor, because checks compare readings: Recorded.frames[NAME]")
+    return recorded
 
 
 def _test_of_keys(recorded: Recorded) -> tuple[Any, ...] | None:
@@ -159,57 +241,68 @@ def _test_of_keys(recorded: Recorded) -> tuple[Any, ...] | None:
     return None if of_test[0] is None else of_test
 
 
-def _test_set(test: Any, order: str | None) -> tuple[np.ndarray[Any, Any], Any, Any]:
-    """Returns the frames of a given test set with the axes of `_arranged`, its labels and its groups."""
+def _test_set(test: Any, order: str | None) -> tuple[dict[str, Any], str | None]:
+    """Returns the arrays of a given test set by the names of their keys, and the order of the axes of its frames."""
+    if test is None:
+        return {}, order
+    lengths = None
+    if _is_path(test):
+        test = (test, None)
     if isinstance(test, Recorded):
-        order = test.order if isinstance(test.order, str) else order
-        test = (test.frames, test.labels, test.groups)
-    if not isinstance(test, tuple) or len(test) not in (2, 3) or isinstance(test[0], Mapping):
-        raise ValueError("test: not a test set; (frames, labels), (frames, labels, groups), or a Recorded of one sensor")
-    frames, labels, groups = test if len(test) == 3 else (*test, None)
-    return _arranged(np.asarray(frames), order)[0], labels, groups
+        recorded = _of_one_sensor("test", test)
+        order = recorded.order if isinstance(recorded.order, str) else order
+        lengths = recorded.lengths
+        test = (recorded.frames, recorded.labels, recorded.groups)
+    if not isinstance(test, tuple) or len(test) not in (2, 3):
+        raise ValueError("test: not a test set; (frames, labels), (frames, labels, groups), a Recorded of one sensor, or a path")
+    return dict(zip(("frames_test", "labels_test", "groups_test"), test, strict=False)) | {"lengths_test": lengths}, order
 
 
 def _joined(name: str, *parts: tuple[ArrayLike | None, int]) -> ArrayLike | None:
     """Returns the values of the training touches, followed by those of the test set; each part has its values and its number of touches."""
-    arrays = [np.asarray(values) for values, _ in parts if values is not None]
+    arrays = [as_keys(name, values, n) for values, n in parts if values is not None]
     if not arrays:
         return None
     if len(arrays) < len(parts):
         raise ValueError(f"test: {name} of one part alone; {name} of the touches and of the test set, or of neither")
-    for values, (_, n) in zip(arrays, parts, strict=True):
-        if values.shape != (n,):
-            raise ValueError(f"{name}: shape {values.shape}; ({n},), one for each touch")
-    if len({values.dtype.kind in "US" for values in arrays}) > 1:
+    if len({values.dtype.kind == "U" for values in arrays}) > 1:
         raise ValueError(f"test: {name} are numbers and texts; one of both")
     return np.concatenate(arrays)
 
 
-def _arranged(frames: np.ndarray[Any, Any], order: str | None) -> tuple[np.ndarray[Any, Any], int, tuple[int, int] | None]:
-    """Returns the frames with the axes touch, frame, taxel or row and column; the number of frames; and the grid."""
+def _arranged(place: str, given: Any, lengths: Any, order: str | None) -> tuple[Array, int, tuple[int, int] | None]:
+    """Returns the frames with the axes touch, frame, taxel or row and column, with NaN after the end of each touch; the number of frames; and the grid."""
+    if isinstance(given, list | tuple) or getattr(given, "dtype", None) == object:
+        given, own = padded(place, list(given))
+        lengths = own if lengths is None else lengths
+    frames = as_numbers(place, as_array(place, given))
     usual = {2: "nc", 3: "nyx", 4: "ntyx"}.get(frames.ndim)
     letters = "".join((order or usual or "").split())
     is_grid = "y" in letters
     allowed = {"n", "t", "y", "x"} if is_grid else {"n", "t", "c"}
     is_order = len(letters) == frames.ndim and set(letters) <= allowed and letters.count("n") == 1
     if not is_order or (is_grid and letters.count("x") != 1) or (not is_grid and "c" not in letters):
-        given = f"shape {frames.shape} in the order {order or usual!r}"
-        raise ValueError(f"frames: {given}; a letter for each axis: n touches, t frames, y rows and x columns, or c taxels")
-    axes = [place for letter in "ntcyx" for place, own in enumerate(letters) if own == letter]
-    lengths = dict(zip(letters, frames.shape, strict=True))
-    grid = (lengths["y"], lengths["x"]) if is_grid else None
-    return np.ascontiguousarray(frames.transpose(axes)), lengths.get("t", 1), grid
+        shape = f"shape {frames.shape} in the order {order or usual!r}"
+        raise ValueError(f"{place}: {shape}; a letter for each axis: n touches, t frames, y rows and x columns, or c taxels")
+    axes = [axis for letter in "ntcyx" for axis, own in enumerate(letters) if own == letter]
+    sizes = dict(zip(letters, frames.shape, strict=True))
+    grid = (sizes["y"], sizes["x"]) if is_grid else None
+    arranged = np.ascontiguousarray(frames.transpose(axes))
+    if lengths is not None and "t" in letters:
+        numbers = np.asarray(lengths)
+        if numbers.shape != (sizes["n"],) or numbers.dtype.kind not in "iu" or numbers.min() < 1 or numbers.max() > sizes["t"]:
+            raise ValueError(f"lengths: shape {numbers.shape} of {numbers.dtype}; {sizes['n']} integers from 1 to {sizes['t']}")
+        is_after = np.arange(sizes["t"]) >= numbers[:, None]
+        if is_after.any():
+            arranged = arranged.astype(np.result_type(np.float32, arranged.dtype))
+            arranged[is_after] = np.nan
+    return arranged, sizes.get("t", 1), grid
 
 
 def _numbered(name: str, values: ArrayLike | None) -> tuple[list[str], list[int] | None]:
     """Returns the distinct values as texts and the number of each value."""
     if values is None:
         return [], None
-    array = np.asarray(values)
-    if array.ndim != 1:
-        raise ValueError(f"{name}: shape {array.shape}; one dimension, a value for each touch")
-    if array.dtype.kind == "f" and np.isnan(array).any():
-        raise ValueError(f"{name}: NaN; a value for each touch")
-    distinct, numbers = np.unique(array, return_inverse=True)
+    distinct, numbers = np.unique(as_keys(name, values), return_inverse=True)
     names: Sequence[Any] = distinct.tolist()
     return [str(name) for name in names], numbers.tolist()

@@ -142,7 +142,7 @@ def named(error: ValueError, files: Mapping[str, str]) -> ValueError:
 def _file(folder: Path, key: str, values: Array) -> str:
     """Writes an array into the folder, and returns its path."""
     name = key.rpartition(".")[2]
-    if name in _KEYS and values.dtype.kind in "OST":
+    if name in _KEYS and values.dtype.kind in "OSTM":
         values = as_keys(key, values)
     elif name not in _KEYS:
         values = as_numbers(key, values)

@@ -90,8 +90,12 @@ def _with_marks(part: Part, pattern: str) -> Part:
 
 
 def _part(
-    source: Source, wanted: Mapping[str, str | Sequence[str]], names: tuple[str | None, str | None, str | None], is_one_of_several: bool
+    source: Source, wanted: Mapping[str, str | Sequence[str]], names: tuple[str | None, ...], is_one_of_several: bool
 ) -> Part:
+    if source.attributes is not None:
+        # In HDF5 and Zarr files, a path from the root may begin with a slash.
+        wanted = {name: columns.removeprefix("/") if isinstance(columns, str) else columns for name, columns in wanted.items()}
+        names = tuple(name if name is None else name.removeprefix("/") for name in names)
     labels, groups, touches = names
     is_each = any(set("*{") & set(pattern) for pattern in wanted.values() if isinstance(pattern, str)) and not source.place.lower().endswith((".parquet", ".csv", ".tsv"))
     if is_each:

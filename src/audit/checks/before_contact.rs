@@ -55,15 +55,17 @@ pub const PADDING: Source = Source {
     is_tested: true,
 };
 
-/// Returns the number of frames at the end of each sampled touch that equal the last frame, shape (n_sample, 1). Returns `None` if these numbers are equal.
+/// Returns the number of frames at the end of each sampled touch that are padding or equal the last recorded frame, shape (n_sample, 1). Returns `None` if
+/// these numbers are equal.
 fn padding(context: &Context) -> Option<Array2<f64>> {
     let n_frames = context.data.n_frames;
     let numbers = context.sample.iter().map(|touch| {
-        let last = touch * n_frames + n_frames - 1;
+        let n_padded = context.n_padded[*touch];
+        let last = touch * n_frames + n_frames - 1 - n_padded;
         let frames = (touch * n_frames..last).rev();
         let equal =
             frames.take_while(|&row| context.data.frames.row(row) == context.data.frames.row(last));
-        equal.count() as f64
+        (n_padded + equal.count()) as f64
     });
     let numbers: Vec<f64> = numbers.collect();
     if numbers.iter().all(|&number| number == numbers[0]) {

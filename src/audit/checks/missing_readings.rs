@@ -13,15 +13,26 @@ pub const ABOUT: CheckAbout = CheckAbout {
 
 fn run(context: &Context) -> Result<Vec<Finding>> {
     let n: usize = context.n_missing.iter().sum();
-    let share = n as f64 / context.data.frames.len() as f64;
+    let n_padded: usize = context.n_padded.iter().sum();
+    let n_recorded = context.data.frames.nrows() - n_padded;
+    let share = n as f64 / (n_recorded * context.data.frames.ncols()) as f64;
     let n_taxels = context.n_missing.iter().filter(|&&count| count > 0).count();
-    let sentence = match n {
+    let mut sentence = match n {
         0 => "No reading is missing.".to_owned(),
         _ => format!(
             "{n} readings ({}) of {n_taxels} taxels are NaN or infinite. The other checks use the median of the taxel instead.",
             percent(share)
         ),
     };
+    if n_padded > 0 {
+        let lengths = context.n_padded.iter();
+        let lengths = lengths.map(|n_padded| context.data.n_frames - n_padded);
+        let [shortest, longest] =
+            [lengths.clone().min(), lengths.max()].map(Option::unwrap_or_default);
+        sentence += &format!(
+            " Touches have {shortest} to {longest} frames; frames after the end of a touch are not counted."
+        );
+    }
     let finding = Finding::counted("", share, sentence, n > 0)
         .against(0.0)
         .advice("Mask taxels with many missing readings, and leave out frames with others; state both. taxels.csv has the counts.")
@@ -66,8 +77,13 @@ fn repeated_frames(context: &Context) -> Finding {
         let why = "Each touch is a single frame; repeated touches are near-duplicates.";
         return Finding::not_checked("", why).about("repeated frames");
     }
-    let n = count_repeated(data.frames.view(), data.n_frames, &varying(context));
-    let share = n as f64 / data.frames.nrows() as f64;
+    let n = count_repeated(
+        data.frames.view(),
+        (data.n_frames, &context.n_padded),
+        &varying(context),
+    );
+    let n_padded: usize = context.n_padded.iter().sum();
+    let share = n as f64 / (data.frames.nrows() - n_padded) as f64;
     let sentence = match n {
         0 => "No frame of a touch repeats the frame before it.".to_owned(),
         _ => format!(

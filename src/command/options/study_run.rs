@@ -12,6 +12,7 @@ use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::study::journal::check_set_aside;
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::provenance::Manifest;
+use bubbletouch::table::Table;
 use bubbletouch::{Error, Result};
 use std::io::stdout;
 use std::path::PathBuf;
@@ -143,7 +144,15 @@ impl<'a> StudyRun<'a> {
                 path: self.folder.join(FAILURES_FILE),
                 n_failed,
                 n_all: self.study.n_all(),
+                first: first_reason(&outcome.tables),
             }),
         }
     }
+}
+
+/// Returns the cause of the first failed work item; empty if the tables contain none.
+fn first_reason(tables: &[Table]) -> String {
+    let failures = tables.iter().find(|table| table.file == FAILURES_FILE);
+    let first = failures.filter(|table| table.n_rows > 0);
+    first.map_or_else(String::new, |table| table.word("error", 0).to_owned())
 }

@@ -103,13 +103,21 @@ fn between(values: &[(f64, usize)], n: usize) -> Option<(f64, usize)> {
 }
 
 /// Counts frames that equal the frame before in the same touch, if the recording has noise. Frames of equal readings are omitted. Returns 0 if frames often
-/// repeat most of their readings, as frames without noise do.
-pub fn count_repeated(frames: ArrayView2<f64>, n_frames: usize, is_counted: &[bool]) -> usize {
+/// repeat most of their readings, as frames without noise do. Frames of padding, of which `n_padded` are at the end of each touch, are omitted.
+pub fn count_repeated(
+    frames: ArrayView2<f64>,
+    (n_frames, n_padded): (usize, &[usize]),
+    is_counted: &[bool],
+) -> usize {
     let counted: Vec<usize> = (0..frames.ncols())
         .filter(|&taxel| is_counted[taxel])
         .collect();
     let (mut n_repeated, mut n_still, mut n_pairs) = (0, 0, 0);
-    for row in (1..frames.nrows()).filter(|row| row % n_frames != 0) {
+    let is_recorded = |row: &usize| {
+        let frame = row % n_frames;
+        frame != 0 && frame + n_padded[row / n_frames] < n_frames
+    };
+    for row in (1..frames.nrows()).filter(is_recorded) {
         let (before, frame) = (frames.row(row - 1), frames.row(row));
         let n_equal = counted
             .iter()
@@ -181,11 +189,15 @@ mod tests {
             frames.row_mut(row).assign(&before);
         }
         let all = [true; 20];
+        let mut whole = vec![0; frames.nrows() / 5];
         // Row 5 begins a touch.
-        assert_eq!(count_repeated(frames.view(), 5, &all), 2);
+        assert_eq!(count_repeated(frames.view(), (5, &whole), &all), 2);
         assert_eq!(
-            count_repeated(frames.mapv(|x| x.max(3.0)).view(), 5, &all),
+            count_repeated(frames.mapv(|x| x.max(3.0)).view(), (5, &whole), &all),
             0
         );
+        // The last four frames of the second touch are padding, among them the repeated row 6.
+        whole[1] = 4;
+        assert_eq!(count_repeated(frames.view(), (5, &whole), &all), 1);
     }
 }

@@ -53,6 +53,11 @@ pub trait ForeignModel: Send + Sync {
     /// If the model cannot predict.
     fn predict(&self, rows: ArrayView2<f64>) -> Result<Vec<usize>>;
 
+    /// Returns whether each call that predicts also trains. The time of such a call is training time, too.
+    fn trains_in_predictions(&self) -> bool {
+        false
+    }
+
     /// Returns the log-probability of each class given the row, shape (n_rows, n_classes), in ascending order of the labels. Returns `None` if the model
     /// predicts labels alone; a decision on several touches then counts the labels as votes.
     ///
@@ -328,6 +333,10 @@ impl ForeignClassModel {
 }
 
 impl ClassModel for ForeignClassModel {
+    fn trains_in_predictions(&self) -> bool {
+        self.model.trains_in_predictions()
+    }
+
     fn classes(&self) -> &[usize] {
         &self.classes
     }

@@ -114,6 +114,14 @@ impl TrainedClassifier {
         self.model.n_capped()
     }
 
+    /// Returns whether the model is trained anew in each call that predicts.
+    pub fn trains_in_predictions(&self) -> bool {
+        match &self.model {
+            Model::Svm(_) => false,
+            Model::Classes(model) => model.trains_in_predictions(),
+        }
+    }
+
     /// Returns the trained kernel SVM; `None` for other kinds. The SVM expects scaled features.
     pub fn svm(&self) -> Option<&SvmModel> {
         match &self.model {

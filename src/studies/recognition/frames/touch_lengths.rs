@@ -25,21 +25,8 @@ impl RecordedSpec {
             _ => "lengths_test",
         };
         if let Some(path) = self.file_of(key) {
-            let array = FileArray::read(path, key)?;
-            let place = array.place.clone();
-            let lengths = array.into_numbers()?;
             let frames = self.file_of(name).unwrap_or(&self.frames);
-            one_each((path, key), (lengths.len(), shape.n_touches), frames)?;
-            let whole = |(touch, &length): (usize, &f64)| {
-                let is_length = length.fract() == 0.0;
-                let is_length = is_length && (1.0..=shape.n_frames as f64).contains(&length);
-                let refuse = || {
-                    let allowed = format!("an integer from 1 to {}", shape.n_frames);
-                    Error::input(format!("{place}, position {touch}"), length, allowed)
-                };
-                is_length.then_some(length as usize).ok_or_else(refuse)
-            };
-            return lengths.iter().enumerate().map(whole).collect();
+            return lengths_of_file((path, key), shape, frames);
         }
         if shape.n_frames == 1 {
             return Ok(vec![1; shape.n_touches]);
@@ -101,6 +88,31 @@ impl RecordedSpec {
         };
         Ok((resampled, lengths.iter().map(step).collect()))
     }
+}
+
+/// Reads the number of frames of each touch from the array `name` of a file, shape (n_touches,).
+///
+/// # Errors
+/// If the file cannot be read, has another number of values, or a value is no integer from 1 to the number of frames.
+pub(crate) fn lengths_of_file(
+    (path, name): (&Path, &str),
+    shape: &FrameShape,
+    frames: &Path,
+) -> Result<Vec<usize>> {
+    let array = FileArray::read(path, name)?;
+    let place = array.place.clone();
+    let lengths = array.into_numbers()?;
+    one_each((path, name), (lengths.len(), shape.n_touches), frames)?;
+    let whole = |(touch, &length): (usize, &f64)| {
+        let is_length = length.fract() == 0.0;
+        let is_length = is_length && (1.0..=shape.n_frames as f64).contains(&length);
+        let refuse = || {
+            let allowed = format!("an integer from 1 to {}", shape.n_frames);
+            Error::input(format!("{place}, position {touch}"), length, allowed)
+        };
+        is_length.then_some(length as usize).ok_or_else(refuse)
+    };
+    lengths.iter().enumerate().map(whole).collect()
 }
 
 /// Returns an error if the array `name` of a file does not contain exactly one value per touch.

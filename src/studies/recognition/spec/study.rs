@@ -103,8 +103,8 @@ pub struct SensingSpec {
     /// Axis: number m of measurements per frame, at least 1. Replaces `ratio`.
     pub measurements: Option<Axis<usize>>,
     /// Axis: method by which the ensemble `selected` selects the m taxels to read, from training touches only. Values: `greedy` (default; highest
-    /// validation accuracy of a nearest-neighbour classifier), `pivoted_qr` (pivots of m principal components) or `random` (a control). At most 4,096
-    /// frames of the training split are used, whatever `recognition.train_touches` is.
+    /// validation accuracy of a nearest-neighbour classifier), `pivoted_qr` (pivots of m principal components; m is below the number of training frames)
+    /// or `random` (a control). At most 4,096 frames of the training split are used, whatever `recognition.train_touches` is.
     #[schemars(with = "Option<Axis<Names<Selection>>>")]
     pub selection: Option<Axis<Selection>>,
     /// Number of measurements that the skin reads out per second. Adds the column `readout_ms`, the time to read a frame. Default: no such column.

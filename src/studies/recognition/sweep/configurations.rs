@@ -195,8 +195,11 @@ impl Sweep {
                 };
                 let given = format!("{m} {}", group.ensemble.about().words);
                 let most = n_frames.saturating_sub(1);
-                let allowed =
+                let mut allowed =
                     format!("at most {most}, one fewer than the frames of the training touches");
+                if group.selection.is_some() {
+                    allowed += "; or sensing.selection = \"greedy\" or \"random\"";
+                }
                 Err(Error::input(key, given, allowed))
             }
             _ => Ok(()),

@@ -178,6 +178,11 @@ impl Trial<'_> {
                         answered.model_s
                     } else {
                         0.0
+                    }
+                    + if answered.fitted.classifier.trains_in_predictions() {
+                        predict_s
+                    } else {
+                        0.0
                     },
                 predict_s,
                 predict_us_per_touch: 1e6 * predict_s / answered.test.targets.len() as f64,
