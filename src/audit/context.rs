@@ -12,6 +12,7 @@ use crate::random::Seed;
 use bubbletouch_sim::audit::dependence::{max_permutations, permutes_again};
 use bubbletouch_sim::audit::missing::{count_missing, fill_missing, fill_padding};
 use bubbletouch_sim::audit::pooled::{blocks_of, pooled, spans};
+use bubbletouch_sim::audit::surroundings::Surroundings;
 use bubbletouch_sim::audit::taxels::{
     TaxelReadings, active_std, constant_contact, contact_sums, taxel_readings, untouched_taxels,
     without_class_means,
@@ -90,7 +91,11 @@ pub struct Context {
     pub skin: RecordedSkin,
     /// Class of each sampled frame.
     pub frame_labels: Vec<usize>,
-    /// Reading of an untouched taxel, and the reading at full scale.
+    /// Unit of each sampled frame: its group, or the touches of one class that follow each other. Contacts within a unit can be alike.
+    pub frame_units: Vec<usize>,
+    /// Taxels around each taxel; `None` for taxels without rows and columns whose readings contact may change in both directions.
+    pub around: Option<Surroundings>,
+    /// Reading of an untouched taxel, and the reading at full scale. The reading at full scale is smaller if contact reduces the readings.
     pub scale: (f64, f64),
     /// Largest reading if several taxels share it in many frames, as a fraction of the full scale; otherwise `None`.
     pub plateau: Option<f64>,
@@ -146,18 +151,28 @@ impl Context {
             constant_contact(sample_rows.view(), &sample_labels, data.grid, active_std);
         // Touches of many frames need no more frames than touches of one. Equal steps could omit the same frames of all touches.
         let some = drawn(sampled.nrows(), 2 * MAX_SAMPLE, &seed.named("frames"));
-        let frame_labels = some
-            .iter()
-            .map(|&frame| sample_labels[frame / data.n_frames]);
-        let frame_labels = frame_labels.collect();
+        let touch_of = |frame: &usize| frame / data.n_frames;
+        let frame_labels = some.iter().map(|frame| sample_labels[touch_of(frame)]);
+        let frame_labels: Vec<usize> = frame_labels.collect();
+        let units = units(data.groups.as_deref(), &sample, &sample_labels);
+        let frame_units = some.iter().map(|frame| units[touch_of(frame)]).collect();
         let some = sampled.select(Axis(0), &some);
         let taxels = taxel_readings(some.view());
-        let (scale, skin) = skin(&data, &some, &taxels);
+        let active = (0..taxels.len())
+            .filter(|&taxel| residuals.column(taxel).std(0.0) > 0.25 * active_std)
+            .collect::<Vec<_>>();
+        let direction = direction(some.view(), &taxels, &active);
+        let (scale, skin) = skin(&data, &some, &taxels, direction.is_increasing);
+        let around = match data.grid {
+            Some(grid) => Some(Surroundings::of_grid(grid)),
+            None => (direction.is_one_sided).then(|| Surroundings::of_list(skin.touched.view())),
+        };
         // A taxel above half of the full scale in most frames is in contact.
         let level = scale.0 + 0.5 * (scale.1 - scale.0);
         for (taxel, is_untouched) in is_untouched.iter_mut().enumerate() {
             let is_varying = !taxels[taxel].is_constant();
-            *is_untouched &= !(is_pressed[taxel] || is_varying && taxels[taxel].median > level);
+            let is_in_contact = (taxels[taxel].median > level) == direction.is_increasing;
+            *is_untouched &= !(is_pressed[taxel] || is_varying && is_in_contact);
         }
         let features = features(&data, &taxels);
         let has_classes = data.labels.is_some() && n_classes > 1;
@@ -187,6 +202,8 @@ impl Context {
             taxels,
             skin,
             frame_labels,
+            frame_units,
+            around,
             scale,
             plateau,
             features,
@@ -306,25 +323,86 @@ fn drawn(n: usize, n_drawn: usize, seed: &Seed) -> Vec<usize> {
     numbers
 }
 
-/// Returns the readings at zero and at full scale, and the frames as fractions of the full scale.
+/// Returns the unit of each sampled touch: its group, or the run of touches of one class to which it belongs.
+fn units(groups: Option<&[usize]>, sample: &[usize], labels: &[usize]) -> Vec<usize> {
+    if let Some(groups) = groups {
+        return sample.iter().map(|&touch| groups[touch]).collect();
+    }
+    let mut unit = 0;
+    let units = (0..labels.len()).map(|place| {
+        unit += usize::from(place > 0 && labels[place] != labels[place - 1]);
+        unit
+    });
+    units.collect()
+}
+
+/// Direction in which contact changes the readings.
+struct Direction {
+    /// Whether contact increases most readings.
+    is_increasing: bool,
+    /// Whether contact changes the readings of nearly all taxels in the same direction.
+    is_one_sided: bool,
+}
+
+/// Minimum fraction of active taxels with the same sign of the skewness, from which contact is one-sided.
+const MIN_ONE_SIDED: f64 = 0.9;
+
+/// Finds the direction of contact by the skewness of the active taxels: contact is rarer or more variable than rest.
+fn direction(frames: ArrayView2<f64>, taxels: &[TaxelReadings], active: &[usize]) -> Direction {
+    let cubes = active.iter().map(|&taxel| {
+        let (mean, readings) = (taxels[taxel].mean, frames.column(taxel));
+        readings.iter().map(|x| (x - mean).powi(3)).sum::<f64>()
+    });
+    let cubes: Vec<f64> = cubes.collect();
+    let n_positive = cubes.iter().filter(|&&cube| cube > 0.0).count() as f64;
+    let share = n_positive / cubes.len().max(1) as f64;
+    let mut medians: Vec<f64> = taxels.iter().map(|taxel| taxel.median).collect();
+    let zero = quantile(&mut medians, 0.5);
+    let ends = active.iter().map(|&taxel| &taxels[taxel]);
+    let [below, above] = ends.fold([0.0_f64; 2], |[below, above], taxel| {
+        [
+            below.max(zero - taxel.least),
+            above.max(taxel.largest - zero),
+        ]
+    });
+    Direction {
+        is_increasing: above >= below || share > 1.0 - MIN_ONE_SIDED,
+        is_one_sided: !(1.0 - MIN_ONE_SIDED..=MIN_ONE_SIDED).contains(&share),
+    }
+}
+
+/// Returns the readings at zero and at full scale, and the frames as fractions of the full scale. If contact reduces the readings, the full scale is the smallest
+/// reading.
 fn skin(
     data: &AuditData,
     frames: &Array2<f64>,
     taxels: &[TaxelReadings],
+    is_increasing: bool,
 ) -> ((f64, f64), RecordedSkin) {
     // At least a quarter of the taxels is at rest in most frames.
     let mut medians: Vec<f64> = taxels.iter().map(|taxel| taxel.median).collect();
-    let zero = quantile(&mut medians, 0.25);
-    let largest = taxels.iter().map(|taxel| taxel.largest);
-    let largest = largest.fold(f64::NEG_INFINITY, f64::max);
-    let full_scale = data
-        .full_scale
-        .filter(|&full| full > zero)
-        .unwrap_or(largest);
-    let range = if full_scale > zero {
-        full_scale - zero
-    } else {
-        1.0
+    let zero = quantile(&mut medians, if is_increasing { 0.25 } else { 0.75 });
+    let end = match is_increasing {
+        true => taxels
+            .iter()
+            .map(|taxel| taxel.largest)
+            .fold(f64::NEG_INFINITY, f64::max),
+        false => taxels
+            .iter()
+            .map(|taxel| taxel.least)
+            .fold(f64::INFINITY, f64::min),
+    };
+    let is_beyond = |full: &f64| {
+        if is_increasing {
+            *full > zero
+        } else {
+            *full < zero
+        }
+    };
+    let full_scale = data.full_scale.filter(is_beyond).unwrap_or(end);
+    let range = match is_beyond(&full_scale) {
+        true => full_scale - zero,
+        false => 1.0,
     };
     let skin = RecordedSkin {
         shape: data.grid.unwrap_or((1, frames.ncols())),

@@ -9,7 +9,7 @@ use ndarray::{Array2, Axis};
 use rand::Rng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::StandardNormal;
+use rand_distr::{Distribution, Poisson, StandardNormal};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
@@ -76,7 +76,11 @@ fn simulated() -> (Array2<f64>, Vec<usize>) {
 /// Data of the test: frames of single-frame touches in random order, with random groups and sessions.
 struct Planted {
     frames: Array2<f64>,
+    /// Number of the simulated frame of each touch.
+    numbers: Vec<usize>,
     n_frames: usize,
+    /// Whether rows and columns are unknown.
+    is_list: bool,
     labels: Vec<usize>,
     groups: Vec<usize>,
     sessions: Vec<usize>,
@@ -101,9 +105,16 @@ impl Planted {
             groups: (0..n).map(|_| rng.gen_range(0..30)).collect(),
             sessions: (0..n).map(|_| rng.gen_range(0..8)).collect(),
             n_frames: 1,
+            is_list: false,
+            numbers: order,
             frames,
             rng,
         }
+    }
+
+    /// Returns the frames without noise.
+    fn truth(&self) -> Array2<f64> {
+        SIMULATED.0.select(Axis(0), &self.numbers)
     }
 
     fn n(&self) -> usize {
@@ -113,7 +124,13 @@ impl Planted {
     /// Replaces the touches by the touches with the given indices, in the given order.
     fn select(&mut self, order: &[usize]) {
         self.frames = self.frames.select(Axis(0), order);
-        for list in [&mut self.labels, &mut self.groups, &mut self.sessions] {
+        let lists = [
+            &mut self.numbers,
+            &mut self.labels,
+            &mut self.groups,
+            &mut self.sessions,
+        ];
+        for list in lists {
             *list = order.iter().map(|&touch| list[touch]).collect();
         }
     }
@@ -153,7 +170,7 @@ impl Planted {
         let data = AuditData {
             frames: self.frames,
             n_frames: self.n_frames,
-            grid: Some((SIDE, SIDE)),
+            grid: (!self.is_list).then_some((SIDE, SIDE)),
             labels: Some(self.labels),
             classes: OBJECTS.map(str::to_owned).to_vec(),
             groups: Some(self.groups),
@@ -612,6 +629,89 @@ const PLANTS: &[Plant] = &[
             }
         },
     },
+    Plant {
+        // Integers of 8 bits wrap around.
+        check: "saturation",
+        entails: &[
+            "hot_taxels",
+            "dead_taxels",
+            "near_duplicates",
+            "label_noise",
+        ],
+        plant: |data, strength| {
+            let largest = data.frames.iter().copied().fold(0.0, f64::max);
+            let factor = 256.0 * [1.15, 1.3, 1.6][strength] / largest;
+            data.frames
+                .mapv_inplace(|x| (factor * x + 8.0).round().rem_euclid(256.0));
+        },
+    },
+    Plant {
+        // Noise below zero wraps around at 16 bits.
+        check: "saturation",
+        entails: &[
+            "hot_taxels",
+            "dead_taxels",
+            "near_duplicates",
+            "untouched_taxels",
+            "missing_readings",
+            "drift",
+            "quantisation",
+        ],
+        plant: |data, strength| {
+            let factor = [300.0, 1000.0, 4000.0][strength];
+            data.frames
+                .mapv_inplace(|x| (factor * x).round().rem_euclid(65_536.0));
+        },
+    },
+    Plant {
+        // The taxels read only noise in one session.
+        check: "dead_taxels",
+        entails: &["hot_taxels", "drift", "sample_size"],
+        plant: |data, strength| {
+            data.sessions = (0..data.n()).map(|touch| touch * 6 / data.n()).collect();
+            for (number, taxel) in data.middle([1, 3, 6][strength]).into_iter().enumerate() {
+                for touch in (0..data.n()).filter(|&touch| data.sessions[touch] == number % 6) {
+                    data.frames[(touch, taxel)] = NOISE * normal(&mut data.rng);
+                }
+            }
+        },
+    },
+    Plant {
+        // The taxels read only noise.
+        check: "dead_taxels",
+        entails: &["hot_taxels"],
+        plant: |data, strength| {
+            for taxel in data.middle([1, 3, 6][strength]) {
+                let rng = &mut data.rng;
+                data.frames
+                    .column_mut(taxel)
+                    .mapv_inplace(|_| NOISE * normal(rng));
+            }
+        },
+    },
+    Plant {
+        // Pressures are rounded to few integers, which resemble counts of events.
+        check: "quantisation",
+        entails: &["near_duplicates", "saturation"],
+        plant: |data, strength| {
+            let steps = [15.0, 12.0, 4.0][strength];
+            let largest = data.frames.iter().copied().fold(0.0, f64::max);
+            data.frames
+                .mapv_inplace(|x| (x / largest * steps).max(0.0).round());
+        },
+    },
+    Plant {
+        // The temperature raises all taxels.
+        check: "drift",
+        entails: &["sample_size", "accuracy_by_split"],
+        plant: |data, strength| {
+            let n = data.n() as f64;
+            let rise = [0.01, 0.02, 0.05][strength];
+            for (touch, mut frame) in data.frames.rows_mut().into_iter().enumerate() {
+                frame += rise * touch as f64 / n;
+            }
+        },
+    },
 ];
 
 /// Replaces each touch by three frames: before the contact, half of the press, and the whole press.
@@ -666,6 +766,35 @@ fn planted_faults_of_three_strengths_are_found() {
     assert!(is_right, "\n{table}");
 }
 
+/// In a list without rows and columns, correlated taxels stand for the taxels around a taxel.
+#[test]
+fn faulty_taxels_of_lists_are_found() {
+    let is_listed = |check: &str| ["dead_taxels", "hot_taxels", "drift"].contains(&check);
+    let mut order: Vec<usize> = (0..N_TAXELS).collect();
+    order.shuffle(&mut Seed::new(1).named("list").rng());
+    let plants = PLANTS.iter().enumerate();
+    for (number, plant) in plants.filter(|(_, plant)| is_listed(plant.check)) {
+        let mut data = Planted::clean(200 + number as u64);
+        (plant.plant)(&mut data, 2);
+        data.frames = data.frames.select(Axis(1), &order);
+        data.is_list = true;
+        let found = faults(&data.audited());
+        // A taxel that only reads noise is not correlated with others.
+        if number != PLANTS.len() - 3 {
+            assert!(
+                found.contains(plant.check),
+                "{number} {}: {found:?}",
+                plant.check
+            );
+        }
+    }
+    let mut data = Planted::clean(300);
+    data.frames = data.frames.select(Axis(1), &order);
+    data.is_list = true;
+    let found = faults(&data.audited());
+    assert!(found.is_empty(), "{found:?}");
+}
+
 #[test]
 fn no_fault_is_invented_in_clean_data() {
     let mut variants: Vec<(String, Planted)> = Vec::new();
@@ -699,6 +828,20 @@ fn no_fault_is_invented_in_clean_data() {
     order.sort_by_key(|&touch| data.labels[touch]);
     data.select(&order);
     variants.push(("sorted by class".to_owned(), data));
+    for (number, rate) in [3.0, 12.0].into_iter().enumerate() {
+        let mut data = Planted::clean(14 + number as u64);
+        let (clean, rng) = (data.truth(), &mut data.rng);
+        data.frames = clean.mapv(|x| Poisson::new(rate * x + 0.2).unwrap().sample(rng));
+        variants.push((format!("counts of {rate} events"), data));
+    }
+    let mut data = Planted::clean(16);
+    data.frames.mapv_inplace(|x| 1.0 - x);
+    variants.push(("contact reduces readings".to_owned(), data));
+    let mut data = Planted::clean(17);
+    let largest = data.frames.iter().copied().fold(0.0, f64::max);
+    data.frames
+        .mapv_inplace(|x| (255.0 * (x / largest).max(0.0)).round());
+    variants.push(("all of 8 bits".to_owned(), data));
     for (name, data) in variants {
         let findings = data.audited();
         let invented: Vec<String> = findings

@@ -3,7 +3,9 @@
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
 use crate::calibration::faults::{self, Fault};
-use bubbletouch_sim::audit::frozen::frozen_taxels;
+use bubbletouch_sim::audit::frozen::{
+    FrozenTaxel, Searched, always_quiet_taxels, frozen_taxels, quiet_taxels,
+};
 use std::collections::BTreeSet;
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -83,16 +85,15 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         finding(count(true), "dead", "the zero"),
         finding(count(false), "stuck", "another level"),
     ];
-    findings.push(frozen_finding(context, &found));
+    findings.extend(for_some_time(context, &found));
     Ok(findings)
 }
 
-/// Looks for taxels that keep a reading for some time.
-fn frozen_finding(context: &Context, faults: &[Fault]) -> Finding {
-    let Some(grid) = context.data.grid else {
-        let why =
-            "The taxels have no rows and columns, so that the taxels around a taxel are unknown.";
-        return Finding::not_checked("", why).about("for some time");
+/// Looks for taxels that keep a reading, or remain at rest, for some time.
+fn for_some_time(context: &Context, faults: &[Fault]) -> Vec<Finding> {
+    let Some(around) = &context.around else {
+        let why = "The taxels have no rows and columns, and contact changes their readings in both directions.";
+        return vec![Finding::not_checked("", why).about("for some time")];
     };
     let mut is_counted: Vec<bool> = context
         .taxels
@@ -102,31 +103,55 @@ fn frozen_finding(context: &Context, faults: &[Fault]) -> Finding {
     faults
         .iter()
         .for_each(|fault| is_counted[fault.taxel] = false);
-    let frames = context.skin.touched.view();
-    let found = frozen_taxels(
-        frames,
-        grid,
-        &context.frame_labels,
-        TOUCHED,
-        &is_counted,
-        ANY,
-    );
-    let taxels: BTreeSet<usize> = found.iter().map(|run| run.taxel).collect();
-    let sentence = match found.iter().max_by_key(|run| run.n_frames) {
-        None => {
-            "No taxel keeps a reading for some time while the taxels around it change.".to_owned()
-        }
-        Some(run) => format!(
-            "{} taxels keep one reading for some time while the taxels around them change, such as number {} during {} of the frames.",
-            taxels.len(),
-            run.taxel,
-            percent(run.n_frames as f64 / frames.nrows() as f64)
-        ),
+    let searched = Searched {
+        frames: context.skin.touched.view(),
+        around,
+        labels: &context.frame_labels,
+        units: &context.frame_units,
+        touched: TOUCHED,
+        is_counted: &is_counted,
+        significance: ANY,
     };
-    let share = taxels.len() as f64 / frames.ncols() as f64;
-    Finding::counted("", share, sentence, !found.is_empty())
-        .about("for some time")
-        .against(0.0)
-        .advice("Mask these taxels in the recordings in which they are faulty, or in all, and state their number.")
-        .shown_in("taxels")
+    let finding = |found: &[FrozenTaxel], [one, verb]: [&str; 2], about: &str| {
+        let taxels: BTreeSet<usize> = found.iter().map(|run| run.taxel).collect();
+        let sentence = match found.iter().max_by_key(|run| run.n_frames) {
+            None => format!("No taxel {one} for some time while the taxels around it change."),
+            Some(run) => format!(
+                "{} taxels {verb} for some time while the taxels around them change, such as number {} during {} of the frames.",
+                taxels.len(),
+                run.taxel,
+                percent(run.n_frames as f64 / context.skin.touched.nrows() as f64)
+            ),
+        };
+        let share = taxels.len() as f64 / context.taxels.len() as f64;
+        Finding::counted("", share, sentence, !found.is_empty())
+            .about(about)
+            .against(0.0)
+            .advice("Mask these taxels in the recordings in which they are faulty, or in all, and state their number.")
+            .shown_in("taxels")
+    };
+    let always = always_quiet_taxels(&searched).into_iter();
+    let always = always.map(|taxel| FrozenTaxel {
+        taxel,
+        first: 0,
+        n_frames: searched.frames.nrows(),
+    });
+    let always: Vec<FrozenTaxel> = always.collect();
+    // A taxel that is always at rest is at rest for some time, too.
+    let is_other = |run: &FrozenTaxel| always.iter().all(|other| other.taxel != run.taxel);
+    let mut quiet = quiet_taxels(&searched);
+    quiet.retain(is_other);
+    quiet.extend(&always);
+    vec![
+        finding(
+            &frozen_taxels(&searched),
+            ["keeps one reading", "keep one reading"],
+            "for some time",
+        ),
+        finding(
+            &quiet,
+            ["remains at rest", "remain at rest, apart from noise,"],
+            "at rest for some time",
+        ),
+    ]
 }

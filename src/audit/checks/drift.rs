@@ -2,6 +2,7 @@
 
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
+use crate::quantile::quantile;
 use bubbletouch_sim::audit::dependence::{change_of_level, serial_dependence};
 use bubbletouch_sim::audit::gain::{means_of_runs, relative_gains};
 use bubbletouch_sim::audit::taxels::{rest_readings, without_class_means};
@@ -16,25 +17,34 @@ pub const ABOUT: CheckAbout = CheckAbout {
     run,
 };
 
+/// Minimum number of untouched taxels from which their levels alone are tested.
+const MIN_UNTOUCHED: usize = 8;
+/// Fraction of the taxels with the least changes that count as taxels at rest. Frequent contact changes the others.
+const CALM: f64 = 0.25;
+
 /// Returns readings of taxels at rest that vary, less the means of their classes, shape (n_sample, m), and the display name of these taxels. If contact
-/// reaches all taxels, readings during contact are clipped ([`rest_readings`]).
+/// reaches nearly all taxels, readings during contact are clipped ([`rest_readings`]), and the taxels with the least changes count.
 fn at_rest(context: &Context) -> (Array2<f64>, &'static str) {
     let rows = untouched(context);
-    if rows.ncols() > 0 {
+    if rows.ncols() >= MIN_UNTOUCHED || (rows.ncols() > 0 && context.around.is_none()) {
         return (rows, "untouched taxels");
     }
-    let rest = rest_readings(context.sample_rows.view());
-    let varies = |taxel: &usize| {
-        rest.column(*taxel)
-            .iter()
-            .any(|&reading| reading != rest[(0, *taxel)])
-    };
-    let varying: Vec<usize> = (0..rest.ncols()).filter(varies).collect();
-    let rest = without_class_means(
-        rest.select(Axis(1), &varying).view(),
-        &context.sample_labels,
-    );
-    (rest, "taxels at rest")
+    // Contact must increase the readings.
+    let is_falling = context.scale.1 < context.scale.0;
+    let sign = if is_falling { -1.0 } else { 1.0 };
+    let rest = rest_readings(context.sample_rows.mapv(|x| sign * x).view());
+    let rest = without_class_means(rest.view(), &context.sample_labels);
+    let stds = rest.std_axis(Axis(0), 0.0);
+    let mut varying: Vec<f64> = stds.iter().copied().filter(|&std| std > 0.0).collect();
+    if varying.is_empty() {
+        return (rows, "untouched taxels");
+    }
+    let most = quantile(&mut varying, CALM);
+    let calm = (0..rest.ncols()).filter(|&taxel| stds[taxel] > 0.0 && stds[taxel] <= most);
+    (
+        rest.select(Axis(1), &calm.collect::<Vec<_>>()),
+        "taxels at rest",
+    )
 }
 
 /// Returns the readings of untouched taxels that vary, less the means of their classes, shape (n_sample, m).
@@ -108,7 +118,7 @@ fn gain(context: &Context) -> Finding {
 
 /// Tests whether the level of taxels at rest changes in the order of recording.
 fn level(context: &Context) -> Finding {
-    if context.data.grid.is_none() && untouched(context).ncols() == 0 {
+    if context.around.is_none() && untouched(context).ncols() == 0 {
         let why = "Contact reaches all taxels, and taxels without rows and columns may read contact in both directions.";
         return Finding::not_checked("", why);
     }
@@ -126,7 +136,7 @@ fn level(context: &Context) -> Finding {
     // A level that rises and falls again has equal ends, but neighbours in time share it.
     let square = rows.iter().map(|x| x * x).sum::<f64>() / rows.len() as f64;
     let slow = (square * found.correlation.max(0.0)).sqrt();
-    let change = change_of_level(rows.view()).max(slow) / (context.scale.1 - context.scale.0);
+    let change = change_of_level(rows.view()).max(slow) / (context.scale.1 - context.scale.0).abs();
     let sentence = format!(
         "The levels of {} {taxels} change by {} of the full scale (standard deviation) in the order of the touches.",
         rows.ncols(),

@@ -11,20 +11,22 @@ pub const ABOUT: CheckAbout = CheckAbout {
     run,
 };
 
-/// Finds the hot taxels; constant taxels are stuck, not hot.
+/// Finds the hot taxels; constant taxels are stuck, not hot. Without known neighbours, none are found.
 pub fn found(context: &Context) -> Vec<HotTaxel> {
+    let Some(around) = &context.around else {
+        return Vec::new();
+    };
     let is_sound: Vec<bool> = context
         .taxels
         .iter()
         .map(|taxel| !taxel.is_constant())
         .collect();
-    hot_taxels(context.skin.touched.view(), context.data.grid, &is_sound)
+    hot_taxels(context.skin.touched.view(), around, &is_sound)
 }
 
 fn run(context: &Context) -> Result<Vec<Finding>> {
-    if context.data.grid.is_none() {
-        let why =
-            "The taxels have no rows and columns, so that the taxels around a taxel are unknown.";
+    if context.around.is_none() {
+        let why = "The taxels have no rows and columns, and contact changes their readings in both directions.";
         return Ok(vec![Finding::not_checked("", why)]);
     }
     let found = found(context);

@@ -5,6 +5,7 @@ use crate::audit::finding::percent;
 use crate::quantile::quantile;
 use crate::table::short_number;
 use bubbletouch_sim::audit::counts::{n_levels, variance_to_mean};
+use ndarray::Array2;
 
 /// Number of levels over the range of a taxel's readings below which its readings are coarse: steps of more than 1 % of the range.
 const MIN_LEVELS: f64 = 100.0;
@@ -21,16 +22,23 @@ pub const ABOUT: CheckAbout = CheckAbout {
     run,
 };
 
-/// Returns whether the readings are counts of events: integers from 0 whose variance is at least their mean.
-pub fn are_counts(context: &Context) -> bool {
+/// Returns the sampled frames as recorded, if all readings are integers; otherwise `None`.
+pub fn integers(context: &Context) -> Option<Array2<f64>> {
     let (zero, full_scale) = context.scale;
     let raw = (context.skin.touched.view()).mapv(|reading| zero + reading * (full_scale - zero));
     let tolerance = 1e-6 * full_scale.abs().max(1.0);
     let are_integers = raw.iter().all(|x| (x - x.round()).abs() <= tolerance);
-    let least = raw.iter().copied().fold(f64::INFINITY, f64::min);
-    are_integers
-        && least.abs() <= tolerance
-        && variance_to_mean(raw.view(), context.data.grid).is_some_and(|ratio| ratio >= COUNTS)
+    are_integers.then(|| raw.mapv(f64::round))
+}
+
+/// Returns whether the readings are counts of events: integers from 0 whose variance is at least their mean.
+pub fn are_counts(context: &Context) -> bool {
+    let Some(counts) = integers(context) else {
+        return false;
+    };
+    let least = counts.iter().copied().fold(f64::INFINITY, f64::min);
+    least == 0.0
+        && variance_to_mean(counts.view(), context.data.grid).is_some_and(|ratio| ratio >= COUNTS)
 }
 
 fn run(context: &Context) -> Result<Vec<Finding>> {

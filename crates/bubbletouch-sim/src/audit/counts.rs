@@ -4,9 +4,11 @@
 //! factors of single taxels. Readings without a converter step differ by arbitrarily little, so that the number of levels is large.
 //!
 //! Counts of events have a variance of at least their mean (Poisson distribution; more if the rate varies). Rounding of a pressure adds a variance of 1/12
-//! only. Two estimates of the variance exclude the differences between touches: half the mean squared difference between a touch and its nearest touch, which
-//! is found by the other half of the taxels, and the second difference of adjacent taxels of a row or column.
+//! only. Three estimates of the variance exclude the differences between touches: half the mean squared difference between a touch and its nearest touch, which
+//! is found by the other half of the taxels, the second difference of adjacent taxels of a row or column, and the median of the squared differences between a taxel
+//! and the taxels that enclose it. Edges of contacts increase the first two, but not the median, because most taxels in contact are inside.
 
+use crate::audit::surroundings::Surroundings;
 use crate::statistics::quantile::quantile;
 use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
 
@@ -16,6 +18,12 @@ const ROUNDING: f64 = 4e-7;
 const MAX_FRAMES: usize = 500;
 /// Quantile of the taxels' means above which taxels count as active.
 const ACTIVE: f64 = 0.7;
+/// Minimum mean of counts inside a contact. The median of smaller counts depends on their steps and on the omission of taxels without events.
+const MIN_MEAN: f64 = 6.0;
+/// Minimum number of counts inside contacts.
+const MIN_INSIDE: usize = 100;
+/// Median of the square of a standard normal number.
+const MEDIAN_OF_SQUARE: f64 = 0.455;
 
 /// Returns the number of levels of a taxel's readings below `saturation`; infinite if readings have no common step within single precision.
 pub fn n_levels(readings: ArrayView1<f64>, saturation: f64) -> f64 {
@@ -39,7 +47,7 @@ pub fn n_levels(readings: ArrayView1<f64>, saturation: f64) -> f64 {
     }
 }
 
-/// Returns the ratio of variance and mean of counts: the smaller one of two estimates, each the median over active taxels. The ratio is at least 1 for counts
+/// Returns the ratio of variance and mean of counts: the smallest one of three estimates over active taxels. The ratio is at least 1 for counts
 /// of events. Returns `None` if there are fewer than 20 frames, or no active taxels.
 pub fn variance_to_mean(counts: ArrayView2<f64>, grid: Option<(usize, usize)>) -> Option<f64> {
     let step = counts.nrows().div_ceil(MAX_FRAMES).max(1);
@@ -79,7 +87,34 @@ pub fn variance_to_mean(counts: ArrayView2<f64>, grid: Option<(usize, usize)>) -
     }
     let between_touches = quantile(&mut ratios, 0.5);
     let of_grid = grid.and_then(|grid| second_differences(&counts, grid, is_active));
-    Some(of_grid.map_or(between_touches, |ratio| ratio.min(between_touches)))
+    let around = match grid {
+        Some(grid) => Surroundings::of_grid(grid),
+        None => Surroundings::of_list(counts.view()),
+    };
+    let inside = inside_contacts(&counts, &around.enclosing);
+    let others = [of_grid, inside].into_iter().flatten();
+    Some(others.fold(between_touches, f64::min))
+}
+
+/// Returns the ratio of variance and mean by the median squared difference between a taxel and the taxels that enclose it, where all of them count events. The
+/// difference from the mean of k taxels has the variance (1 + 1/k) m for counts of mean m. Returns `None` for few such taxels.
+fn inside_contacts(counts: &Array2<f64>, enclosing: &[Vec<Vec<usize>>]) -> Option<f64> {
+    let mut ratios = Vec::new();
+    for frame in counts.rows() {
+        for (own, set) in frame
+            .iter()
+            .zip(enclosing)
+            .flat_map(|(own, sets)| sets.iter().map(move |set| (own, set)))
+        {
+            let k = set.len() as f64;
+            let mean = set.iter().map(|&other| frame[other]).sum::<f64>() / k;
+            let is_inside = *own > 0.0 && set.iter().all(|&other| frame[other] > 0.0);
+            if is_inside && mean >= MIN_MEAN {
+                ratios.push((own - mean).powi(2) / ((1.0 + 1.0 / k) * mean));
+            }
+        }
+    }
+    (ratios.len() >= MIN_INSIDE).then(|| quantile(&mut ratios, 0.5) / MEDIAN_OF_SQUARE)
 }
 
 /// Returns the median over active taxels of the variance by second differences, relative to the mean of the taxel.

@@ -1,32 +1,47 @@
 //! Detection of saturation: a largest reading that many frames share, for example because a converter clips below the full scale.
 
+use statrs::distribution::{Binomial, DiscreteCDF};
+
 /// Minimum number of frames in which a plateau (a largest reading that many frames share) occurs; `MIN_SHARE` is the minimum fraction of all frames.
 const MIN_FRAMES: usize = 3;
 const MIN_SHARE: f64 = 0.01;
 /// Minimum ratio between the frequencies of the plateau value and of the next smaller reading. If readings have few levels, many frames share the largest
 /// level by chance.
 const MIN_EXCESS: usize = 3;
+/// Number of the largest levels whose frequencies are compared, and the probability of reporting a plateau in readings with few levels.
+const N_LEVELS: usize = 10;
+const CHANCE: f64 = 0.001;
 
 /// Returns the largest reading if it is a plateau, that is, shared by many frames. A plateau occurs on at least two taxels, and in at least 3 frames and 1 %
-/// of all frames. A plateau is also at least three times as frequent as the next smaller reading. The function `frames` yields the readings of each frame in
+/// of all frames. A plateau is also at least three times as frequent as the next smaller reading. If readings below the largest one are shared as well, as with few
+/// levels, chance must not explain its frequency: readings become rarer above, so that the largest level is at most as frequent as the next one. The function `frames` yields the readings of each frame in
 /// the order of taxels; NaN is omitted.
 pub fn plateau<F: Iterator<Item = f64>, I: Iterator<Item = F>>(
     frames: impl Fn() -> I,
 ) -> Option<f64> {
-    let (mut largest, mut n_largest) = (f64::NEG_INFINITY, 0);
-    let (mut next, mut n_next) = (f64::NEG_INFINITY, 0);
+    // The largest readings and their frequencies, descending.
+    let mut levels: Vec<(f64, usize)> = Vec::with_capacity(N_LEVELS + 1);
     for reading in frames().flatten() {
-        if reading > largest {
-            (next, n_next) = (largest, n_largest);
-            (largest, n_largest) = (reading, 1);
-        } else if reading == largest {
-            n_largest += 1;
-        } else if reading > next {
-            (next, n_next) = (reading, 1);
-        } else if reading == next {
-            n_next += 1;
+        let is_full = levels.len() == N_LEVELS;
+        if reading.is_nan() || (is_full && reading < levels[N_LEVELS - 1].0) {
+            continue;
+        }
+        let place = levels.partition_point(|&(level, _)| level > reading);
+        match levels.get_mut(place) {
+            Some((level, n)) if *level == reading => *n += 1,
+            _ => {
+                levels.insert(place, (reading, 1));
+                levels.truncate(N_LEVELS);
+            }
         }
     }
+    let &(largest, n_largest) = levels.first()?;
+    let n_next = levels.get(1).map_or(0, |&(_, n)| n);
+    let are_shared = levels[1..].iter().any(|&(_, n)| n > 1);
+    let is_chance = || {
+        let binomial = Binomial::new(0.5, (n_largest + n_next) as u64);
+        binomial.is_ok_and(|binomial| binomial.sf(n_largest as u64 - 1) > CHANCE)
+    };
     let (mut n_frames, mut n_shared) = (0, 0);
     // A single taxel at a constant level is stuck.
     let (mut first, mut are_several) = (None, false);
@@ -42,7 +57,8 @@ pub fn plateau<F: Iterator<Item = f64>, I: Iterator<Item = F>>(
     let is_plateau = are_several
         && n_shared >= MIN_FRAMES
         && n_shared as f64 >= MIN_SHARE * f64::from(n_frames)
-        && n_largest >= MIN_EXCESS * n_next;
+        && n_largest >= MIN_EXCESS * n_next
+        && !(are_shared && is_chance());
     is_plateau.then_some(largest)
 }
 
