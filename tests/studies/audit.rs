@@ -779,8 +779,8 @@ fn faulty_taxels_of_lists_are_found() {
         data.frames = data.frames.select(Axis(1), &order);
         data.is_list = true;
         let found = faults(&data.audited());
-        // A taxel that only reads noise is not correlated with others.
-        if number != PLANTS.len() - 3 {
+        // A taxel that is stuck for most of the time, or only reads noise, is not correlated with others.
+        if ![24, PLANTS.len() - 3].contains(&number) {
             assert!(
                 found.contains(plant.check),
                 "{number} {}: {found:?}",

@@ -1,13 +1,17 @@
 //! Frozen and quiet taxels: taxels that keep exactly one reading, or remain at rest apart from noise, for some time while the taxels on both sides are touched.
 //!
-//! A taxel between two touched taxels is usually touched, too. Suppose that it is still in k of n touches, of which r form a run. If the taxel works, the order of the
-//! touches of a class is random, and the probability that a given run of r touches is still equals C(n − r, k − r) / C(n, k). The product over the classes is
-//! multiplied by the number of places of the run. Touches of one unit, such as a grasp, count as one. Readings at the upper end of the taxel's range are
-//! saturated, not frozen.
+//! A taxel between two touched taxels is usually touched, too, with a frequency q that depends on the class of the touch.
+//!
+//! - If a taxel works, it keeps exactly one reading during a run of m such frames with the probability (1 − q)ᵐ. The other frames give q. Readings at the upper
+//!   end of the taxel's range are saturated, not frozen.
+//! - Suppose that a taxel is at rest in k of n touches of a class, of which r form a run. If the taxel works, the order of the touches is random. The probability
+//!   that a given run of r touches is at rest then equals C(n − r, k − r) / C(n, k). The product over the classes is multiplied by the number of places of the run.
+//!   Successive touches of a class that belong to one unit, such as a grasp, count as one.
 
+use crate::audit::hot::MEDIAN_OF_NORMAL;
 use crate::audit::surroundings::Surroundings;
 use crate::statistics::quantile::quantile;
-use ndarray::ArrayView2;
+use ndarray::{ArrayView1, ArrayView2};
 use statrs::function::factorial::ln_binomial;
 use std::collections::BTreeMap;
 
@@ -91,9 +95,7 @@ pub fn frozen_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
             let is_saturated = own == largest && own > searched.touched;
             let inside = [run.start, run.end].map(|end| enclosed.partition_point(|&row| row < end));
             if !is_saturated && inside[1] - inside[0] >= MIN_BETWEEN {
-                let is_equal: Vec<bool> =
-                    enclosed.iter().map(|&row| readings[row] == own).collect();
-                let log_p = log_probability(searched, &enclosed, &is_equal, inside);
+                let log_p = log_probability_frozen(readings, &enclosed, inside, searched.labels);
                 let found = FrozenTaxel {
                     taxel,
                     first: run.start,
@@ -106,8 +108,7 @@ pub fn frozen_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
     searched.significant(runs, n_runs)
 }
 
-/// Finds taxels that remain at rest for some time, apart from noise, although the taxels around them are touched. At rest, a reading differs by less than half of
-/// `touched` from the taxel's level in the tenth of the frames in which the taxels around it read least.
+/// Finds taxels that remain at rest for some time, apart from noise, although the taxels around them are touched. See [`Rest`].
 pub fn quiet_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
     let mut runs = Vec::new();
     let mut n_runs = 0;
@@ -117,8 +118,8 @@ pub fn quiet_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
             continue;
         }
         let readings = searched.frames.column(taxel);
-        let level = level_at_rest(searched.frames, taxel, &searched.around.around[taxel]);
-        let is_quiet = |&row: &usize| (readings[row] - level).abs() <= 0.5 * searched.touched;
+        let rest = Rest::new(searched, taxel);
+        let is_quiet = |&row: &usize| rest.contains(readings[row]);
         let is_quiet: Vec<bool> = enclosed.iter().map(is_quiet).collect();
         let mut first = 0;
         for place in 0..=enclosed.len() {
@@ -128,7 +129,7 @@ pub fn quiet_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
             let inside = [std::mem::replace(&mut first, place + 1), place];
             if inside[1] - inside[0] >= MIN_BETWEEN {
                 n_runs += 1;
-                let log_p = log_probability(searched, &enclosed, &is_quiet, inside);
+                let log_p = log_probability_quiet(searched, &enclosed, &is_quiet, inside);
                 let found = FrozenTaxel {
                     taxel,
                     first: enclosed[inside[0]],
@@ -141,51 +142,106 @@ pub fn quiet_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
     searched.significant(runs, n_runs)
 }
 
-/// Returns the median reading of a taxel in the tenth of the frames in which the sum of the taxels around it is least.
-fn level_at_rest(frames: ArrayView2<f64>, taxel: usize, around: &[usize]) -> f64 {
-    let sums = frames.rows().into_iter();
-    let sums = sums.map(|frame| around.iter().map(|&near| frame[near]).sum());
-    let sums: Vec<f64> = sums.collect();
-    let n_rest = (sums.len() / 10).max(1);
-    let mut order: Vec<usize> = (0..sums.len()).collect();
-    order.select_nth_unstable_by(n_rest - 1, |&a, &b| {
-        sums[a].total_cmp(&sums[b]).then(a.cmp(&b))
-    });
-    let own = order[..n_rest].iter().map(|&row| frames[(row, taxel)]);
-    quantile(&mut own.collect::<Vec<_>>(), 0.5)
+/// Readings of a taxel at rest.
+struct Rest {
+    /// Median reading in the tenth of the frames in which the sum of the taxels around the taxel is least.
+    level: f64,
+    /// Maximum distance from the level: half of the reading of a touched taxel, or three standard deviations of the noise if this is more. At most the reading of a
+    /// touched taxel.
+    distance: f64,
 }
 
-/// Returns the logarithm of the probability that all still units of a working taxel that lie in some run of this length do so by chance. `is_still` tells for each
-/// enclosed frame whether the taxel does not follow the contact, and the run has the frames `enclosed[inside[0]..inside[1]]`.
-fn log_probability(
+impl Rest {
+    fn new(searched: &Searched, taxel: usize) -> Self {
+        let around = &searched.around.around[taxel];
+        let sums = searched.frames.rows().into_iter();
+        let sums = sums.map(|frame| around.iter().map(|&near| frame[near]).sum());
+        let sums: Vec<f64> = sums.collect();
+        let n_rest = (sums.len() / 10).max(1);
+        let mut rows: Vec<usize> = (0..sums.len()).collect();
+        rows.select_nth_unstable_by(n_rest - 1, |&a, &b| {
+            sums[a].total_cmp(&sums[b]).then(a.cmp(&b))
+        });
+        rows.truncate(n_rest);
+        rows.sort_unstable();
+        let mut readings: Vec<f64> = rows
+            .iter()
+            .map(|&row| searched.frames[(row, taxel)])
+            .collect();
+        // Successive frames at rest differ by the noise, also if the level drifts.
+        let steps = readings.windows(2).map(|two| (two[1] - two[0]).abs());
+        let mut steps: Vec<f64> = steps.collect();
+        let noise = match steps.is_empty() {
+            true => 0.0,
+            false => quantile(&mut steps, 0.5) / (MEDIAN_OF_NORMAL * std::f64::consts::SQRT_2),
+        };
+        Self {
+            level: quantile(&mut readings, 0.5),
+            distance: (3.0 * noise).clamp(0.5 * searched.touched, searched.touched),
+        }
+    }
+
+    fn contains(&self, reading: f64) -> bool {
+        (reading - self.level).abs() <= self.distance
+    }
+}
+
+/// Returns the logarithm of the probability that a working taxel keeps its reading in the frames `enclosed[inside[0]..inside[1]]`. The frequency of this reading
+/// follows from the other frames of each class; frames of a class without other frames do not count.
+fn log_probability_frozen(
+    readings: ArrayView1<f64>,
+    enclosed: &[usize],
+    inside: [usize; 2],
+    labels: &[usize],
+) -> f64 {
+    let own = readings[enclosed[inside[0]]];
+    let mut outside = BTreeMap::<usize, [f64; 2]>::new();
+    for &row in enclosed[..inside[0]].iter().chain(&enclosed[inside[1]..]) {
+        let [n, n_equal] = outside.entry(labels[row]).or_default();
+        *n += 1.0;
+        *n_equal += f64::from(u8::from(readings[row] == own));
+    }
+    let rows = enclosed[inside[0]..inside[1]].iter();
+    let known = rows.filter_map(|&row| outside.get(&labels[row]));
+    // Laplace's rule: the frequency as if there were one more frame of either kind.
+    known
+        .map(|[n, n_equal]| ((n_equal + 1.0) / (n + 2.0)).ln())
+        .sum()
+}
+
+/// Returns the logarithm of the probability that all units at rest of a working taxel that lie in some run of this length do so by chance. `is_quiet` contains for
+/// each enclosed frame whether the taxel is at rest. The run has the frames `enclosed[inside[0]..inside[1]]`.
+fn log_probability_quiet(
     searched: &Searched,
     enclosed: &[usize],
-    is_still: &[bool],
+    is_quiet: &[bool],
     inside: [usize; 2],
 ) -> f64 {
-    // Number of frames of each unit, how many of them are still, and how many lie in the run.
-    let mut units = BTreeMap::<(usize, usize), [usize; 3]>::new();
+    // Successive frames of a class that belong to one unit: number of frames, how many of them are at rest, and how many lie in the run.
+    let mut units = BTreeMap::<usize, Vec<(usize, [usize; 3])>>::new();
     for (place, &row) in enclosed.iter().enumerate() {
-        let unit = (searched.labels[row], searched.units[row]);
-        let [n, n_still, n_inside] = units.entry(unit).or_default();
-        *n += 1;
-        *n_still += usize::from(is_still[place]);
-        *n_inside += usize::from((inside[0]..inside[1]).contains(&place));
-    }
-    // Number of units of each class, how many of them are still, and how many lie in the run.
-    let mut classes = BTreeMap::<usize, [u64; 3]>::new();
-    for ((label, _), [n, n_still, n_inside]) in &units {
-        let of_class = classes.entry(*label).or_default();
-        of_class[0] += 1;
-        of_class[1] += u64::from(2 * n_still >= *n);
-        of_class[2] += u64::from(2 * n_inside >= *n);
+        let of_class = units.entry(searched.labels[row]).or_default();
+        if of_class.last().map(|(unit, _)| *unit) != Some(searched.units[row]) {
+            of_class.push((searched.units[row], [0; 3]));
+        }
+        if let Some((_, [n, n_quiet, n_inside])) = of_class.last_mut() {
+            *n += 1;
+            *n_quiet += usize::from(is_quiet[place]);
+            *n_inside += usize::from((inside[0]..inside[1]).contains(&place));
+        }
     }
     let mut n_places = 1;
     let mut log_p = 0.0;
-    for [n, n_still, n_inside] in classes.into_values() {
-        let n_inside = n_inside.min(n_still);
+    for of_class in units.into_values() {
+        let n = of_class.len() as u64;
+        let count = |index: usize| {
+            let is_most = |(_, counts): &&(usize, [usize; 3])| 2 * counts[index] >= counts[0];
+            of_class.iter().filter(is_most).count() as u64
+        };
+        let n_quiet = count(1);
+        let n_inside = count(2).min(n_quiet);
         n_places += n - n_inside;
-        log_p += ln_binomial(n - n_inside, n_still - n_inside) - ln_binomial(n, n_still);
+        log_p += ln_binomial(n - n_inside, n_quiet - n_inside) - ln_binomial(n, n_quiet);
     }
     (n_places as f64).ln() + log_p
 }
@@ -237,12 +293,12 @@ fn still_units(searched: &Searched, taxel: usize) -> BTreeMap<usize, [f64; 2]> {
     let readings = searched.frames.column(taxel);
     let mut units = BTreeMap::<(usize, usize), [usize; 2]>::new();
     if !enclosed.is_empty() {
-        let level = level_at_rest(searched.frames, taxel, &searched.around.around[taxel]);
+        let rest = Rest::new(searched, taxel);
         for row in enclosed {
             let unit = (searched.labels[row], searched.units[row]);
             let [n, n_still] = units.entry(unit).or_default();
             *n += 1;
-            *n_still += usize::from((readings[row] - level).abs() <= 0.5 * searched.touched);
+            *n_still += usize::from(rest.contains(readings[row]));
         }
     }
     let mut classes = BTreeMap::<usize, [f64; 2]>::new();
