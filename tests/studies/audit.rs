@@ -793,6 +793,17 @@ fn faulty_taxels_of_lists_are_found() {
     data.is_list = true;
     let found = faults(&data.audited());
     assert!(found.is_empty(), "{found:?}");
+    // Row by row, the ends of rows are next to taxels that are touched more.
+    let mut data = Planted::clean(301);
+    data.is_list = true;
+    let found = faults(&data.audited());
+    assert!(found.is_empty(), "{found:?}");
+    // Without noise, untouched taxels are constant.
+    let mut data = Planted::clean(302);
+    data.frames.mapv_inplace(|x| if x > 0.1 { x } else { 0.0 });
+    data.is_list = true;
+    let found = faults(&data.audited());
+    assert!(!found.contains("dead_taxels"), "{found:?}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::calibration::faults::{self, Fault};
 use bubbletouch_sim::audit::frozen::{
     FrozenTaxel, Searched, always_quiet_taxels, frozen_taxels, quiet_taxels,
 };
+use bubbletouch_sim::statistics::quantile::quantile;
 use std::collections::BTreeSet;
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -21,12 +22,27 @@ const ANY: f64 = 0.001;
 /// Minimum number of frames in which a constant taxel lies between two touched taxels.
 const MIN_FRAMES: usize = 3;
 
+/// Maximum fraction of the taxels of a list that are faulty. The other taxels give the variation of a working taxel that nothing touches.
+const MAX_FAULTY: f64 = 0.1;
+/// Maximum standard deviation of a faulty taxel of a list, relative to a working taxel that nothing touches.
+const MAX_VARIATION: f64 = 0.1;
+
 /// Returns the faulty taxels. On a grid, a fault counts only if the taxel lies between two touched taxels in some frames; other faulty taxels between them, as in
-/// faulty rows side by side, are skipped. Outside the contact area, a faultless taxel is constant, too.
+/// faulty rows side by side, are skipped. Outside the contact area, a faultless taxel is constant, too. In a list, a faulty taxel varies less than taxels that
+/// nothing touches, and keeps a reading that is rare among the readings of all taxels.
 pub fn found(context: &Context) -> Vec<Fault> {
     let faults = faults::find(&context.skin);
     let Some((rows, columns)) = context.data.grid else {
-        return faults.faults;
+        let mut stds: Vec<f64> = context.taxels.iter().map(|taxel| taxel.std).collect();
+        let untouched = quantile(&mut stds, MAX_FAULTY);
+        let frames = &context.skin.touched;
+        let is_still = |fault: &Fault| {
+            let level = frames[(0, fault.taxel)];
+            let n_equal = frames.iter().filter(|&&reading| reading == level).count();
+            context.taxels[fault.taxel].std < MAX_VARIATION * untouched
+                && (n_equal as f64) < MAX_FAULTY * frames.len() as f64
+        };
+        return faults.faults.into_iter().filter(is_still).collect();
     };
     let working = |mut taxels: std::ops::Range<usize>, y: Option<usize>, x: usize| {
         let place = |at: usize| y.map_or(at * columns + x, |y| y * columns + at);

@@ -108,7 +108,8 @@ pub fn frozen_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
     searched.significant(runs, n_runs)
 }
 
-/// Finds taxels that remain at rest for some time, apart from noise, although the taxels around them are touched. See [`Rest`].
+/// Finds taxels that remain at rest for some time, apart from noise, although the taxels around them are touched. At rest, a reading differs
+/// from the taxel's level in frames without contact by less than half of `touched`, or by three standard deviations of the noise.
 pub fn quiet_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
     let mut runs = Vec::new();
     let mut n_runs = 0;
