@@ -668,9 +668,9 @@ const PLANTS: &[Plant] = &[
         check: "dead_taxels",
         entails: &["hot_taxels", "drift", "sample_size"],
         plant: |data, strength| {
-            data.sessions = (0..data.n()).map(|touch| touch * 6 / data.n()).collect();
-            for (number, taxel) in data.middle([1, 3, 6][strength]).into_iter().enumerate() {
-                for touch in (0..data.n()).filter(|&touch| data.sessions[touch] == number % 6) {
+            data.sessions = (0..data.n()).map(|touch| touch * 4 / data.n()).collect();
+            for (number, taxel) in data.middle([3, 5, 8][strength]).into_iter().enumerate() {
+                for touch in (0..data.n()).filter(|&touch| data.sessions[touch] == number % 4) {
                     data.frames[(touch, taxel)] = NOISE * normal(&mut data.rng);
                 }
             }

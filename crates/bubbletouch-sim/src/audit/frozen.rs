@@ -8,7 +8,6 @@
 //!   that a given run of r touches is at rest then equals C(n − r, k − r) / C(n, k). The product over the classes is multiplied by the number of places of the run.
 //!   Successive touches of a class that belong to one unit, such as a grasp, count as one.
 
-use crate::audit::hot::MEDIAN_OF_NORMAL;
 use crate::audit::surroundings::Surroundings;
 use crate::statistics::quantile::quantile;
 use ndarray::{ArrayView1, ArrayView2};
@@ -109,7 +108,7 @@ pub fn frozen_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
 }
 
 /// Finds taxels that remain at rest for some time, apart from noise, although the taxels around them are touched. At rest, a reading differs
-/// from the taxel's level in frames without contact by less than half of `touched`, or by three standard deviations of the noise.
+/// by less than half of `touched` from the taxel's level in the tenth of the frames in which the taxels around it read least.
 pub fn quiet_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
     let mut runs = Vec::new();
     let mut n_runs = 0;
@@ -119,8 +118,8 @@ pub fn quiet_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
             continue;
         }
         let readings = searched.frames.column(taxel);
-        let rest = Rest::new(searched, taxel);
-        let is_quiet = |&row: &usize| rest.contains(readings[row]);
+        let level = level_at_rest(searched.frames, taxel, &searched.around.around[taxel]);
+        let is_quiet = |&row: &usize| (readings[row] - level).abs() <= 0.5 * searched.touched;
         let is_quiet: Vec<bool> = enclosed.iter().map(is_quiet).collect();
         let mut first = 0;
         for place in 0..=enclosed.len() {
@@ -143,48 +142,18 @@ pub fn quiet_taxels(searched: &Searched) -> Vec<FrozenTaxel> {
     searched.significant(runs, n_runs)
 }
 
-/// Readings of a taxel at rest.
-struct Rest {
-    /// Median reading in the tenth of the frames in which the sum of the taxels around the taxel is least.
-    level: f64,
-    /// Maximum distance from the level: half of the reading of a touched taxel, or three standard deviations of the noise if this is more. At most the reading of a
-    /// touched taxel.
-    distance: f64,
-}
-
-impl Rest {
-    fn new(searched: &Searched, taxel: usize) -> Self {
-        let around = &searched.around.around[taxel];
-        let sums = searched.frames.rows().into_iter();
-        let sums = sums.map(|frame| around.iter().map(|&near| frame[near]).sum());
-        let sums: Vec<f64> = sums.collect();
-        let n_rest = (sums.len() / 10).max(1);
-        let mut rows: Vec<usize> = (0..sums.len()).collect();
-        rows.select_nth_unstable_by(n_rest - 1, |&a, &b| {
-            sums[a].total_cmp(&sums[b]).then(a.cmp(&b))
-        });
-        rows.truncate(n_rest);
-        rows.sort_unstable();
-        let mut readings: Vec<f64> = rows
-            .iter()
-            .map(|&row| searched.frames[(row, taxel)])
-            .collect();
-        // Successive frames at rest differ by the noise, also if the level drifts.
-        let steps = readings.windows(2).map(|two| (two[1] - two[0]).abs());
-        let mut steps: Vec<f64> = steps.collect();
-        let noise = match steps.is_empty() {
-            true => 0.0,
-            false => quantile(&mut steps, 0.5) / (MEDIAN_OF_NORMAL * std::f64::consts::SQRT_2),
-        };
-        Self {
-            level: quantile(&mut readings, 0.5),
-            distance: (3.0 * noise).clamp(0.5 * searched.touched, searched.touched),
-        }
-    }
-
-    fn contains(&self, reading: f64) -> bool {
-        (reading - self.level).abs() <= self.distance
-    }
+/// Returns the median reading of a taxel in the tenth of the frames in which the sum of the taxels around it is least.
+fn level_at_rest(frames: ArrayView2<f64>, taxel: usize, around: &[usize]) -> f64 {
+    let sums = frames.rows().into_iter();
+    let sums = sums.map(|frame| around.iter().map(|&near| frame[near]).sum());
+    let sums: Vec<f64> = sums.collect();
+    let n_rest = (sums.len() / 10).max(1);
+    let mut order: Vec<usize> = (0..sums.len()).collect();
+    order.select_nth_unstable_by(n_rest - 1, |&a, &b| {
+        sums[a].total_cmp(&sums[b]).then(a.cmp(&b))
+    });
+    let own = order[..n_rest].iter().map(|&row| frames[(row, taxel)]);
+    quantile(&mut own.collect::<Vec<_>>(), 0.5)
 }
 
 /// Returns the logarithm of the probability that a working taxel keeps its reading in the frames `enclosed[inside[0]..inside[1]]`. The frequency of this reading
@@ -294,12 +263,12 @@ fn still_units(searched: &Searched, taxel: usize) -> BTreeMap<usize, [f64; 2]> {
     let readings = searched.frames.column(taxel);
     let mut units = BTreeMap::<(usize, usize), [usize; 2]>::new();
     if !enclosed.is_empty() {
-        let rest = Rest::new(searched, taxel);
+        let level = level_at_rest(searched.frames, taxel, &searched.around.around[taxel]);
         for row in enclosed {
             let unit = (searched.labels[row], searched.units[row]);
             let [n, n_still] = units.entry(unit).or_default();
             *n += 1;
-            *n_still += usize::from(rest.contains(readings[row]));
+            *n_still += usize::from((readings[row] - level).abs() <= 0.5 * searched.touched);
         }
     }
     let mut classes = BTreeMap::<usize, [f64; 2]>::new();

@@ -14,7 +14,7 @@ const REST: f64 = 0.1;
 /// Minimum excess of a hot taxel over the zero, as a fraction of the range of all readings. A smaller excess is an error of the zero, not a hot taxel.
 const MIN_EXCESS: f64 = 0.05;
 /// Median of the absolute value of a standard normal number.
-pub(crate) const MEDIAN_OF_NORMAL: f64 = 0.6745;
+const MEDIAN_OF_NORMAL: f64 = 0.6745;
 /// Minimum ratio between the noise of a hot taxel and the median noise of all taxels.
 const MIN_NOISE: f64 = 4.0;
 /// Number of readings at rest below which the minimum ratio grows like the error of a quartile, with the inverse root of their number.
