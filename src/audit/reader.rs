@@ -4,7 +4,8 @@ use crate::audit::data::AuditData;
 use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::{
-    ClassLabels, KeyValue, group_keys, is_member, read_class_values, read_group_values,
+    ClassLabels, KeyValue, TableContent, group_keys, is_member, read_class_values,
+    read_group_values,
 };
 use crate::studies::recognition::frames::touch_lengths::lengths_of_file;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
@@ -42,6 +43,8 @@ pub struct AuditFiles {
     pub groups_test: Option<PathBuf>,
     /// Order of the axes of the frames, one letter per axis, as in `recorded.order`; `None` for the default order.
     pub order: Option<String>,
+    /// Columns of a table of frames that are readings, as in `recorded.columns`; `None` for all columns.
+    pub columns: Option<String>,
     /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
     pub grid: Option<[usize; 2]>,
     /// Reading at full scale; `None` if unknown.
@@ -121,6 +124,7 @@ impl AuditFiles {
             labels_test: given("labels_test"),
             groups_test: given("groups_test"),
             order: self.order.clone().or_else(|| spec.order.clone()),
+            columns: self.columns.clone().or_else(|| spec.columns.clone()),
             grid: self.grid.or(spec.grid),
             full_scale: self.full_scale.or(spec.full_scale),
             sensor: spec.place.name.clone(),
@@ -169,6 +173,7 @@ impl AuditFiles {
         let mut archives: Vec<PathBuf> = entries
             .filter_map(|entry| Some(entry.ok()?.path()))
             .filter(|path| path.extension().is_some_and(|ending| ending == "npz"))
+            .filter(|path| !is_hidden(path))
             .collect();
         archives.sort();
         if archives.is_empty() {
@@ -215,23 +220,11 @@ impl AuditFiles {
     /// ending `end`.
     fn part(&self, frames: &Path, folder: Option<&Path>, end: &str) -> Result<Part> {
         let key_of_frames = format!("frames{end}");
-        let mut spec = RecordedSpec::of_frames(frames, self.order.as_deref(), self.grid);
+        let mut spec = RecordedSpec::of_frames(frames, [&self.order, &self.columns], self.grid);
         spec.place.name.clone_from(&self.sensor);
-        let key = |error: Error| match error {
-            Error::Input {
-                place,
-                given,
-                allowed,
-            } => {
-                let option = |text: String| text.replace("recorded.", "--");
-                Error::input(option(place), option(given), option(allowed))
-            }
-            other => other,
-        };
         spec.frames_test = (!end.is_empty()).then(|| frames.to_owned());
-        let shape = spec.shape_of(&key_of_frames).map_err(key)?;
-        let array = FileArray::read(frames, &spec.array_name(&key_of_frames))?;
-        let mut readings = shape.arrange(array.into_numbers()?);
+        let shape = spec.shape_of(&key_of_frames)?;
+        let mut readings = shape.arrange(spec.read_array(&key_of_frames)?.into_numbers()?);
         let n = shape.n_touches;
         let file = |given: &Option<PathBuf>, name: &str| {
             beside((frames, folder), given, &format!("{name}{end}"))
@@ -258,20 +251,22 @@ impl AuditFiles {
         };
         let classes = |given: &Option<PathBuf>, name: &str| match file(given, name) {
             None => Ok(None),
-            Some(path) => read_class_values(&path, name, n)
+            Some(path) => read_class_values(&path, &format!("{name}{end}"), n)
                 .and_then(|values| of_length(values, &path))
                 .map(Some),
         };
         let units = |given: &Option<PathBuf>, name: &str| match file(given, name) {
             None => Ok(None),
-            Some(path) => read_group_values(&path, name, n)
+            Some(path) => read_group_values(&path, &format!("{name}{end}"), n)
                 .and_then(|values| of_length(values, &path))
                 .map(Some),
         };
         let times = match file(&self.times, "times") {
             None => None,
             Some(path) => {
-                let times = FileArray::read(&path, "times")?.into_numbers()?;
+                let name = format!("times{end}");
+                let times = FileArray::read_content(&path, &name, TableContent::Rows(n))?;
+                let times = times.into_numbers()?;
                 let place = path.display();
                 if times.len() != n {
                     let allowed = format!("{n}, one for each touch of {}", frames.display());
@@ -297,6 +292,12 @@ impl AuditFiles {
             times,
         })
     }
+}
+
+/// Returns whether a file is hidden, such as the files `._NAME` that macOS writes beside others.
+fn is_hidden(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().starts_with('.')
 }
 
 /// Returns the file of an array: `given`, or else the file of the frames if it contains an array `name`, or else a file of this name in the folder.
@@ -335,20 +336,23 @@ fn check_shape((part, path): (&Part, &Path), (first, of_first): (&Part, &Path)) 
 
 /// Joins the arrays of all parts, one after the other, and sorts the touches by time if all parts have times.
 fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
-    let joined = |of: fn(&Part) -> &Option<Vec<KeyValue>>| {
-        let lists = parts.iter().map(|part| of(part).as_ref());
-        let lists: Option<Vec<&Vec<KeyValue>>> = lists.collect();
-        lists.map(|lists| {
-            lists
-                .into_iter()
-                .flatten()
-                .cloned()
-                .collect::<Vec<KeyValue>>()
-        })
+    let joined = |name: &str, of: fn(&Part) -> &Option<Vec<KeyValue>>| {
+        let lists = parts.iter().map(|part| of(part).clone());
+        let lists: Option<Vec<Vec<KeyValue>>> = lists.collect();
+        let values = lists.map(|lists| lists.concat()).unwrap_or_default();
+        let is_text = |value: &KeyValue| matches!(value, KeyValue::Text(_));
+        let n_texts = values.iter().filter(|value| is_text(value)).count();
+        match n_texts == 0 || n_texts == values.len() {
+            true => Ok(Some(values).filter(|values| !values.is_empty())),
+            false => {
+                let given = "texts in one array and numbers in another";
+                Err(Error::input(name, given, "texts or numbers in all"))
+            }
+        }
     };
-    let labels = joined(|part| &part.labels).map(|values| ClassLabels::new(&values));
-    let groups = joined(|part| &part.groups).map(|values| group_keys(&values));
-    let sessions = joined(|part| &part.sessions).map(|values| group_keys(&values));
+    let labels = joined("labels", |part| &part.labels)?.map(|values| ClassLabels::new(&values));
+    let groups = joined("groups", |part| &part.groups)?.map(|values| group_keys(&values));
+    let sessions = joined("sessions", |part| &part.sessions)?.map(|values| group_keys(&values));
     let times = parts.iter().map(|part| part.times.clone());
     let times: Option<Vec<Vec<f64>>> = times.collect();
     let times: Option<Vec<f64>> = times.map(|times| times.concat());

@@ -27,6 +27,11 @@ pub struct Args {
     /// One letter for each axis: n touches, t frames, y rows, x columns, c taxels.
     #[arg(long, value_name = "ORDER", help_heading = "Input")]
     order: Option<String>,
+    /// Take these columns of a table as readings, such as "taxel_*"
+    ///
+    /// Names or patterns, separated by commas: * stands for any text, # for a number.
+    #[arg(long, value_name = "NAMES", help_heading = "Input")]
+    columns: Option<String>,
     /// Set rows and columns of frames that are flat lists
     #[arg(long, value_name = "ROWS,COLUMNS", value_parser = grid, help_heading = "Input")]
     grid: Option<[usize; 2]>,
@@ -98,6 +103,7 @@ pub fn calibrate(args: &Args) -> Result<()> {
     let files = RecordedSkinFiles {
         frames: args.frames.clone(),
         order: args.order.clone(),
+        columns: args.columns.clone(),
         grid: args.grid,
         untouched: match &args.untouched {
             Some(path) => UntouchedFrames::File(path.clone()),

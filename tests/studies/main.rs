@@ -38,6 +38,7 @@ mod recorded_arrays;
 mod recorded_law;
 mod recorded_sensors;
 mod recorded_subsets;
+mod recorded_tables;
 mod recorded_values;
 mod repeatability;
 mod sensor_error_names;

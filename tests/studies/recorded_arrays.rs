@@ -225,7 +225,6 @@ fn labels_of_every_form_are_the_same_classes() {
         .collect();
     case.file("bytes.npy", npy("|S6", false, &[N], &padded));
     case.file("texts.csv", format!("object\n{}\n", words.join("\n")));
-    let named = "names = [\"class 0\", \"class 1\", \"class 2\"]";
     for name in [
         "float.npy",
         "from_1.npy",
@@ -235,11 +234,18 @@ fn labels_of_every_form_are_the_same_classes() {
     ] {
         assert_eq!(scores(&keys(folder, "frames.npy", name)), usual, "{name}");
     }
+    let named = "names = [\"cup\", \"ball\", \"pen\"]";
+    let usual = scores(&(keys(folder, "frames.npy", "labels.npy") + named));
     for name in ["texts.npy", "bytes.npy", "texts.csv"] {
         let keys = keys(folder, "frames.npy", name);
+        assert_eq!(scores(&keys), usual, "{name}");
         assert_eq!(scores(&(keys.clone() + named)), usual, "{name}");
         let found = study(&keys).unwrap();
         assert_eq!(found.first().touched.class_names(), NAMES, "{name}");
+        // A name that no touch has does not rename a class.
+        let said = error(&(keys + &named.replace("ball", "bal")));
+        let words = "key recorded.names: no name \"ball\"; each text of ";
+        assert!(said.contains(words), "{said}");
     }
     let found = study(&keys(folder, "frames.npy", "any.npy")).unwrap();
     assert_eq!(
@@ -529,7 +535,7 @@ fn arrays_that_are_wrong_are_refused_in_words_of_the_user() {
         (
             "empty.npy",
             "labels.npy",
-            "empty.npy: an array of shape [0, 8, 8]",
+            "empty.npy: no readings, shape [0, 8, 8]; at least one reading",
         ),
         (
             "short.npy",

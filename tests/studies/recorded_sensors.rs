@@ -562,7 +562,7 @@ fn recordings_that_contradict_themselves_are_refused() {
         (two("", "").replace("left.npy", "none.npy"), "none.npy"),
         (
             two("", "").replace("left.npy", "texts.csv"),
-            "texts.csv: texts; numbers",
+            "texts.csv, line 1: `a`; numbers",
         ),
         (
             two("", "").replace("left.npy", "one_nan.npy"),
@@ -574,7 +574,7 @@ fn recordings_that_contradict_themselves_are_refused() {
         ),
         (
             time("lengths = \"FOLDER/texts.csv\""),
-            "texts.csv: texts; numbers",
+            "texts.csv, line 1: `a`; numbers",
         ),
         (
             time("lengths = \"FOLDER/nan_length.npy\""),

@@ -162,6 +162,10 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
     let lengths = shape.iter().map(usize::to_string).collect::<Vec<_>>();
     let given = format!("an array of shape [{}]", lengths.join(", "));
     let key = axes.key;
+    if shape.contains(&0) {
+        let given = format!("no readings, shape [{}]", lengths.join(", "));
+        return Err(Error::input(place, given, "at least one reading"));
+    }
     let order = match axes.order {
         Some(order) => checked_order(order, key)?,
         None => {

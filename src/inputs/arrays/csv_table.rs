@@ -1,83 +1,428 @@
-//! Reader of CSV tables with one row per line. Semicolons, tabs and spaces are also accepted as separators, and one header line is allowed.
+//! Tables in text files: `.csv`, `.tsv` and `.txt` with a row in each line. Separators are tabs, semicolons, commas or spaces.
+//!
+//! **First line.** The first line is a header if it has a text above a column of numbers. Numbers 0 … k − 1 (or 1 … k) in the first line are a header, too;
+//! pandas writes them as the names of k columns. If the number of rows is known, such a line is a header only if the table has one line more than rows.
+//! A first line of texts above texts is then a header, too.
+//!
+//! **Columns that are left out.** A column without a name, or with the name `Unnamed: …` of pandas, is left out. A column that counts the rows from 0 or 1 is an
+//! index and is left out; the count may begin again with each touch. An empty column behind the last separator of all lines is no column. A note states what
+//! was left out.
+//!
+//! **Readings.** The columns of frames have names of one family (module `column_names`), or match given patterns.
 
 use crate::error::{Error, Result};
+use crate::inputs::arrays::column_names::{column_families, listed, matches};
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::path::Path;
 
-/// Reads a CSV table as numbers or, if an entry is not a number, as texts. An empty entry among numbers is NaN. The first line is a header if an entry is not a
-/// number and the other lines contain numbers. A column without a name contains row numbers and is skipped.
+/// Minimum number of consecutive integers that are a count of rows. With a smaller value, entries 0 and 1 of class columns are taken as an index.
+const MIN_COUNT: usize = 3;
+
+/// Content of a table, which decides which of its lines and columns are data.
+#[derive(Clone, Copy, Debug)]
+pub enum TableContent<'a> {
+    /// Numbers of any kind.
+    Any,
+    /// Values of `n` rows, such as labels.
+    Rows(usize),
+    /// Readings of taxels.
+    Frames {
+        /// Patterns of the names of the reading columns, separated by commas; `None` for all columns, which are then one family.
+        columns: Option<&'a str>,
+        /// Key or option that sets the patterns, with the text that precedes its value, such as `--columns `.
+        key: &'a str,
+    },
+}
+
+/// Table of a text file.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// Name of the file, for error messages.
+    pub place: String,
+    /// Names of the columns; `None` without a header.
+    pub names: Option<Vec<String>>,
+    /// Notes on columns that were left out.
+    pub notes: Vec<String>,
+    /// Lines of the file, each with its number from 1 and one cell for each column.
+    rows: Vec<(usize, Vec<String>)>,
+    separator: Option<char>,
+}
+
+impl Table {
+    /// Reads a table. If the number of its rows is known, `n_rows` is this number.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is empty, or its lines differ in the number of cells.
+    pub fn read(path: &Path, n_rows: Option<usize>) -> Result<Self> {
+        let place = path.display().to_string();
+        let text = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
+        let text = String::from_utf8(text).map_err(|_| {
+            Error::input(&place, "a text that is not UTF-8", "a .csv file in UTF-8")
+        })?;
+        let is_data = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.starts_with('#');
+        let lines = text.trim_start_matches('\u{feff}').lines();
+        let lines = (1..).zip(lines).filter(is_data);
+        let lines: Vec<(usize, &str)> = lines.collect();
+        let Some((_, first)) = lines.first() else {
+            return Err(Error::input(place, "an empty file", "rows of numbers"));
+        };
+        check_export(path, &lines)?;
+        let separator = ['\t', ';', ','].into_iter().find(|s| first.contains(*s));
+        let rows = lines.iter().map(|&(number, line)| {
+            let cells = match separator {
+                None => numbers_or_text(line),
+                Some(separator) => cells(line, separator),
+            };
+            (number, cells)
+        });
+        let mut table = Self {
+            rows: rows.collect(),
+            place,
+            names: None,
+            notes: Vec::new(),
+            separator,
+        };
+        table.drop_empty_end();
+        table.check_widths()?;
+        table.check_decimal_points()?;
+        if table.has_header(n_rows) {
+            let names = table.rows.remove(0).1;
+            let is_named = |name: &String| !name.is_empty() && !name.starts_with("Unnamed:");
+            let named: Vec<usize> = (0..names.len()).filter(|&k| is_named(&names[k])).collect();
+            table.names = Some(names);
+            if !named.is_empty() {
+                table.keep(&named, "has no name");
+            }
+        }
+        Ok(table)
+    }
+
+    /// Returns the number of columns.
+    pub fn n_columns(&self) -> usize {
+        match (&self.names, self.rows.first()) {
+            (Some(names), _) => names.len(),
+            (None, Some((_, cells))) => cells.len(),
+            (None, None) => 0,
+        }
+    }
+
+    /// Returns the cells of a column.
+    fn column(&self, column: usize) -> impl Iterator<Item = &str> {
+        self.rows.iter().map(move |(_, cells)| &cells[column][..])
+    }
+
+    /// Returns the cells of each column.
+    pub fn columns(&self) -> Vec<Vec<&str>> {
+        let all = 0..self.n_columns();
+        all.map(|column| self.column(column).collect()).collect()
+    }
+
+    /// Returns the columns that do not count the rows; all columns if each of them counts.
+    pub fn without_counts(&self) -> Vec<usize> {
+        let counts = |column: &usize| counts_rows(self.column(*column).map(number));
+        let all = 0..self.n_columns();
+        let kept: Vec<usize> = all.clone().filter(|column| !counts(column)).collect();
+        match kept.is_empty() {
+            true => all.collect(),
+            false => kept,
+        }
+    }
+
+    /// Leaves out all other columns, with a note for each; `why` is the reason.
+    fn keep(&mut self, columns: &[usize], why: &str) {
+        if columns.len() == self.n_columns() {
+            return;
+        }
+        for column in (0..self.n_columns()).filter(|column| !columns.contains(column)) {
+            let name = self.names.as_ref().map(|names| &names[column]);
+            let name = name.filter(|name| !name.is_empty());
+            let name = name.map_or(String::new(), |name| format!(" `{name}`"));
+            let note = format!(
+                "{}: column {}{name} {why}; it is left out",
+                self.place,
+                column + 1
+            );
+            self.notes.push(note);
+        }
+        self.select(columns);
+    }
+
+    fn select(&mut self, columns: &[usize]) {
+        let of = |cells: &Vec<String>| columns.iter().map(|&k| cells[k].clone()).collect();
+        self.names = self.names.as_ref().map(of);
+        for (_, cells) in &mut self.rows {
+            *cells = of(cells);
+        }
+    }
+
+    /// Leaves out the columns that are no data of the given content.
+    ///
+    /// # Errors
+    /// If the columns of frames are of several families, or no column matches a pattern; the error lists the families.
+    pub fn for_content(mut self, content: TableContent) -> Result<Self> {
+        let TableContent::Frames { columns, key } = content else {
+            self.keep(&self.without_counts(), COUNTS);
+            return Ok(self);
+        };
+        let Some(patterns) = columns else {
+            self.keep(&self.without_counts(), COUNTS);
+            let families = self.names.as_deref().and_then(column_families);
+            let Some((listed, largest)) = families else {
+                return Ok(self);
+            };
+            let given = format!("columns of several kinds: {listed}");
+            let allowed =
+                format!("those that are readings, such as {key}{largest:?}, or {key}\"*\" for all");
+            return Err(Error::input(self.place, given, allowed));
+        };
+        let place = &self.place;
+        let refuse = |given: String, allowed: String| Err(Error::input(place, given, allowed));
+        let Some(names) = &self.names else {
+            let given = format!("{key}{patterns:?} for a table without names of columns");
+            return refuse(
+                given,
+                "a first line with the name of each column".to_owned(),
+            );
+        };
+        for pattern in patterns.split(',').map(str::trim) {
+            if !names.iter().any(|name| matches(pattern, name)) {
+                let allowed = format!("patterns of {}", listed(names));
+                return refuse(format!("{key}{patterns:?}: no column `{pattern}`"), allowed);
+            }
+        }
+        let is_chosen = |&k: &usize| {
+            patterns
+                .split(',')
+                .any(|pattern| matches(pattern.trim(), &names[k]))
+        };
+        let chosen: Vec<usize> = (0..names.len()).filter(is_chosen).collect();
+        self.select(&chosen);
+        Ok(self)
+    }
+
+    /// Converts the cells to an array of numbers or, if a cell is no number, of texts. An empty cell among numbers is NaN.
+    pub fn into_array(self) -> FileArray {
+        let shape = vec![self.rows.len(), self.n_columns()];
+        let is_text = |cell: &&String| number(cell).is_none();
+        let mut all = self
+            .rows
+            .iter()
+            .flat_map(|(line, cells)| cells.iter().map(move |c| (line, c)));
+        let text = all.find(|(_, cell)| is_text(cell));
+        let text = text.map(|(line, cell)| {
+            let at = format!("{}, line {line}", self.place);
+            [at, format!("`{cell}`"), "numbers".to_owned()]
+        });
+        let cells = self.rows.into_iter().flat_map(|(_, cells)| cells);
+        if text.is_some() {
+            return FileArray {
+                place: self.place,
+                shape,
+                kind: ElementKind::Text,
+                elements: Elements::Texts(cells.collect()),
+                refusal: text,
+            };
+        }
+        let mut is_whole = true;
+        let numbers = cells.map(|cell| {
+            is_whole &= cell.parse::<i64>().is_ok();
+            number(&cell).unwrap_or(f64::NAN)
+        });
+        let numbers = numbers.collect();
+        FileArray {
+            place: self.place,
+            shape,
+            kind: match is_whole {
+                true => ElementKind::Integer,
+                false => ElementKind::Float(f64::EPSILON),
+            },
+            elements: Elements::Numbers(numbers),
+            refusal: None,
+        }
+    }
+
+    /// Returns an error if the numbers of a column have decimal commas, which are texts of other programs.
+    fn check_decimal_points(&self) -> Result<()> {
+        let Some(separator) = self.separator.filter(|separator| *separator != ',') else {
+            return Ok(());
+        };
+        let has_comma =
+            |cell: &str| number(cell).is_none() && number(&cell.replacen(',', ".", 1)).is_some();
+        for column in 0..self.n_columns() {
+            let mut below = self.column(column).skip(1);
+            let are_numbers = below.all(|cell| number(cell).is_some() || has_comma(cell));
+            let found = self
+                .rows
+                .iter()
+                .find(|(_, cells)| has_comma(&cells[column]));
+            if let (true, Some((line, cells))) = (are_numbers, found) {
+                let place = format!("{}, line {line}", self.place);
+                let words = if separator == ';' {
+                    "semicolons"
+                } else {
+                    "tabs"
+                };
+                let given = format!(
+                    "`{}`, a table with {words} and decimal commas",
+                    cells[column]
+                );
+                let allowed = format!(
+                    "decimal points: pandas.read_csv({:?}, sep={separator:?}, decimal=\",\").to_csv(\"points.csv\", index=False)",
+                    self.place
+                );
+                return Err(Error::input(place, given, allowed));
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes the empty cell behind the last separator of all lines. The first line may have a name in its place, which makes it a column, or no cell.
+    fn drop_empty_end(&mut self) {
+        let is_empty = |(_, cells): &(usize, Vec<String>)| {
+            cells.len() > 1 && cells.last().is_some_and(String::is_empty)
+        };
+        let n_first = self.rows[0].1.len();
+        let is_longer = |(_, cells): &(usize, Vec<String>)| cells.len() > n_first;
+        let mut others = self.rows.iter().skip(1);
+        // A header may end with a separator although the other lines do not.
+        let is_of_header = is_empty(&self.rows[0])
+            && self.rows.len() > 1
+            && others.clone().all(|(_, cells)| cells.len() + 1 == n_first);
+        let is_of_all = others.clone().all(is_empty)
+            && (is_empty(&self.rows[0]) || self.rows.len() > 1 && others.all(is_longer));
+        let n_shortened = match (is_of_header, is_of_all) {
+            (true, _) => 1,
+            (false, true) => self.rows.len(),
+            (false, false) => return,
+        };
+        let mut rows = self.rows.iter_mut().take(n_shortened);
+        rows.by_ref().filter(|row| is_empty(row)).for_each(|row| {
+            row.1.pop();
+        });
+        let note = "the lines end with a separator; no column follows it";
+        self.notes.push(format!("{}: {note}", self.place));
+    }
+
+    fn check_widths(&self) -> Result<()> {
+        let (first, known) = &self.rows[0];
+        let Some((line, cells)) = self
+            .rows
+            .iter()
+            .find(|(_, cells)| cells.len() != known.len())
+        else {
+            return Ok(());
+        };
+        let place = format!("{}, line {line}", self.place);
+        let allowed = format!("{}, as line {first} has", known.len());
+        Err(Error::input(
+            place,
+            format!("{} values", cells.len()),
+            allowed,
+        ))
+    }
+
+    /// Returns whether the first line has the names of the columns.
+    fn has_header(&self, n_rows: Option<usize>) -> bool {
+        let ((_, first), others) = (&self.rows[0], &self.rows[1..]);
+        let is_text = |cell: &str| number(cell).is_none();
+        let are_texts = first.iter().all(|cell| is_text(cell));
+        if others.is_empty() {
+            return n_rows.is_none() && are_texts;
+        }
+        let is_above_numbers = |&column: &usize| {
+            let mut below = self.column(column).skip(1);
+            is_text(&first[column]) && !below.any(is_text)
+        };
+        if (0..first.len()).any(|column| is_above_numbers(&column)) {
+            return true;
+        }
+        if n_rows.is_some_and(|n| n != others.len()) {
+            return false;
+        }
+        let numbered: Vec<f64> = first
+            .iter()
+            .filter(|cell| !cell.is_empty())
+            .filter_map(|cell| number(cell))
+            .collect();
+        let n_min = match n_rows.is_some() || first.iter().any(String::is_empty) {
+            true => 1,
+            false => 2,
+        };
+        let is_count = counts_from(&numbered, 0.0) && numbered.len() >= n_min
+            || counts_from(&numbered, 1.0) && numbered.len() >= MIN_COUNT;
+        // A known number of rows makes a first line of texts a header.
+        is_count || n_rows.is_some() && are_texts
+    }
+}
+
+/// Reason why a column is left out.
+const COUNTS: &str = "counts the rows";
+
+/// Reads a text file as an array. Notes are written to standard error.
 ///
 /// # Errors
-/// If the file cannot be read, is empty, or its lines differ in the number of entries.
-pub fn read(path: &Path) -> Result<FileArray> {
-    let place = path.display().to_string();
-    let text = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
-    let text = String::from_utf8(text)
-        .map_err(|_| Error::input(&place, "a text that is not UTF-8", "a .csv file in UTF-8"))?;
-    let text = text.trim_start_matches('\u{feff}');
-    let mut lines = text.lines().enumerate();
-    let is_data = |line: &str| !line.trim().is_empty() && !line.starts_with('#');
-    let Some((_, first)) = lines.find(|(_, line)| is_data(line)) else {
-        return Err(Error::input(place, "an empty file", "rows of numbers"));
+/// Returns the errors of [`Table::read`] and [`Table::for_content`].
+pub fn read(path: &Path, content: TableContent) -> Result<(FileArray, Vec<String>)> {
+    let n_rows = match content {
+        TableContent::Rows(n) => Some(n),
+        _ => None,
     };
-    let separator = [',', ';', '\t'].into_iter().find(|s| first.contains(*s));
-    let mut rows: Vec<(usize, Vec<String>)> = Vec::new();
-    for (number, line) in text.lines().enumerate().filter(|(_, line)| is_data(line)) {
-        let cells = match separator {
-            None => numbers_or_text(line),
-            Some(separator) => cells(line, separator),
-        };
-        if let Some((first, known)) = rows.first()
-            && known.len() != cells.len()
-        {
-            let place = format!("{place}, line {}", number + 1);
-            let allowed = format!("{}, as line {} has", known.len(), first + 1);
-            return Err(Error::input(
-                place,
-                format!("{} values", cells.len()),
-                allowed,
-            ));
-        }
-        rows.push((number, cells));
+    let mut table = Table::read(path, n_rows)?.for_content(content)?;
+    let notes = std::mem::take(&mut table.notes);
+    Ok((table.into_array(), notes))
+}
+
+/// Returns a cell as a number; NaN if it is empty, and `None` if it is a text.
+fn number(cell: &str) -> Option<f64> {
+    match cell.is_empty() {
+        true => Some(f64::NAN),
+        false => cell.parse().ok(),
     }
-    let is_number = |cell: &String| cell.is_empty() || cell.parse::<f64>().is_ok();
-    let are_numbers =
-        |rows: &[(usize, Vec<String>)]| rows.iter().all(|(_, cells)| cells.iter().all(is_number));
-    let are_all_numbers = are_numbers(&rows[1..]) && (rows.len() > 1 || are_numbers(&rows));
-    let mut n_columns = rows[0].1.len();
-    if are_all_numbers && !rows[0].1.iter().all(is_number) {
-        let names = rows.remove(0).1;
-        let is_unnamed = names[0].is_empty() && n_columns > 1;
-        if is_unnamed {
-            n_columns -= 1;
-            rows.iter_mut().for_each(|(_, cells)| drop(cells.remove(0)));
-        }
+}
+
+/// Returns whether numbers are `first`, `first` + 1, …
+fn counts_from(numbers: &[f64], first: f64) -> bool {
+    let mut counted = numbers.iter().enumerate();
+    counted.all(|(k, &number)| number == first + k as f64)
+}
+
+/// Returns whether the cells of a column count the rows from 0 or 1; the count may begin again, such as with each touch.
+fn counts_rows(cells: impl Iterator<Item = Option<f64>>) -> bool {
+    let mut cells = cells.peekable();
+    let Some(&Some(first @ (0.0 | 1.0))) = cells.peek() else {
+        return false;
+    };
+    let Some(numbers) = cells.collect::<Option<Vec<f64>>>() else {
+        return false;
+    };
+    let mut runs = numbers.chunk_by(|a, b| *b == a + 1.0);
+    runs.all(|run| run.len() >= MIN_COUNT && run[0] == first)
+}
+
+/// Returns an error if the file is an export of a pressure mat with a block of lines for each frame.
+fn check_export(path: &Path, lines: &[(usize, &str)]) -> Result<()> {
+    let (number, first) = lines[0];
+    if !first.trim_start_matches('"').starts_with("DATA_TYPE") {
+        return Ok(());
     }
-    let shape = vec![rows.len(), n_columns];
-    let cells = rows.into_iter().flat_map(|(_, cells)| cells);
-    if !are_all_numbers {
-        return Ok(FileArray {
-            place,
-            shape,
-            kind: ElementKind::Text,
-            elements: Elements::Texts(cells.collect()),
+    let value = |key: &str| {
+        let found = lines.iter().find_map(|(_, line)| line.strip_prefix(key));
+        let found = found.and_then(|rest| {
+            rest.split([' ', ',', '\t', ';'])
+                .find(|word| !word.is_empty())
         });
-    }
-    let mut is_whole = true;
-    let numbers = cells.map(|cell| {
-        is_whole &= cell.parse::<i64>().is_ok();
-        cell.parse().unwrap_or(f64::NAN)
-    });
-    let numbers = numbers.collect();
-    Ok(FileArray {
-        place,
-        shape,
-        kind: match is_whole {
-            true => ElementKind::Integer,
-            false => ElementKind::Float(f64::EPSILON),
-        },
-        elements: Elements::Numbers(numbers),
-    })
+        found.unwrap_or(key).to_owned()
+    };
+    let place = format!("{}, line {number}", path.display());
+    let given =
+        format!("`{first}`, an I-Scan (Tekscan) export with a block of lines for each frame");
+    let allowed = format!(
+        "an array of frames: numpy.save(\"frames.npy\", numpy.array([line.split(\",\") for line in open({:?}) if line[0].isdigit()], float).reshape(-1, {}, {}))",
+        path.display().to_string(),
+        value("ROWS"),
+        value("COLS"),
+    );
+    Err(Error::input(place, given, allowed))
 }
 
 /// Returns the numbers in a line of numbers separated by spaces; returns any other line as one text.

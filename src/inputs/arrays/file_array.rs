@@ -33,4 +33,6 @@ pub struct FileArray {
     pub kind: ElementKind,
     /// Elements of the array in row-major order.
     pub elements: Elements,
+    /// Place, given and allowed content of the error of the first text in a table; `None` for other files.
+    pub refusal: Option<[String; 3]>,
 }

@@ -5,6 +5,7 @@
 
 use crate::inputs::arrays::file_array::{Elements, FileArray};
 pub(crate) mod axis_order;
+pub(crate) mod column_names;
 pub(crate) mod csv_table;
 pub(crate) mod element_type;
 pub(crate) mod file_array;
@@ -12,12 +13,15 @@ pub(crate) mod npy_file;
 pub(crate) mod whole_numbers;
 
 pub use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
+pub use crate::inputs::arrays::column_names::column_families;
+pub use crate::inputs::arrays::csv_table::{Table, TableContent};
 pub use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, group_keys, read_class_labels, read_class_values, read_group_keys,
     read_group_values, read_rows,
 };
 
 use crate::error::{Error, Result};
+use crate::note::note;
 use ndarray::{Array2, ArrayD, IxDyn};
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -39,15 +43,30 @@ impl FileArray {
     /// # Errors
     /// If the file does not exist, contains no such array, or its elements are neither numbers nor texts.
     pub fn read(path: &Path, name: &str) -> Result<Self> {
+        Self::read_content(path, name, TableContent::Any)
+    }
+
+    /// Reads the array `name` from a file, as [`Self::read`] does. In a table, `content` decides which lines and columns are data; a note states what is
+    /// left out.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::read`]. If the columns of frames are of several families, or columns are chosen in a file without names of columns.
+    pub fn read_content(path: &Path, name: &str, content: TableContent) -> Result<Self> {
         let file = open(path)?;
-        match format_of(path)? {
+        let format = format_of(path)?;
+        check_columns(path, format, content)?;
+        match format {
             Format::Npy => {
                 let place = path.display().to_string();
                 let length = file.metadata().map_err(|e| Error::io(path, "read", e))?;
                 npy_file::read(&place, &mut BufReader::new(file), length.len())
             }
             Format::Npz => with_member(path, name, npy_file::read),
-            Format::Csv => csv_table::read(path),
+            Format::Csv => {
+                let (array, notes) = csv_table::read(path, content)?;
+                notes.iter().for_each(note);
+                Ok(array)
+            }
         }
     }
 
@@ -55,14 +74,16 @@ impl FileArray {
     ///
     /// # Errors
     /// If the file does not exist, or contains no such array.
-    pub fn shape_of(path: &Path, name: &str) -> Result<Vec<usize>> {
+    pub fn shape_of(path: &Path, name: &str, content: TableContent) -> Result<Vec<usize>> {
         let file = open(path)?;
         let shape =
             |place: &str, reader: &mut dyn Read, _| Ok(npy_file::read_header(place, reader)?.shape);
-        match format_of(path)? {
+        let format = format_of(path)?;
+        check_columns(path, format, content)?;
+        match format {
             Format::Npy => shape(&path.display().to_string(), &mut BufReader::new(file), 0),
             Format::Npz => with_member(path, name, shape),
-            Format::Csv => Ok(csv_table::read(path)?.shape),
+            Format::Csv => Ok(csv_table::read(path, content)?.0.shape),
         }
     }
 
@@ -76,8 +97,27 @@ impl FileArray {
                 let numbers = ArrayD::from_shape_vec(IxDyn(&self.shape), numbers);
                 Ok(numbers.expect("one element for each place"))
             }
-            Elements::Texts(_) => Err(Error::input(self.place, "texts", "numbers")),
+            Elements::Texts(_) => {
+                let texts = || [self.place, "texts".to_owned(), "numbers".to_owned()];
+                let [place, given, allowed] = self.refusal.unwrap_or_else(texts);
+                Err(Error::input(place, given, allowed))
+            }
         }
+    }
+}
+
+/// Returns an error if columns are chosen in a file that is no table.
+fn check_columns(path: &Path, format: Format, content: TableContent) -> Result<()> {
+    match content {
+        TableContent::Frames {
+            columns: Some(columns),
+            key,
+        } if format != Format::Csv => {
+            let given = format!("{key}{columns:?} beside an array without names of columns");
+            let allowed = "a table in a .csv, .tsv or .txt file, or all readings of the array";
+            Err(Error::input(path.display(), given, allowed))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -92,13 +132,9 @@ pub fn read_matrix(path: &Path, name: &str) -> Result<Array2<f64>> {
         let given = format!("an array of shape {:?}", array.shape);
         return Err(Error::input(array.place, given, ALLOWED));
     };
-    match array.elements {
-        Elements::Texts(_) => Err(Error::input(array.place, "texts", ALLOWED)),
-        Elements::Numbers(numbers) => {
-            let matrix = Array2::from_shape_vec((rows, columns), numbers);
-            Ok(matrix.expect("one element for each place"))
-        }
-    }
+    let numbers = array.into_numbers()?;
+    let matrix = numbers.into_shape_with_order((rows, columns));
+    Ok(matrix.expect("one element for each place"))
 }
 
 /// Returns the names of the arrays of a `.npz` archive.

@@ -1,6 +1,7 @@
 //! Classes, groups and row numbers read from arrays: integers, texts, or one column per class.
 
 use crate::error::{Error, Result};
+use crate::inputs::arrays::csv_table::TableContent;
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
@@ -56,7 +57,7 @@ fn distinct(values: &[KeyValue]) -> Vec<KeyValue> {
 /// # Errors
 /// If the file does not exist or contains other data, or a position has no class.
 pub fn read_class_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
-    let array = one_hot(with_rows(FileArray::read(path, name)?, path, n))?;
+    let array = one_hot(FileArray::read_content(path, name, TableContent::Rows(n))?)?;
     values(
         array,
         "one class for each touch: int8 to int64, uint8 to uint64, whole floats, bool or texts, or a column of 0 and 1 for each class",
@@ -81,7 +82,7 @@ pub fn read_class_labels(path: &Path, name: &str, n_rows: usize) -> Result<Class
 /// # Errors
 /// If the file does not exist or contains other data, or an integer is below 0 or beyond 2⁵³; the error names its position.
 pub fn read_group_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
-    let array = with_rows(FileArray::read(path, name)?, path, n);
+    let array = FileArray::read_content(path, name, TableContent::Rows(n))?;
     let allowed =
         "one group for each touch: int8 to int64, uint8 to uint64, whole floats, bool or texts";
     let values = values(array, allowed)?;
@@ -164,23 +165,6 @@ fn not_below_zero(path: &Path, values: &[KeyValue]) -> Result<()> {
             Err(Error::input(place, number, "zero or more, up to 2^53"))
         }
     }
-}
-
-/// Returns the array without its header line, if it is a table of texts that has one line more than the expected `n` rows.
-fn with_rows(mut array: FileArray, path: &Path, n: usize) -> FileArray {
-    let is_table = path.extension().is_some_and(|ending| {
-        ["csv", "tsv", "txt"]
-            .iter()
-            .any(|table| ending.eq_ignore_ascii_case(table))
-    });
-    if is_table
-        && array.shape[0] == n + 1
-        && let Elements::Texts(texts) = &mut array.elements
-    {
-        texts.drain(..array.shape[1]);
-        array.shape[0] -= 1;
-    }
-    array
 }
 
 /// Converts a matrix with one 0/1 column per class to class numbers: for each row, the number of the column that contains 1.

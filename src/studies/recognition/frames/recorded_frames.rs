@@ -6,6 +6,7 @@
 use crate::contact::saturation_limit;
 use crate::engine::progress::Progress;
 use crate::error::{Error, Result};
+use crate::inputs::arrays::TableContent;
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, group_keys, read_class_values, read_group_values,
@@ -235,15 +236,19 @@ impl RecordedSpec {
         };
         // Texts are numbered in the order of `names`.
         let known: Vec<KeyValue> = names.iter().cloned().map(KeyValue::Text).collect();
-        let number = |value: &KeyValue| known.iter().position(|name| name == value);
-        match values.iter().map(number).collect::<Option<Vec<_>>>() {
-            Some(numbers) => Ok(ClassLabels {
-                labels: numbers,
-                classes: known,
-            }),
-            // Otherwise texts are numbered in the order of their first touches.
-            None => Ok(labels),
-        }
+        let number = |value: &KeyValue| {
+            let number = known.iter().position(|name| name == value);
+            number.ok_or_else(|| {
+                let given = format!("no name {:?}", name_of(value));
+                let labels = self.file_of("labels").unwrap_or(&self.labels);
+                let allowed = format!("each text of {} once", labels.display());
+                Error::input("key recorded.names", given, allowed)
+            })
+        };
+        Ok(ClassLabels {
+            labels: values.iter().map(number).collect::<Result<_>>()?,
+            classes: known,
+        })
     }
 
     /// Returns the name, the random-stream name and the number of touches of each class.
@@ -358,7 +363,8 @@ impl RecordedSpec {
         let Some(path) = &self.depths else {
             return Ok(None);
         };
-        let depths = FileArray::read(path, "depths")?.into_numbers()?;
+        let depths =
+            FileArray::read_content(path, "depths", TableContent::Rows(n))?.into_numbers()?;
         one_each((path, "depths"), (depths.len(), n), self.first_frames())?;
         match depths
             .iter()

@@ -2,6 +2,7 @@
 
 use crate::calibration::RecordedSkin;
 use crate::error::{Error, Result};
+use crate::inputs::arrays::TableContent;
 use crate::inputs::arrays::file_array::{ElementKind, FileArray};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use ndarray::{Array1, Array2, Axis};
@@ -27,6 +28,8 @@ pub struct RecordedSkinFiles {
     pub frames: PathBuf,
     /// Order of the array axes of the frames, one letter per axis, as in the key `order` of `[recorded]`; `None` for the default order.
     pub order: Option<String>,
+    /// Columns of a table that are readings, as in the key `columns` of `[recorded]`; `None` for all columns.
+    pub columns: Option<String>,
     /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
     pub grid: Option<[usize; 2]>,
     /// Selection of the recorded frames in which nothing touches the skin.
@@ -104,7 +107,7 @@ impl RecordedSkinFiles {
 impl RecordedSkinFiles {
     /// Reads frames from a file, one per row; also returns the numbers of rows and columns of each frame.
     fn frames_of(&self, path: &Path) -> Result<(Array2<f64>, (usize, usize))> {
-        let spec = RecordedSpec::of_frames(path, self.order.as_deref(), self.grid);
+        let spec = RecordedSpec::of_frames(path, [&self.order, &self.columns], self.grid);
         let shape = spec.shape_of("frames")?;
         if !shape.has_grid {
             let given = match shape.sides {
@@ -114,14 +117,14 @@ impl RecordedSkinFiles {
             let allowed = "frames of a grid of taxels with one value each (--grid ROWS,COLUMNS or --order names them)";
             return Err(Error::input(path.display(), given, allowed));
         }
-        let readings = FileArray::read(path, "frames")?.into_numbers()?;
+        let readings = spec.read_array("frames")?.into_numbers()?;
         Ok((shape.arrange(readings), (shape.rows, shape.columns)))
     }
 }
 
 /// Reads one number per frame from a file.
 fn numbers_of(path: &Path, n: usize) -> Result<Array1<f64>> {
-    let array = FileArray::read(path, "forces")?;
+    let array = FileArray::read_content(path, "forces", TableContent::Rows(n))?;
     if array.kind == ElementKind::Text {
         return Err(Error::input(path.display(), "texts", "finite numbers"));
     }

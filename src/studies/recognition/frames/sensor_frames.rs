@@ -188,7 +188,7 @@ impl RecordedSpec {
         let bytes = 16.0 * (n * shape.n_frames) as f64 * n_values as f64;
         check_memory(bytes, ceiling, "frames")
             .map_err(|allowed| Error::input(path.display(), format!("{n} touches"), allowed))?;
-        let array = FileArray::read(path, &self.array_name(name))?;
+        let array = self.read_array(name)?;
         let (place, kind) = (array.place.clone(), array.kind);
         let mut readings = shape.arrange(array.into_numbers()?);
         let mut shear_place = None;

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::inputs::arrays::axis_order::FrameShape;
 use crate::inputs::arrays::file_array::FileArray;
-use crate::inputs::arrays::is_member;
+use crate::inputs::arrays::{TableContent, is_member};
 use crate::signal::{resample, resampled_instant};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use ndarray::{Array2, s};
@@ -99,7 +99,7 @@ pub(crate) fn lengths_of_file(
     shape: &FrameShape,
     frames: &Path,
 ) -> Result<Vec<usize>> {
-    let array = FileArray::read(path, name)?;
+    let array = FileArray::read_content(path, name, TableContent::Rows(shape.n_touches))?;
     let place = array.place.clone();
     let lengths = array.into_numbers()?;
     one_each((path, name), (lengths.len(), shape.n_touches), frames)?;

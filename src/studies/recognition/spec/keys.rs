@@ -102,6 +102,7 @@ const KEYS: &[KeyAbout] = keys! {
     "recorded.labels": Axes, Condition, Unchecked;
     "recorded.groups": Axes, Condition, Unchecked;
     "recorded.order": Axes, Condition, Unchecked;
+    "recorded.columns": Axes, Choice, Unchecked;
     "recorded.grid": Axes, Condition, Unchecked;
     "recorded.layout": Axes, Condition, Unchecked;
     "recorded.lengths": Axes, Condition, Unchecked;

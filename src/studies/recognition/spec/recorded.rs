@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::files::{file_path, optional_file_path};
 use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
 use crate::inputs::arrays::file_array::FileArray;
-use crate::inputs::arrays::is_member;
+use crate::inputs::arrays::{TableContent, is_member};
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::studies::recognition::spec::recorded_sensor::{
     RecordedSensorSpec, SensorPlace, sensor_spec, sensor_table,
@@ -136,12 +136,21 @@ fn is_usual(touch: &PreviousTouch) -> bool {
 }
 
 impl RecordedSpec {
-    /// Returns a specification of frames without labels, for commands that read only frames.
-    pub fn of_frames(frames: &Path, order: Option<&str>, grid: Option<[usize; 2]>) -> Self {
+    /// Returns a specification of frames without labels, for commands whose options are the keys `order`, `columns` and `grid`.
+    pub fn of_frames(
+        frames: &Path,
+        [order, columns]: [&Option<String>; 2],
+        grid: Option<[usize; 2]>,
+    ) -> Self {
         Self {
             frames: frames.to_owned(),
-            order: order.map(str::to_owned),
+            order: order.clone(),
+            columns: columns.clone(),
             grid,
+            place: SensorPlace {
+                is_of_command: true,
+                ..SensorPlace::default()
+            },
             ..Self::default()
         }
     }
@@ -223,7 +232,7 @@ impl RecordedSpec {
     /// If the file does not exist or its axes are not axes of frames.
     pub fn shape_of(&self, name: &str) -> Result<FrameShape> {
         let path = self.file_of(name).unwrap_or(&self.frames);
-        let shape = FileArray::shape_of(path, &self.array_name(name))?;
+        let shape = self.with_frames(name, FileArray::shape_of)?;
         let n_values = match self.shear {
             Some(_) => 1,
             None => self.n_values.max(1),
@@ -240,6 +249,28 @@ impl RecordedSpec {
         }
     }
 
+    /// Reads the array `frames` or `frames_test`.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or a table has columns that are no readings.
+    pub fn read_array(&self, name: &str) -> Result<FileArray> {
+        self.with_frames(name, FileArray::read_content)
+    }
+
+    /// Calls a function that reads the array `frames` or `frames_test`, given its path, its name in an archive, and its content.
+    fn with_frames<T>(
+        &self,
+        name: &str,
+        read: impl FnOnce(&Path, &str, TableContent) -> Result<T>,
+    ) -> Result<T> {
+        let content = TableContent::Frames {
+            columns: self.columns.as_deref(),
+            key: &self.place.assigned("columns"),
+        };
+        let path = self.file_of(name).unwrap_or(&self.frames);
+        read(path, &self.array_name(name), content)
+    }
+
     /// Returns the readings of untouched taxels, shape (rows · columns,), in row-major order.
     ///
     /// # Errors
@@ -251,7 +282,7 @@ impl RecordedSpec {
         };
         let array = FileArray::read(path, "zero")?;
         let (place, given) = (array.place.clone(), array.shape.clone());
-        let frames = FileArray::shape_of(&self.frames, &self.array_name("frames"))?;
+        let frames = self.with_frames("frames", FileArray::shape_of)?;
         shape
             .arrange_taxels(array.into_numbers()?, &frames)
             .map_err(|expected| {
@@ -291,8 +322,8 @@ impl RecordedSpec {
             return Ok(None);
         };
         let of_frames = self.file_of(name).unwrap_or(&self.frames);
-        let (order, expected) = frames.beside(&FileArray::shape_of(of_frames, name)?, 2);
-        let shape = FileArray::shape_of(path, array)?;
+        let (order, expected) = frames.beside(&self.with_frames(name, FileArray::shape_of)?, 2);
+        let shape = FileArray::shape_of(path, array, TableContent::Any)?;
         let place = path.display().to_string();
         if shape != expected {
             let given = format!("an array of shape {shape:?}");

@@ -31,6 +31,11 @@ macro_rules! sensor_spec {
             /// Numbers of rows and columns of the sensor, if the axis `c` of the frames lists its taxels row by row.
             #[serde(skip_serializing_if = "Option::is_none")]
             pub grid: Option<[usize; 2]>,
+            /// Columns of a table (`.csv`, `.tsv`, `.txt`) that are readings: names or patterns, separated by commas, such as `taxel_*`. In a pattern, `*` stands
+            /// for any text and `#` for a number. The taxels have the order of the columns in the file. Default: all columns, whose names may differ in numbers
+            /// alone.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            pub columns: Option<String>,
             /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames. Formats: `.csv`, `.npz`, `.txt` or
             /// `.ini` (iCub), `.json` (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid. If one of several axes `c` counts the
             /// positions, the other axes count values at each position, such as events of two signs.
@@ -114,6 +119,8 @@ pub struct SensorPlace {
     pub pitch_mm: Option<f64>,
     /// Name of the sensor; `None` if the recording has one sensor without a name.
     pub name: Option<String>,
+    /// Whether options of a command set the keys, such as `--order`.
+    pub is_of_command: bool,
 }
 
 /// Returns the name of the table with the keys of a sensor, given the number of the sensor from 0.
@@ -122,12 +129,19 @@ pub(super) fn sensor_table(number: usize) -> String {
 }
 
 impl SensorPlace {
-    /// Returns the name of a key of the sensor, such as `recorded.sensors[1].order`.
+    /// Returns the name of a key of the sensor, such as `recorded.sensors[1].order`, or of the option of a command that sets the key.
     pub fn key(&self, key: &str) -> String {
-        match self.table.is_empty() {
-            true => format!("recorded.{key}"),
-            false => format!("{}.{key}", self.table),
+        match (self.is_of_command, self.table.is_empty()) {
+            (true, _) => format!("--{key}"),
+            (false, true) => format!("recorded.{key}"),
+            (false, false) => format!("{}.{key}", self.table),
         }
+    }
+
+    /// Returns the text that precedes the value of a key, such as `recorded.columns = `.
+    pub(super) fn assigned(&self, key: &str) -> String {
+        let equals = if self.is_of_command { "" } else { "= " };
+        format!("{} {equals}", self.key(key))
     }
 
     /// Returns the names that the array `array` may have in the archive of the frames, the preferred name first. Frames have the name of the sensor, and its test

@@ -68,6 +68,7 @@ impl RecordedSpec {
                 frames_test: sensor.frames_test,
                 order: sensor.order,
                 grid: sensor.grid,
+                columns: sensor.columns,
                 layout: sensor.layout,
                 lengths: sensor.lengths,
                 lengths_test: sensor.lengths_test,
@@ -79,6 +80,7 @@ impl RecordedSpec {
                     table: sensor_table(number),
                     pitch_mm: sensor.pitch_mm,
                     name: Some(sensor.name.clone()),
+                    ..self.place.clone()
                 },
                 ..self.clone()
             };
@@ -114,6 +116,7 @@ impl RecordedSpec {
             ("frames_test", self.frames_test.is_some()),
             ("order", self.order.is_some()),
             ("grid", self.grid.is_some()),
+            ("columns", self.columns.is_some()),
             ("layout", self.layout.is_some()),
             ("lengths", self.lengths.is_some()),
             ("lengths_test", self.lengths_test.is_some()),
