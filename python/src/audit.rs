@@ -1,13 +1,10 @@
 //! Audit of arrays, as in `bubbletouch audit`.
 
-use crate::arrays::{numbers, shape_of};
 use crate::errors::{bad_input, exception, guarded};
 use crate::study::{ColumnsOfTable, columns};
 use crate::threads::aside;
 use bubbletouch::audit::{AuditData, AuditFiles, AuditOptions, Finding, audit, audit_files};
 use bubbletouch::report::folder::write_files;
-use ndarray::Ix2;
-use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -41,81 +38,20 @@ fn said(finding: &Finding) -> SaidFinding {
     )
 }
 
-/// Audits frames, shape (n_touches, n_frames, n_taxels), with one label, group, session and time per touch. Touches from number `n_training` on are a
-/// given test set. Writes the page, tables and charts to a folder. Returns the findings and the tables.
+/// Audits files, by their names `data`, `labels`, `groups`, `sessions`, `times`, `lengths`, `frames_test`, `labels_test`, `groups_test` and `lengths_test`, as the
+/// command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the findings and the tables.
 #[pyfunction]
-#[pyo3(signature = (frames, grid, labels, classes, groups, sessions, times, n_training, full_scale, before_contact, seed, permutations, name, out))]
+#[pyo3(signature = (files, order, columns, grid, full_scale, before_contact, seed, permutations, name, out))]
 #[expect(
     clippy::too_many_arguments,
     reason = "called by bubbletouch.audit alone"
 )]
 pub fn run_audit<'py>(
     py: Python<'py>,
-    frames: &Bound<'py, PyAny>,
-    grid: Option<(usize, usize)>,
-    labels: Option<Vec<usize>>,
-    classes: Vec<String>,
-    groups: Option<Vec<usize>>,
-    sessions: Option<Vec<usize>>,
-    times: Option<Vec<f64>>,
-    n_training: Option<usize>,
-    full_scale: Option<f64>,
-    before_contact: Option<(usize, usize)>,
-    seed: u64,
-    permutations: usize,
-    name: String,
-    out: PathBuf,
-) -> PyResult<(Vec<SaidFinding>, Vec<ColumnsOfTable<'py>>)> {
-    guarded(|| {
-        let array = numbers("frames", frames)?;
-        let [n, n_frames, n_taxels] = *array.shape() else {
-            let given = shape_of(array.shape());
-            return Err(bad_input(
-                "frames",
-                given,
-                "(n_touches, n_frames, n_taxels)",
-            ));
-        };
-        let rows = array.to_owned_array();
-        let rows = rows.into_shape_with_order((n * n_frames, n_taxels));
-        let rows = rows.map_err(|error| bad_input("frames", error, "an array in C order"))?;
-        let rows = rows.into_dimensionality::<Ix2>();
-        let mut data = AuditData {
-            frames: rows.expect("two axes"),
-            n_frames,
-            grid,
-            labels,
-            classes,
-            groups,
-            sessions,
-            is_test: n_training.map(|n_training| (0..n).map(|touch| touch >= n_training).collect()),
-            full_scale,
-            ..AuditData::default()
-        };
-        data.check().map_err(exception)?;
-        if let Some(times) = times {
-            if times.len() != n || times.iter().any(|time| !time.is_finite()) {
-                let given = format!("{} times", times.len());
-                return Err(bad_input("times", given, format!("{n} finite numbers")));
-            }
-            data.sort_by_time(&times);
-        }
-        audit_of(py, data, (before_contact, seed, permutations), (name, out))
-    })
-}
-
-/// Audits files, by their names `data`, `labels`, `groups`, `sessions`, `times`, `lengths`, `frames_test`, `labels_test`, `groups_test` and `lengths_test`, as the
-/// command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the findings and the tables.
-#[pyfunction]
-#[pyo3(signature = (files, order, full_scale, before_contact, seed, permutations, name, out))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "called by bubbletouch.audit alone"
-)]
-pub fn run_audit_files<'py>(
-    py: Python<'py>,
     mut files: BTreeMap<String, PathBuf>,
     order: Option<String>,
+    columns: Option<String>,
+    grid: Option<[usize; 2]>,
     full_scale: Option<f64>,
     before_contact: Option<(usize, usize)>,
     seed: u64,
@@ -137,6 +73,8 @@ pub fn run_audit_files<'py>(
             labels_test: file("labels_test"),
             groups_test: file("groups_test"),
             order,
+            columns,
+            grid,
             full_scale,
             ..AuditFiles::default()
         };

@@ -27,6 +27,7 @@ mod skin;
 mod sphere_union;
 mod study;
 mod svm;
+mod table;
 mod threads;
 
 use pyo3::prelude::*;
@@ -36,7 +37,7 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use audit::{run_audit, run_audit_files};
+    use audit::run_audit;
     #[pymodule_export]
     use catalogue::{Catalogue, Solid};
     #[pymodule_export]
@@ -71,6 +72,8 @@ mod _core {
     use study::{advise, run_study, toml_of, with_recorded};
     #[pymodule_export]
     use svm::{KernelSvm, LinearModel, choose_svm};
+    #[pymodule_export]
+    use table::{column_families, read_table};
 
     #[pymodule_init]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -42,11 +42,21 @@ def test_axes_are_ordered_and_a_temporary_folder_is_kept() -> None:
     assert whole.page.exists()
 
 
+def test_each_order_is_audited_as_by_path(tmp_path: Path) -> None:
+    frames, labels = data()
+    values = np.stack([frames, 0.5 * frames, frames ** 2], axis=-1)[:, None]
+    np.save(tmp_path / "values.npy", values)
+    by_path = bt.audit(tmp_path / "values.npy", labels, order="n t y x c", permutations=399)
+    assert said(bt.audit(values, labels, order="n t y x c", permutations=399)) == said(by_path)
+    listed = bt.audit(values.reshape(120, -1, 3), labels, order="n c c", permutations=399)
+    assert listed.findings and said(bt.audit(frames.reshape(120, -1), labels, order="n c", grid=(12, 12), permutations=399)) == said(bt.audit(frames, labels, permutations=399))
+
+
 def test_wrong_arguments_are_named() -> None:
     frames, labels = data()
-    with pytest.raises(ValueError, match="^labels: 119 numbers; 120, one for each touch$"):
+    with pytest.raises(ValueError, match="^labels: 119 values; 120, one for each touch of frames$"):
         bt.audit(frames, labels[1:])
-    with pytest.raises(ValueError, match="^frames: shape"):
+    with pytest.raises(ValueError, match='^order: "n t y"; a letter for each axis'):
         bt.audit(frames, labels, order="n t y")
     with pytest.raises(ValueError, match="^before_contact: 0..2; "):
         bt.audit(frames, labels, before_contact=(0, 2))
@@ -76,15 +86,15 @@ def test_a_given_test_set_is_one_more_split(tmp_path: Path) -> None:
 
 def test_wrong_test_sets_are_named() -> None:
     frames, labels = data()
-    with pytest.raises(ValueError, match="^test: frames of shape "):
+    with pytest.raises(ValueError, match="^test: 1 frames of 60 taxels a touch; 1 of 144, as frames$"):
         bt.audit(frames, labels, test=(frames[:, :5], labels))
-    with pytest.raises(ValueError, match="^test: labels of one part alone"):
+    with pytest.raises(ValueError, match="^test: a test set; labels_test and groups_test, if frames has labels and groups$"):
         bt.audit(frames, labels, test=(frames, None))
-    with pytest.raises(ValueError, match="^labels: shape "):
+    with pytest.raises(ValueError, match="^test, labels: 29 values; 30, one for each touch of test$"):
         bt.audit(frames, labels, test=(frames[:30], labels[:29]))
     with pytest.raises(ValueError, match="^test: not a test set"):
         bt.audit(frames, labels, test=frames)
-    with pytest.raises(ValueError, match="^test: labels are numbers and texts"):
+    with pytest.raises(ValueError, match="^labels: texts in one array and numbers in another; texts or numbers in all$"):
         bt.audit(frames, labels, test=(frames, np.zeros(len(frames), dtype=int)))
 
 

@@ -137,7 +137,8 @@ def test_npz(arrays, tmp_path):
     (tmp_path / "a.npz").unlink()
     found = bt.read_recorded(tmp_path)
     same(found, (frames, labels, None))
-    assert found.groups.tolist() == [f"part{9 + touch // 20}" for touch in range(N)]
+    assert found.groups.tolist() == [f"part{9 + touch // 20}.npz" for touch in range(N)]
+    assert found.touches.tolist() == [f"{tmp_path}/part{9 + touch // 20}.npz/{touch % 20}" for touch in range(N)]
 
 
 def test_hdf5(arrays, usual, tmp_path):
@@ -214,15 +215,15 @@ def test_csv(arrays, tmp_path):
     assert np.array_equal(np.hstack([found.frames["ff"], found.frames["th"]]), rows)
     same(bt.Recorded(rows, found.labels, found.groups), (rows, labels, groups))
     for text, words in {
-        "\n".join(lines)[:-5000]: "a.csv: cannot be read .row [0-9]+ has [0-9]+ of 66 columns",
+        "\n".join(lines)[:-5000]: "a.csv, line [0-9]+: [0-9]+ values; 66, as line 1 has",
         "\n".join(lines).replace("th_1,", "ff_1,", 1): "column `ff_1` twice",
         "\n".join(lines).replace(repr(float(rows[3, 0])), "broken", 1): "a.csv, column `ff_1`: elements of type <U.*; numbers",
-        "": "a.csv: cannot be read .an empty file",
+        "": "a.csv: an empty file",
     }.items():
         file.write_text(text)
         with pytest.raises(ValueError, match=words):
             bt.read_recorded(file, "ff_*", labels="object")
-    with pytest.raises(ValueError, match="a.csv: cannot be read"):
+    with pytest.raises(ValueError, match="a.csv: a text that is not UTF-8"):
         file.write_bytes(b"\xff\xfe,")
         bt.read_recorded(file)
     file.write_text("\n".join(lines).replace(repr(float(rows[3, 0])), "", 1))

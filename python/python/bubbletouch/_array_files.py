@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import glob
 import re
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from bubbletouch import _core
 from bubbletouch._arrays import Array
 
 _SUFFIXES = {
@@ -23,13 +24,18 @@ FORMATS = "a .zarr folder, an .h5, .hdf5, .parquet, .csv, .tsv, .npz or .npy fil
 
 @dataclass
 class Source:
-    """Open file: its path, the names of its arrays, and functions that read an array or an attribute."""
+    """Open file: its path, the names of its arrays or columns, and functions that read an array or an attribute.
+
+    readings: in a table of a text file, the columns that do not count its rows.
+    """
 
     place: str
     names: list[str]
     read: Callable[[str], Array]
     attributes: Callable[[str], Mapping[str, Any]] | None = None
     close: Callable[[], object] = lambda: None
+    is_table: bool = False
+    readings: list[str] | None = None
 
     def array(self, name: str) -> Array:
         """Returns an array by its name."""
@@ -44,11 +50,14 @@ class Source:
             raise ValueError(f"{self.place}, array `{name}`: cannot be read ({error}); a complete file") from None
 
     def matches(self, pattern: str) -> list[str]:
-        """Returns the names of the arrays that match a pattern; `*` stands for one part of a path. Numbers in names are ordered by value."""
-        found = [name for name in self.names if matched(pattern, name) is not None]
+        """Returns the names that match a pattern; `*` stands for any text within one part of a path. In a pattern of columns, `*` stands for any text and `#`
+        for a number. Columns have the order of the table; other arrays have the natural order, in which numbers in names are ordered by value.
+        """
+        of_columns = re.escape(pattern).replace(r"\*", ".*").replace(r"\#", "[0-9]+")
+        found = [name for name in self.names if (re.fullmatch(of_columns, name) if self.is_table else matched(pattern, name))]
         if not found:
             raise ValueError(f"{self.place}: no array `{pattern}`; {_listed(self.names)}")
-        return sorted(found, key=natural)
+        return found if self.is_table else sorted(found, key=natural)
 
     def value(self, name: str) -> Any:
         """Returns a scalar, or an attribute that is written as `path@name`."""
@@ -71,14 +80,18 @@ class Source:
         return values[0]
 
 
-def matched(pattern: str, name: str) -> dict[str, str] | None:
-    """Returns the texts that stand for `{label}` and `{group}` in a pattern; None if the name does not match. `*` stands for any text within one part of a
-    path.
+# Parts of a pattern that stand for other texts.
+WILD = re.compile(r"\*|\{label\}|\{group\}")
+
+
+def matched(pattern: str, name: str) -> re.Match[str] | None:
+    """Returns the match of a name with a pattern, or None. The groups of the match are the texts that stand for `*`, `{label}` and `{group}`, in their order;
+    those of the marks have names. `*` stands for any text within one part of a path.
     """
-    parts = re.split(r"(\*|\{label\}|\{group\})", pattern)
-    wild = {"*": "[^/]*", "{label}": "(?P<label>[^/]+)", "{group}": "(?P<group>[^/]+)"}
-    found = re.fullmatch("".join(wild.get(part, re.escape(part)) for part in parts), name)
-    return None if found is None else found.groupdict()
+    wild = {"*": "([^/]*)", "{label}": "(?P<label>[^/]+)", "{group}": "(?P<group>[^/]+)"}
+    fixed = [re.escape(part) for part in WILD.split(pattern)]
+    marks = [wild[mark] for mark in WILD.findall(pattern)] + [""]
+    return re.fullmatch("".join(part + mark for part, mark in zip(fixed, marks, strict=True)), name)
 
 
 def _listed(names: Sequence[str]) -> str:
@@ -109,12 +122,17 @@ def optional_package(name: str, place: Path) -> Any:
         raise ImportError(f'{place}: needs the package {package}; pip install {package}, or pip install "bubbletouch[recorded]"') from None
 
 
+def is_hidden(path: Path, folder: Path) -> bool:
+    """Returns whether a path below a folder is hidden, such as `.ipynb_checkpoints` and the files `._NAME` that macOS writes beside others."""
+    return any(part.startswith(".") for part in path.relative_to(folder).parts)
+
+
 def _is_zarr(path: Path) -> bool:
     return path.is_dir() and any((path / name).is_file() for name in ("zarr.json", ".zgroup", ".zarray"))
 
 
 def files_of(place: Path) -> list[Path]:
-    """Returns the files of a recording: the path itself, or all files of a folder and its subfolders in natural order."""
+    """Returns the files of a recording: the path itself, or all files of a folder and its subfolders that are not hidden, in natural order."""
     if not place.exists():
         return _matching(place)
     if place.is_file() or _is_zarr(place):
@@ -122,6 +140,7 @@ def files_of(place: Path) -> list[Path]:
             raise ValueError(f"{place}: another file; {FORMATS}")
         return [place]
     found = [file for file in place.rglob("*") if file.suffix.lower() in _SUFFIXES and (file.is_file() or _is_zarr(file))]
+    found = [file for file in found if not is_hidden(file, place)]
     if not found:
         raise ValueError(f"{place}: a folder without recordings; {FORMATS}")
     return sorted(found, key=lambda file: natural(file.relative_to(place).as_posix()))
@@ -130,7 +149,7 @@ def files_of(place: Path) -> list[Path]:
 def _matching(pattern: Path) -> list[Path]:
     """Returns the files whose paths match a pattern, in natural order."""
     text = str(pattern)
-    found = [Path(file) for file in glob.glob(re.sub(r"\{label\}|\{group\}", "*", text)) if Path(file).suffix.lower() in _SUFFIXES]
+    found = [Path(file) for file in glob.glob(WILD.sub("*", text)) if Path(file).suffix.lower() in _SUFFIXES]
     found = [file for file in found if matched(text, str(file)) is not None]
     if not found:
         raise FileNotFoundError(f"{pattern}: no such file or folder; {FORMATS}, or a pattern with *, {{label}} or {{group}} of such files")
@@ -139,7 +158,9 @@ def _matching(pattern: Path) -> list[Path]:
 
 def open_file(file: Path) -> Source:
     kind = "Zarr" if file.is_dir() else _SUFFIXES[file.suffix.lower()]
-    open_of = {"NumPy": _open_npz, "HDF5": _open_hdf5, "Zarr": _open_zarr, "Parquet": _open_parquet, "CSV": _open_csv}[kind]
+    if kind == "CSV":
+        return _open_table(file)
+    open_of = {"NumPy": _open_npz, "HDF5": _open_hdf5, "Zarr": _open_zarr, "Parquet": _open_parquet}[kind]
     try:
         return open_of(file)
     except (ImportError, FileNotFoundError, PermissionError):
@@ -149,6 +170,10 @@ def open_file(file: Path) -> Source:
 
 
 def _open_npz(file: Path) -> Source:
+    with file.open("rb") as opened:
+        # NumPy takes any other file as pickled objects.
+        if not opened.read(6).startswith((b"\x93NUMPY", b"PK\x03\x04", b"PK\x05\x06")):
+            raise ValueError("it begins neither as a .npy nor as a .npz file")
     if file.suffix.lower() == ".npy":
         return Source(str(file), ["frames"], lambda name: np.load(file, allow_pickle=False))
     archive = np.load(file, allow_pickle=False)
@@ -224,55 +249,40 @@ def _open_parquet(file: Path) -> Source:
     def read(name: str) -> Array:
         return of_column(opened.read(columns=[name]).column(name))
 
-    return Source(str(file), names, read, close=opened.close)
+    return Source(str(file), names, read, close=opened.close, is_table=True)
 
 
-def _open_csv(file: Path) -> Source:
-    with file.open(encoding="utf-8-sig", newline="") as opened:
-        first = opened.readline()
-        opened.seek(0)
-        lines = csv.reader(opened, delimiter=max(",;\t", key=first.count))
-        names = [name.strip() for name in next(lines, [])]
-        rows = [line for line in lines if line]
-    if names and all(map(_is_number, names)):
-        # Without names of columns, all columns are readings.
-        rows.insert(0, names)
-        whole = np.array([[float(cell or "nan") for cell in row] for row in _even(rows, len(names), 1)])
-        return Source(str(file), ["frames"], lambda name: whole)
+def _open_table(file: Path) -> Source:
+    """Opens a table in a text file, as studies read it."""
+    names, columns, kept, notes = _core.read_table(str(file))
+    for note in notes:
+        warnings.warn(note, stacklevel=2)
+    if names is None:
+        # Without names of columns, all columns but those that count the rows are readings.
+        note_counts(str(file), [str(column + 1) for column in range(len(columns)) if column not in kept])
+        return Source(str(file), ["frames"], lambda name: np.stack([_of_cells(columns[column]) for column in kept], axis=1))
     twice = [name for name in names if names.count(name) > 1]
-    if not names or twice:
-        given = f"column `{twice[0]}` twice" if twice else "an empty file"
-        raise ValueError(f"{given}; a first line with the name of each column")
-    rows = _even(rows, len(names), 2)
-
-    def read(name: str) -> Array:
-        column = names.index(name)
-        texts = [row[column].strip() for row in rows]
-        for kind in (np.int64, np.float64):
-            try:
-                # An empty cell is a missing reading.
-                return np.array([text or "nan" for text in texts]).astype(kind)
-            except ValueError:
-                continue
-        return np.array(texts)
-
-    return Source(str(file), names, read)
+    if twice:
+        raise ValueError(f"{file}: column `{twice[0]}` twice; each name once")
+    return Source(
+        str(file), names, lambda name: _of_cells(columns[names.index(name)]), is_table=True, readings=[names[column] for column in kept]
+    )
 
 
-def _even(rows: list[list[str]], n: int, first: int) -> list[list[str]]:
-    """Returns rows of n cells each; `first` is the number of the first row in the file."""
-    for number, row in enumerate(rows, start=first):
-        if len(row) != n:
-            raise ValueError(f"row {number} has {len(row)} of {n} columns")
-    return rows
+def note_counts(place: str, columns: Sequence[str]) -> None:
+    """Issues a warning that columns which count the rows of a table are left out."""
+    for column in columns:
+        warnings.warn(f"{place}: column {column} counts the rows; it is left out", stacklevel=2)
 
 
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+def _of_cells(cells: list[str]) -> Array:
+    """Returns the cells of a column as integers, numbers or texts. An empty cell is a missing reading."""
+    for kind in (np.int64, np.float64):
+        try:
+            return np.array([cell or "nan" for cell in cells]).astype(kind)
+        except ValueError:
+            continue
+    return np.array(cells)
 
 
 def of_column(column: Any) -> Array:

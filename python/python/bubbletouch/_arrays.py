@@ -2,13 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from bubbletouch import _core
+
 Array = NDArray[Any]
+
+
+def check_frames(values: Mapping[str, Any]) -> None:
+    """Checks data frames and series that have a row for each touch, by the names of their keys: their indexes are equal, and the columns of frames are of one
+    family. A name that ends with `_test` belongs to the test set.
+    """
+    first: dict[str, tuple[str, Any]] = {}
+    for name, value in values.items():
+        index, columns = getattr(value, "index", None), getattr(value, "columns", None)
+        is_frames = name.split(".")[-1] in ("frames", "frames_test")
+        if is_frames and columns is not None and (families := _core.column_families([str(column) for column in columns])):
+            given = f"columns of several kinds: {families[0]}"
+            raise ValueError(f"{name}: {given}; a data frame of those that are readings, such as `{families[1]}`, or .to_numpy() for all")
+        # The columns of all frames of a sensor have one order.
+        alike = [("other columns", name.removesuffix("_test"), columns)] if is_frames else []
+        alike += [("another index", "_test" if name.endswith("_test") else "", index)]
+        for what, group, own in alike:
+            if not hasattr(own, "equals"):
+                continue
+            known, other = first.setdefault(f"{what} {group}", (name, own))
+            if not other.equals(own):
+                raise ValueError(f"{name}: {what} than {known}; equal ones, or .to_numpy() for values by their positions")
 
 
 def as_array(place: str, values: Any) -> Array:
@@ -36,7 +60,7 @@ def as_numbers(place: str, values: Array) -> Array:
     if values.dtype.names:
         raise ValueError(f"{place}: fields {', '.join(values.dtype.names)}; an array of numbers, such as one field")
     if values.size == 0:
-        raise ValueError(f"{place}: shape {values.shape}; at least one reading")
+        raise ValueError(f"{place}: no readings, shape {values.shape}; at least one reading")
     if values.dtype.kind == "O":
         try:
             return values.astype(np.float64)
@@ -91,6 +115,9 @@ def padded(place: str, touches: Sequence[ArrayLike]) -> tuple[Array, Array | Non
     """Returns touches of unequal length, each with frames along the first axis, as one array padded with NaN; and their lengths if they differ."""
     if len(touches) == 0:
         raise ValueError(f"{place}: no touches; at least one")
+    for number, touch in enumerate(touches):
+        if hasattr(touch, "columns") and list(touch.columns) != list(getattr(touches[0], "columns", [])):
+            raise ValueError(f"{place}, touch {number}: other columns than those of touch 0, or in another order; equal columns")
     arrays = [as_numbers(f"{place}, touch {number}", as_array(f"{place}, touch {number}", touch)) for number, touch in enumerate(touches)]
     # A touch is its frames, or a single frame.
     own = 0 if arrays[0].ndim == 1 else 1

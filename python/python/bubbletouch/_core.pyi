@@ -30,8 +30,9 @@ __all__ = [
     "_panic",
     "advise",
     "choose_svm",
+    "column_families",
+    "read_table",
     "run_audit",
-    "run_audit_files",
     "run_study",
     "toml_of",
     "touch_poses",
@@ -1286,29 +1287,19 @@ def touch_poses(
     Returns (7,) if all arguments are single values, otherwise (n, 7). Raises ValueError if an argument is invalid.
     """
 
-def run_audit(
-    frames: ArrayLike,
-    grid: tuple[int, int] | None,
-    labels: list[int] | None,
-    classes: list[str],
-    groups: list[int] | None,
-    sessions: list[int] | None,
-    times: list[float] | None,
-    n_training: int | None,
-    full_scale: float | None,
-    before_contact: tuple[int, int] | None,
-    seed: int,
-    permutations: int,
-    name: str,
-    out: _Path,
-) -> tuple[list[tuple[Any, ...]], list[tuple[str, str, str, dict[str, Any]]]]:
-    """Audits frames, shape (n_touches, n_frames, n_taxels), with one label, group, session and time per touch. Touches from number `n_training` on are a
-    given test set. Writes the page, tables and charts to a folder. Returns the findings and the tables.
+def column_families(names: list[str]) -> tuple[str, str] | None:
+    """Returns a list of the families of columns, and the pattern of the largest family; None if all names differ in numbers alone."""
+
+def read_table(path: str) -> tuple[list[str] | None, list[list[str]], list[int], list[str]]:
+    """Reads a table in a text file. Returns the names of its columns, or None without a header; the cells of each column; the numbers of the columns that do
+    not count the rows; and notes on what was left out. Raises ValueError if the lines differ in the number of cells.
     """
 
-def run_audit_files(
+def run_audit(
     files: Mapping[str, _Path],
     order: str | None,
+    columns: str | None,
+    grid: tuple[int, int] | None,
     full_scale: float | None,
     before_contact: tuple[int, int] | None,
     seed: int,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bubbletouch._array_files import natural, of_column, optional_package
+from bubbletouch._array_files import is_hidden, natural, of_column, optional_package
 from bubbletouch._arrays import Array, as_keys, as_numbers
 from bubbletouch._touch_sets import by_touch, joined
 from bubbletouch.recorded import Recorded
@@ -18,8 +18,9 @@ def of_lerobot(
     folder: Path,
     frames: str | Sequence[str] | Mapping[str, str | Sequence[str]] | None,
     names: tuple[str | None, str | None, str | None, str | Mapping[str, str] | None],
+    has_labels_by_position: bool,
 ) -> Recorded:
-    """Reads a LeRobot folder of format v2 (a file for each episode) or v3 (many episodes in a file)."""
+    """Reads a LeRobot folder of format v2 (a file for each episode) or v3 (many episodes in a file). Other labels and groups may be joined by positions."""
     parquet = optional_package("pyarrow.parquet", folder)
     pyarrow = optional_package("pyarrow", folder)
     labels, groups, touches, order = names
@@ -40,7 +41,8 @@ def of_lerobot(
     for name in wanted.values():
         if name not in numeric:
             raise ValueError(f"{info_file}: no feature `{name}` of numbers; one of {', '.join(numeric)}")
-    files = sorted((folder / "data").rglob("*.parquet"), key=lambda file: natural(file.relative_to(folder).as_posix()))
+    found = [file for file in (folder / "data").rglob("*.parquet") if not is_hidden(file, folder)]
+    files = sorted(found, key=lambda file: natural(file.relative_to(folder).as_posix()))
     if not files:
         raise ValueError(f"{folder / 'data'}: no .parquet file; the rows of the episodes")
     columns = list(dict.fromkeys([*wanted.values(), "episode_index", "task_index", "frame_index", touches or "episode_index"]))
@@ -89,8 +91,9 @@ def of_lerobot(
     of_labels, label = keys(labels, "task_index")
     of_groups, group = keys(groups, None if touches is None else "episode_index")
     rows = {name: np.asarray(values)[in_time] for name, values in sensors.items()}
-    part = by_touch(str(folder), rows, (numbers[in_time], of_labels, of_groups), (label, group))
-    return joined([str(folder)], [part], (isinstance(frames, Mapping), order))
+    named = (touches or "episode_index", label, group)
+    part = by_touch(str(folder), rows, (numbers[in_time], of_labels, of_groups), named, has_labels_by_position)
+    return joined([part], (isinstance(frames, Mapping), order))
 
 
 def _tasks(folder: Path, numbers: Array) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bubbletouch import _core
-from bubbletouch._arrays import Array, as_array, as_keys, as_numbers, padded
+from bubbletouch._arrays import Array, as_array, as_keys, as_numbers, check_frames, padded
 from bubbletouch.recorded import Recorded, named
 from bubbletouch.recorded_files import read_recorded
 from bubbletouch.study import Table
@@ -80,8 +80,6 @@ class Audit:
         return f"<bubbletouch.Audit in {self.folder}: {names or 'no faults'}>"
 
 
-# Order, full scale, frames before contact, seed and number of permutations.
-_Options = tuple[str | None, float | None, tuple[int, int] | None, int, int]
 # A path of a file stands for the array in it.
 _Given = ArrayLike | PathLike[str] | None
 
@@ -95,6 +93,8 @@ def audit(
     times: _Given = None,
     test: Recorded | PathLike[str] | tuple[_Given, ...] | None = None,
     order: str | None = None,
+    columns: str | None = None,
+    grid: tuple[int, int] | None = None,
     full_scale: float | None = None,
     before_contact: tuple[int, int] | None = None,
     out: str | PathLike[str] | None = None,
@@ -113,7 +113,10 @@ def audit(
     test: given test set, one more split: a tuple (frames, labels) or (frames, labels, groups), a Recorded, or the path of the frames. Its touches follow those
     of `frames`, so that `sessions` and `times`, if given, contain the values of both. None: a Recorded may contain `frames_test`, `labels_test` and
     `groups_test` in its keys.
-    order: one letter for each axis of `frames`: n touches, t frames, y rows, x columns, c taxels. None: "nc", "nyx" or "ntyx".
+    order: one letter for each axis of `frames`, as in `recorded.order`: n touches, t frames, y rows, x columns, c values of a taxel or taxels. None: "nc", "nyx"
+    or "ntyx".
+    columns: columns of a table that are readings, names or patterns such as "taxel_*", separated by commas. None: all columns.
+    grid: rows and columns of the skin, if the axis c lists its taxels row by row.
     full_scale: reading at full scale. If None, a plateau of the largest readings counts as saturation.
     before_contact: range (start, stop) of the frames of each touch before the contact. If None, the audit detects the frames without contact.
     out: folder of the page, tables and charts. If None, a temporary folder is used and deleted with the Audit.
@@ -134,56 +137,18 @@ def audit(
         order = order or (recorded.order if isinstance(recorded.order, str) else None)
         test = _test_of_keys(recorded) if test is None else test
         full_scale = recorded.keys.get("full_scale") if full_scale is None else full_scale
+        grid = recorded.keys.get("grid") if grid is None else grid
         lengths = recorded.lengths if recorded.lengths is not None else recorded.keys.get("lengths")
         data = recorded.frames
-    tested = _test_set(test, order)
-    given = {"data": data, "labels": labels, "groups": groups, "sessions": sessions, "times": times, "lengths": lengths} | tested[0]
+    given = {"data": data, "labels": labels, "groups": groups, "sessions": sessions, "times": times, "lengths": lengths} | _test_set(test, order)
     kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
     folder = Path(kept.name) if kept is not None else Path(out or "")
-    options = (before_contact, seed, permutations)
-    if any(_is_path(values) for values in given.values()):
-        found = _of_files(given, (order, full_scale, *options), (None if _is_path(data) else "arrays", folder))
-    else:
-        found = _of_arrays(given, (order, tested[1], full_scale, options), ("arrays" if out is None else folder.name, folder))
+    name = Path(data).stem if _is_path(data) else "arrays" if out is None else folder.name
+    found = _of_files(given, (order, columns, grid, full_scale, before_contact, seed, permutations, name, folder))
     return Audit(folder, *found, kept)
 
 
-def _of_arrays(
-    given: Mapping[str, Any],
-    how: tuple[str | None, str | None, float | None, tuple[tuple[int, int] | None, int, int]],
-    name: tuple[str, Path],
-) -> _Found:
-    """Audits arrays by their names. The first two options are the orders of the axes of the frames and of the test set."""
-    order, order_of_test, full_scale, options = how
-    array, n_frames, grid = _arranged("frames", given["data"], given.get("lengths"), order)
-    labels, groups = given["labels"], given["groups"]
-    n_training = len(array)
-    has_test = given.get("frames_test") is not None
-    if has_test:
-        tested = _arranged("test", given["frames_test"], given.get("lengths_test"), order_of_test)[0]
-        if tested.shape[1:] != array.shape[1:]:
-            raise ValueError(f"test: frames of shape {tested.shape[1:]} a touch; {array.shape[1:]}, as the other frames")
-        array = np.concatenate([array, tested])
-        labels, groups = (
-            _joined(name, (given[name], n_training), (given.get(f"{name}_test"), len(tested))) for name in ("labels", "groups")
-        )
-    classes, numbers = _numbered("labels", labels)
-    return _core.run_audit(
-        array.reshape(len(array), n_frames, -1),
-        grid,
-        numbers,
-        classes,
-        _numbered("groups", groups)[1],
-        _numbered("sessions", given["sessions"])[1],
-        None if given["times"] is None else _times(given["times"]).tolist(),
-        n_training if has_test else None,
-        full_scale,
-        *options,
-        *name,
-    )
-
-
-def _of_files(given: Mapping[str, Any], options: _Options, name: tuple[str | None, Path]) -> _Found:
+def _of_files(given: Mapping[str, Any], options: tuple[Any, ...]) -> _Found:
     """Audits files by their names, as the command does. Arrays are written to temporary files."""
     with tempfile.TemporaryDirectory(prefix="bubbletouch-") as folder:
         files = {key: Path(value) for key, value in given.items() if _is_path(value)}
@@ -191,9 +156,12 @@ def _of_files(given: Mapping[str, Any], options: _Options, name: tuple[str | Non
             if not path.exists():
                 raise FileNotFoundError(f"{_ARGUMENTS.get(key, key)}: {path}: no such file; an array, or the path of a file")
         arrays = {key: value for key, value in given.items() if value is not None and key not in files}
+        # Sessions and times have values of the touches of both sets.
+        shared = () if "frames_test" not in given else ("sessions", "times")
+        check_frames({key.replace("data", "frames"): value for key, value in arrays.items() if key not in shared})
         for key in ("data", "frames_test"):
-            if key in arrays and isinstance(arrays[key], list | tuple):
-                arrays[key], lengths = padded(_ARGUMENTS[key], arrays[key])
+            if isinstance(arrays.get(key), list | tuple) or getattr(arrays.get(key), "dtype", None) == object:
+                arrays[key], lengths = padded(_ARGUMENTS[key], list(arrays[key]))
                 arrays |= {} if lengths is None else {key.replace("data", "lengths").replace("frames", "lengths"): lengths}
         for key, values in arrays.items():
             files[key] = Path(folder) / f"{key}.npy"
@@ -202,12 +170,13 @@ def _of_files(given: Mapping[str, Any], options: _Options, name: tuple[str | Non
             array = as_keys(place, values) if is_key else _times(values) if key == "times" else as_numbers(place, as_array(place, values))
             np.save(files[key], array, allow_pickle=False)
         try:
-            return _core.run_audit_files(files, *options, name[0] or files["data"].stem, name[1])
+            return _core.run_audit(files, *options)
         except ValueError as error:
-            raise named(error, {str(files[key]): _ARGUMENTS.get(key, key) for key in arrays}) from None
+            names = {str(files[key]): _ARGUMENTS.get(key, key) for key in arrays}
+            raise named(error, names | {f"--{option}": option for option in ("order", "columns", "grid")}) from None
 
 
-# Arguments whose arrays have other names in `run_audit_files`.
+# Arguments whose arrays have other names in `run_audit`.
 _ARGUMENTS = {"data": "frames", "frames_test": "test", "labels_test": "test, labels", "groups_test": "test, groups"}
 
 
@@ -241,68 +210,19 @@ def _test_of_keys(recorded: Recorded) -> tuple[Any, ...] | None:
     return None if of_test[0] is None else of_test
 
 
-def _test_set(test: Any, order: str | None) -> tuple[dict[str, Any], str | None]:
-    """Returns the arrays of a given test set by the names of their keys, and the order of the axes of its frames."""
+def _test_set(test: Any, order: str | None) -> dict[str, Any]:
+    """Returns the arrays of a given test set by the names of their keys. The axes of its frames have the order of the other frames."""
     if test is None:
-        return {}, order
+        return {}
     lengths = None
     if _is_path(test):
         test = (test, None)
     if isinstance(test, Recorded):
         recorded = _of_one_sensor("test", test)
-        order = recorded.order if isinstance(recorded.order, str) else order
+        if recorded.order is not None and recorded.order != order:
+            raise ValueError(f"test: order {recorded.order!r}; {order!r}, as of the frames")
         lengths = recorded.lengths
         test = (recorded.frames, recorded.labels, recorded.groups)
     if not isinstance(test, tuple) or len(test) not in (2, 3):
         raise ValueError("test: not a test set; (frames, labels), (frames, labels, groups), a Recorded of one sensor, or a path")
-    return dict(zip(("frames_test", "labels_test", "groups_test"), test, strict=False)) | {"lengths_test": lengths}, order
-
-
-def _joined(name: str, *parts: tuple[ArrayLike | None, int]) -> ArrayLike | None:
-    """Returns the values of the training touches, followed by those of the test set; each part has its values and its number of touches."""
-    arrays = [as_keys(name, values, n) for values, n in parts if values is not None]
-    if not arrays:
-        return None
-    if len(arrays) < len(parts):
-        raise ValueError(f"test: {name} of one part alone; {name} of the touches and of the test set, or of neither")
-    if len({values.dtype.kind == "U" for values in arrays}) > 1:
-        raise ValueError(f"test: {name} are numbers and texts; one of both")
-    return np.concatenate(arrays)
-
-
-def _arranged(place: str, given: Any, lengths: Any, order: str | None) -> tuple[Array, int, tuple[int, int] | None]:
-    """Returns the frames with the axes touch, frame, taxel or row and column, with NaN after the end of each touch; the number of frames; and the grid."""
-    if isinstance(given, list | tuple) or getattr(given, "dtype", None) == object:
-        given, own = padded(place, list(given))
-        lengths = own if lengths is None else lengths
-    frames = as_numbers(place, as_array(place, given))
-    usual = {2: "nc", 3: "nyx", 4: "ntyx"}.get(frames.ndim)
-    letters = "".join((order or usual or "").split())
-    is_grid = "y" in letters
-    allowed = {"n", "t", "y", "x"} if is_grid else {"n", "t", "c"}
-    is_order = len(letters) == frames.ndim and set(letters) <= allowed and letters.count("n") == 1
-    if not is_order or (is_grid and letters.count("x") != 1) or (not is_grid and "c" not in letters):
-        shape = f"shape {frames.shape} in the order {order or usual!r}"
-        raise ValueError(f"{place}: {shape}; a letter for each axis: n touches, t frames, y rows and x columns, or c taxels")
-    axes = [axis for letter in "ntcyx" for axis, own in enumerate(letters) if own == letter]
-    sizes = dict(zip(letters, frames.shape, strict=True))
-    grid = (sizes["y"], sizes["x"]) if is_grid else None
-    arranged = np.ascontiguousarray(frames.transpose(axes))
-    if lengths is not None and "t" in letters:
-        numbers = np.asarray(lengths)
-        if numbers.shape != (sizes["n"],) or numbers.dtype.kind not in "iu" or numbers.min() < 1 or numbers.max() > sizes["t"]:
-            raise ValueError(f"lengths: shape {numbers.shape} of {numbers.dtype}; {sizes['n']} integers from 1 to {sizes['t']}")
-        is_after = np.arange(sizes["t"]) >= numbers[:, None]
-        if is_after.any():
-            arranged = arranged.astype(np.result_type(np.float32, arranged.dtype))
-            arranged[is_after] = np.nan
-    return arranged, sizes.get("t", 1), grid
-
-
-def _numbered(name: str, values: ArrayLike | None) -> tuple[list[str], list[int] | None]:
-    """Returns the distinct values as texts and the number of each value."""
-    if values is None:
-        return [], None
-    distinct, numbers = np.unique(as_keys(name, values), return_inverse=True)
-    names: Sequence[Any] = distinct.tolist()
-    return [str(name) for name in names], numbers.tolist()
+    return dict(zip(("frames_test", "labels_test", "groups_test"), test, strict=False)) | {"lengths_test": lengths}

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import io
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bubbletouch._arrays import Array, as_array, as_keys, as_numbers, padded
+from bubbletouch._arrays import Array, as_array, as_keys, as_numbers, check_frames, padded
 from bubbletouch._core import Patch
 
 __all__ = ["Recorded"]
@@ -31,7 +31,8 @@ class Recorded:
     labels: class of each touch, integers or texts, shape (n,); None if unknown.
     groups: group of each touch (grasp, subject, session), shape (n,); None without groups.
     order: letters of the axes of the frames as in `recorded.order`, or a dict by the names of the sensors; None for the default order.
-    lengths: number of frames of each touch, shape (n,); None if all touches have the same number.
+    lengths: number of frames of each touch, shape (n,), or a dict by the names of the sensors; None if all touches have the same number.
+    touches: names of the touches, texts, shape (n,), in the order of `frames`; None if the touches have no names.
     keys: further keys of `[recorded]`, such as {"full_scale": 255.0}. Of several sensors, each has its keys under its name. The key `layout` may be a
     Patch, or an array of positions, metres, shape (n_taxels, 3), or of positions and axes, shape (n_taxels, 6).
     """
@@ -42,14 +43,16 @@ class Recorded:
         labels: Array | None = None,
         groups: Array | None = None,
         order: str | Mapping[str, str] | None = None,
-        lengths: Array | None = None,
+        lengths: Array | Mapping[str, Array] | None = None,
         keys: Mapping[str, Any] | None = None,
+        touches: Array | None = None,
     ) -> None:
         self.frames = frames
         self.labels = labels
         self.groups = groups
         self.order = order
         self.lengths = lengths
+        self.touches = touches
         self.keys = keys or {}
 
     def __len__(self) -> int:
@@ -67,17 +70,17 @@ class Recorded:
         if not isinstance(self.frames, Mapping):
             own = {"frames": self.frames, "order": self.order, "lengths": self.lengths, **shared, **self.keys}
             return {name: value for name, value in own.items() if value is not None}
-        orders = self.order if isinstance(self.order, Mapping) else dict.fromkeys(self.frames, self.order)
+        orders, lengths = (of if isinstance(of, Mapping) else dict.fromkeys(self.frames, of) for of in (self.order, self.lengths))
         sensors = []
         for name, frames in self.frames.items():
-            own = {"name": name, "frames": frames, "order": orders.get(name), "lengths": self.lengths, **self.keys.get(name, {})}
+            own = {"name": name, "frames": frames, "order": orders.get(name), "lengths": lengths.get(name), **self.keys.get(name, {})}
             sensors.append({key: value for key, value in own.items() if value is not None})
         others = {key: value for key, value in self.keys.items() if key not in self.frames}
         return {"sensors": sensors} | {name: value for name, value in {**shared, **others}.items() if value is not None}
 
 
 def with_files(table: Mapping[str, Any], folder: Path, files: dict[str, str], place: str = "recorded") -> dict[str, Any]:
-    """Returns a table `[recorded]` with files in place of arrays. Each file is named after its content and is written into the folder; its path is added to
+    """Returns a table `[recorded]` with files in place of arrays, given the keys and values of the table. Each file is named after its content and is written into the folder; its path is added to
     `files` with the key of the array.
     """
     written: dict[str, Any] = {}
@@ -86,6 +89,8 @@ def with_files(table: Mapping[str, Any], folder: Path, files: dict[str, str], pl
         written[key] = _file(folder, f"{place}.{key}", values)
         files[written[key]] = f"{place}.{key}"
 
+    if place == "recorded":
+        check_frames(dict(_by_touch(table, place)))
     for key, value in table.items():
         if key == "sensors":
             if isinstance(value, str) or not all(isinstance(sensor, Mapping) for sensor in value):
@@ -104,6 +109,15 @@ def with_files(table: Mapping[str, Any], folder: Path, files: dict[str, str], pl
         elif value is not None:
             written[key] = value
     return written
+
+
+def _by_touch(table: Mapping[str, Any], place: str) -> Iterator[tuple[str, Any]]:
+    """Returns the keys and the values of the arrays that have a row for each touch."""
+    sensors = table.get("sensors", ())
+    for number, sensor in enumerate(() if isinstance(sensors, str) else sensors, 1):
+        if isinstance(sensor, Mapping):
+            yield from _by_touch(sensor, f"{place}.sensors[{number}]")
+    yield from ((f"{place}.{key}", value) for key, value in table.items() if key in _ARRAYS and key != "zero")
 
 
 def with_paths(table: Mapping[str, Any], paths: Mapping[str, str]) -> dict[str, Any]:
