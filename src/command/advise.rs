@@ -3,7 +3,8 @@
 use crate::command::terminal::streams::say;
 use bubbletouch::report::advice::{Advice, AdviceQuery, Candidates, Requirement};
 use bubbletouch::report::advice_answers::{Answer, answers, answers_json};
-use bubbletouch::{Result, kinds};
+use bubbletouch::{Error, Result, kinds};
+use bubbletouch_sim::text::spelling::counted;
 use std::path::PathBuf;
 
 /// Find the cheapest configuration that meets all requirements
@@ -12,7 +13,7 @@ use std::path::PathBuf;
 /// value. Otherwise it is the best configuration within the limits (--budget, --max-…).
 ///
 /// Noise, sensor errors and other properties of the world are conditions, not choices. There is one answer for each condition, for the conditions of
-/// --given, or for the worst (--worst).
+/// --given, or for the worst (--worst). A condition that no configuration meets is named with the reason.
 ///
 /// The command reads the first table of the folder whose rows are choices with a value and a cost. In a recognition study, this is the table of all
 /// configurations, with the times of the classifier alone. Accuracies are of simulated touches, and times are of the machine that ran the study.
@@ -147,7 +148,12 @@ pub fn advise(args: &Args) -> Result<()> {
         given: args.given.clone(),
         limits: args.limits(),
     };
-    let offers = Candidates::new(&tables, &asked).map_err(|error| error.under(place))?;
+    let said = |error: Error| error.under(place.clone());
+    let mut offers = Candidates::new(&tables, &asked).map_err(said)?;
+    // Together with a required value, the budget is a limit.
+    if let (Requirement::Value(_), Some(most)) = (args.requirement(), args.wish.budget) {
+        offers.limit(&offers.cost.name, most).map_err(said)?;
+    }
     let answers = answers(&offers, args.requirement(), args.worst)?;
     match args.json {
         true => say(answers_json(&offers, &answers)),
@@ -170,11 +176,7 @@ impl Args {
     /// Returns the upper bounds of cost columns, in the units of the columns.
     fn limits(&self) -> Vec<(String, f64)> {
         let wish = &self.wish;
-        // Together with a required value, the budget is an additional filter.
-        let has_value = wish.accuracy.or(wish.reach).is_some();
-        let cost = self.cost.as_deref().unwrap_or("decision_time");
         let limits = [
-            (cost, wish.budget.filter(|_| has_value)),
             ("measurements", wish.max_measurements),
             ("taxels", wish.max_taxels),
             ("decision_time", wish.max_answer_ms.map(|ms| 1e3 * ms)),
@@ -185,13 +187,20 @@ impl Args {
         given.collect()
     }
 
-    fn in_words(&self, offers: &Candidates, Answer { condition, advice }: &Answer) -> String {
-        let head = match &condition[..] {
+    fn in_words(&self, offers: &Candidates, answer: &Answer) -> String {
+        let head = match &answer.condition[..] {
             "" => String::new(),
             words => format!("With {words}:\n"),
         };
-        match advice {
-            Ok(advice) => head + &self.advice_in_words(offers, advice),
+        let left_out = match answer.n_left_out {
+            0 => String::new(),
+            n => format!(
+                "\n{} left out: not measured, or beyond a limit, in at least one condition",
+                counted(n, "choice")
+            ),
+        };
+        match &answer.advice {
+            Ok(advice) => head + &self.advice_in_words(offers, advice) + &left_out,
             Err(refused) => format!("{head}no configuration: {refused}"),
         }
     }

@@ -11,7 +11,7 @@ use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::work_items::Part;
 use bubbletouch::study::{Shard, sha256};
 use bubbletouch::{Error, Result};
-use jobs::{queued_shards, submit};
+use jobs::{output_pattern, queued_shards, submit};
 use std::path::Path;
 
 /// Maximum number of jobs in a job array, which is the largest value that Slurm can be configured to allow.
@@ -19,6 +19,8 @@ const MAX_JOBS: usize = 4_000_000;
 
 /// Digits of the hash in a job's name. Fewer: two runs may share a name; more: squeue cuts the name.
 const HASH_DIGITS: usize = 12;
+/// Maximum number of characters of the study's name in a job's name. The names of scripts then fit into the 255 bytes that file systems allow.
+const MAX_NAME: usize = 64;
 
 /// Submit a study as an array of Slurm jobs, then its merge
 ///
@@ -51,6 +53,7 @@ pub fn slurm(args: &Args) -> Result<()> {
         return Err(Error::input("--array", n, allowed));
     }
     let folder = args.results.folder()?;
+    output_pattern(&folder, "")?;
     let source = args.results.study.source(&folder)?;
     kinds::check_folder(&source.text, &folder)?;
     let study = kinds::load(&source)?;
@@ -115,7 +118,8 @@ fn is_done(study: &dyn AnyStudy, folder: &Path, shard: Shard) -> Result<bool> {
 
 impl Args {
     /// Returns the name of the jobs in the cluster's queue. Jobs have the same name if they write the same results. The name contains a hash of the study's
-    /// file, of the options that replace parts of it, and of the folder.
+    /// file, of the options that replace parts of it, and of the folder. Characters that Slurm interprets, such as the comma between the names of a list, are
+    /// replaced by `_`.
     fn name(&self, what: &str) -> Result<String> {
         let study = &self.results.study;
         let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
@@ -123,7 +127,12 @@ impl Args {
         made_of[0] = absolute(&study.study).display().to_string();
         made_of.push(absolute(&self.results.folder()?).display().to_string());
         let hash = sha256(made_of.join("\n"));
-        let (name, hash, n) = (study.name()?, &hash[..HASH_DIGITS], self.array);
+        let plain = |c: char| match c.is_ascii_alphanumeric() || "-_.".contains(c) {
+            true => c,
+            false => '_',
+        };
+        let name: String = study.name()?.chars().take(MAX_NAME).map(plain).collect();
+        let (hash, n) = (&hash[..HASH_DIGITS], self.array);
         Ok(format!("bubbletouch-{name}-{hash}-{what}-of-{n}"))
     }
 
@@ -152,7 +161,7 @@ impl Args {
         let program = std::env::current_exe().map_err(|e| Error::io("bubbletouch", "read", e))?;
         let mut words = vec![program.display().to_string(), subcommand.to_owned()];
         words.extend(self.results.study.arguments());
-        words.extend(["--out".to_owned(), folder.display().to_string()]);
+        words.push(format!("--out={}", folder.display()));
         words.push("--quiet".to_owned());
         Ok(shell_line(&words))
     }

@@ -69,15 +69,15 @@ pub struct Manifest {
     /// Peak memory of the last run, bytes; `None` if the system does not report it.
     #[serde(default)]
     pub peak_memory_bytes: Option<u64>,
-    /// Number of pairs of configuration and trial that were already finished when the last run started.
+    /// Number of work items that were already finished when the last run started.
     pub n_finished_before: usize,
     /// Seed from which all random numbers of the study are derived.
     pub seed: u64,
-    /// Number of configurations in the study; for studies without configurations, the number of work items.
+    /// Number of work items of the study.
     pub n_configurations: usize,
-    /// Number of trials per configuration; 1 if trials are part of a work item.
+    /// Always 1, because a trial is part of a work item; earlier versions wrote the number of trials.
     pub n_trials: usize,
-    /// Number of pairs of configuration and trial that failed.
+    /// Number of work items that failed.
     pub n_failed: usize,
     /// SHA-256 hash of the file `study.toml`, which contains the study with all default values written out.
     pub study_sha256: String,

@@ -48,12 +48,13 @@ impl PartialEq for KeyAbout {
 }
 
 /// Suffixes of key names that state a unit, each with the unit; longer suffixes first.
-const UNITS: [(&str, &str); 17] = [
+const UNITS: [(&str, &str); 18] = [
     ("_m_per_s2", "m/s²"),
     ("_deg_per_s", "°/s"),
     ("_n_s_per_m", "N·s/m"),
     ("_mm_per_s", "mm/s"),
     ("_n_per_m", "N/m"),
+    ("_per_s", "1/s"),
     ("_deg", "°"),
     ("_gib", "GiB"),
     ("_mm", "mm"),

@@ -9,6 +9,8 @@ pub struct Answer {
     pub condition: String,
     /// Advice for the condition, or an error that contains the requirement and the nearest candidate.
     pub advice: Result<Advice>,
+    /// Number of choices that were not compared, because they were not measured or exceed a limit in at least one of several conditions.
+    pub n_left_out: usize,
 }
 
 /// Returns the advice under each condition, or the reason why there is none. If `worst` is true, returns a single answer that is based on the worst value of
@@ -17,18 +19,28 @@ pub struct Answer {
 /// # Errors
 /// If no condition has advice; returns the error of the first condition.
 pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Vec<Answer>> {
-    let conditions = offers.by_condition();
-    let answer = |condition: String, choices: &[Candidate]| Answer {
+    let conditions = offers.conditions();
+    let n = conditions.len();
+    if worst && n > 1 {
+        let (choices, n_left_out) = offers.worst()?;
+        let condition = format!("the worst of {n} conditions");
+        let advice = Ok(offers.advise(&choices, wish).map_err(|refused| {
+            let best = offers.front(&choices).pop();
+            let world = best.map_or_else(String::new, |best| offers.condition(&best));
+            refused.under(format!("with {condition} ({world}): "))
+        })?);
+        return Ok(vec![Answer {
+            condition,
+            advice,
+            n_left_out,
+        }]);
+    }
+    let answers = conditions.into_iter().map(|(condition, choices)| Answer {
         condition,
-        advice: offers.advise(choices, wish),
-    };
-    let answers: Vec<Answer> = if worst && conditions.len() > 1 {
-        let words = format!("the worst of {} conditions", conditions.len());
-        vec![answer(words, &offers.worst())]
-    } else {
-        let answer = |choices: &Vec<Candidate>| answer(offers.condition(&choices[0]), choices);
-        conditions.iter().map(answer).collect()
-    };
+        advice: offers.advise(&choices, wish),
+        n_left_out: 0,
+    });
+    let answers: Vec<Answer> = answers.collect();
     if answers.iter().any(|answer| answer.advice.is_ok()) {
         return Ok(answers);
     }
@@ -38,28 +50,33 @@ pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Ve
         let given = "no choice whose value and cost are known";
         return Err(Error::input(offers.table.file, given, "at least one"));
     };
-    Err(match condition.is_empty() {
-        true => refused,
-        false => refused.under(format!("with {condition}: ")),
+    Err(match n {
+        1 => refused,
+        _ => refused.under(format!("in none of {n} conditions; with {condition}: ")),
     })
 }
 
 /// Returns the answers as JSON: the table, its value and cost columns, and the advised choices for each condition.
 pub fn answers_json(offers: &Candidates, answers: &[Answer]) -> serde_json::Value {
     let in_json = |offer: &Candidate| offers.json(offer);
-    let answers = answers
-        .iter()
-        .map(|Answer { condition, advice }| match advice {
+    let answers = answers.iter().map(
+        |Answer {
+             condition,
+             advice,
+             n_left_out,
+         }| match advice {
             Ok(advice) => serde_json::json!({
                 "condition": condition,
                 "choice": in_json(&advice.choice),
                 "certain": advice.certain.as_ref().map(in_json),
                 "next_up": advice.next_up.as_ref().map(in_json),
+                "n_left_out": n_left_out,
             }),
             Err(refused) => {
                 serde_json::json!({ "condition": condition, "refused": refused.to_string() })
             }
-        });
+        },
+    );
     serde_json::json!({
         "table": offers.table.file,
         "value": offers.value.name,

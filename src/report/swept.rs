@@ -27,6 +27,8 @@ pub struct Swept<'a> {
     pub one_at_a_time: Vec<Setting<'a>>,
     /// Settings that have equal values in all rows.
     pub fixed: Vec<Setting<'a>>,
+    /// Varying choices, without those that the conditions alone determine, such as a number of training touches that follows from the split.
+    choices: Vec<Setting<'a>>,
 }
 
 impl<'a> Setting<'a> {
@@ -56,6 +58,11 @@ impl<'a> Setting<'a> {
     pub fn applies(&self, rows: &[usize]) -> bool {
         let has_name = !self.column.word("").is_empty();
         has_name || rows.iter().all(|&row| self.data.value(row).is_some())
+    }
+
+    /// Returns whether two settings are the same column of a table.
+    fn is(&self, other: &Self) -> bool {
+        self.column.name == other.column.name
     }
 
     /// Returns whether the values of the setting are numbers.
@@ -124,13 +131,23 @@ impl<'a> Swept<'a> {
                 free = others;
             }
         }
-        Self {
+        let mut swept = Self {
             table,
             one_at_a_time: one_at_a_time(&free, rows),
             free,
             following,
             fixed,
-        }
+            choices: Vec::new(),
+        };
+        let conditions = swept.by_condition(rows);
+        let is_choice = |one: &Setting| conditions.iter().any(|rows| one.varies(rows));
+        let of_conditions = swept.following.iter().filter(|one| !is_choice(one));
+        let of_conditions: Vec<&Setting> = of_conditions.collect();
+        swept.choices = swept.of_role(Role::Choice);
+        swept
+            .choices
+            .retain(|one| !of_conditions.iter().any(|other| other.is(one)));
+        swept
     }
 
     /// Groups rows by the values of the given settings, in the order in which the values first occur.
@@ -163,28 +180,48 @@ impl<'a> Swept<'a> {
     /// Returns the values of the conditions in a row as text. If at most one condition differs at a time, only this condition is stated. The text is empty if
     /// there is one condition.
     pub fn condition_words(&self, row: usize) -> String {
+        let is_zero =
+            |one: &Setting| matches!(one.data.value(row), None | Some(Value::Number(0.0)));
         let conditions = self.of_role(Role::Condition);
         let is_absent = |setting: &Setting| {
-            let mut one_at_a_time = self.one_at_a_time.iter();
-            one_at_a_time.any(|one| one.column.name == setting.column.name)
-                && matches!(setting.data.value(row), None | Some(Value::Number(0.0)))
+            is_zero(setting) && self.one_at_a_time.iter().any(|one| one.is(setting))
         };
-        let said = conditions.iter().filter(|one| !is_absent(one));
-        let said: Vec<String> = said.map(|one| one.phrase(row)).collect();
-        match said.is_empty() && !conditions.is_empty() {
-            true => "an ideal signal".to_owned(),
-            false => said.join(", "),
+        let words = |said: Vec<&Setting>| {
+            let said: Vec<String> = said.into_iter().map(|one| one.phrase(row)).collect();
+            said.join(", ")
+        };
+        let said: Vec<&Setting> = conditions.iter().filter(|one| !is_absent(one)).collect();
+        if !said.is_empty() {
+            return words(said);
+        }
+        // The signal is ideal if the conditions that all rows share are zero, too.
+        let mut fixed = self
+            .fixed
+            .iter()
+            .filter(|one| one.column.role == Role::Condition);
+        match conditions.is_empty() || !fixed.all(|one| !one.is_number() || is_zero(one)) {
+            true => words(conditions.iter().collect()),
+            false => "an ideal signal".to_owned(),
         }
     }
 
-    /// Returns the values of the varying choices in a row as text.
+    /// Returns the values of the varying choices in a row as text. A choice that the conditions alone determine is omitted.
     pub fn choice_words(&self, row: usize) -> String {
         // Choices that do not apply to the row are omitted.
         let applies =
             |one: &&Setting| one.data.value(row).is_some() || !one.column.word("").is_empty();
-        let choices = self.of_role(Role::Choice);
-        let said = choices.iter().filter(applies).map(|one| one.phrase(row));
+        let said = self
+            .choices
+            .iter()
+            .filter(applies)
+            .map(|one| one.phrase(row));
         said.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Returns the varying choices that no other settings determine.
+    pub fn free_choices(&self) -> Vec<Setting<'a>> {
+        let free = self.free.iter().copied();
+        free.filter(|one| one.column.role == Role::Choice).collect()
     }
 
     /// Groups rows by condition, in the order in which the conditions first occur.
@@ -201,9 +238,7 @@ fn numbers_are_there(setting: &Setting, rows: &[usize]) -> bool {
 /// Returns the given settings without one of them.
 pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> {
     let others = settings.iter().copied();
-    others
-        .filter(|other| other.column.name != one.column.name)
-        .collect()
+    others.filter(|other| !other.is(one)).collect()
 }
 
 /// Returns all numeric settings, if each row differs from the first row in at most one of them. Otherwise, tries only the settings of the signal.
@@ -223,4 +258,37 @@ fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
     };
     let found = [numbers, signal].into_iter().find(is_one_at_a_time);
     found.unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::File;
+
+    crate::row! {
+    /// Row of a test table.
+    pub struct Errors {
+        /// Noise of all rows.
+        noise: f64 => Condition in "%": Share;
+        /// Gain error.
+        gain: f64 => Condition in "%": Share;
+        /// Drift.
+        drift: f64 => Condition in "%": Share;
+    } }
+
+    #[test]
+    fn a_signal_is_ideal_only_if_the_conditions_of_all_rows_are_zero_too() {
+        let rows = |noise: f64| {
+            let errors = [(0.0, 0.0), (0.1, 0.0), (0.0, 0.1)];
+            errors.map(|(gain, drift)| Errors { noise, gain, drift })
+        };
+        for (noise, words) in [(0.0, "an ideal signal"), (0.2, "gain 0 %, drift 0 %")] {
+            let table = File::new("errors.csv", "Errors", "")
+                .table(&rows(noise))
+                .unwrap();
+            let swept = Swept::new(&table, &[0, 1, 2]);
+            assert_eq!(swept.condition_words(0), words);
+            assert_eq!(swept.condition_words(1), "gain 10 %");
+        }
+    }
 }

@@ -37,7 +37,7 @@ pub struct MotionSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
-    /// Interpolation of the poses between way-points.
+    /// Interpolation of the poses between way-points. Default: `cubic`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,
@@ -96,7 +96,7 @@ pub struct JointsSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
-    /// Interpolation of the joint positions between way-points.
+    /// Interpolation of the joint positions between way-points. Default: `cubic`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,

@@ -38,7 +38,7 @@ pub fn tables_page() -> String {
         }
     }
     page.push_str("\n## All studies\n");
-    let note = " The file exists only if a work item failed.";
+    let note = " The file has no rows if all work items succeeded.";
     write_file(&failures_about(), note, &[], &mut page);
     page.push_str(
         "\n## `bubbletouch compare --out`\n\nOne row for each number that both folders have.\n\n",

@@ -121,3 +121,37 @@ fn the_pages_of_the_guide_are_those_of_the_program() {
         );
     }
 }
+
+/// Returns the number at the start of a text; `None` if there is none. A full stop at the end does not belong to it.
+fn leading_number(text: &str) -> Option<f64> {
+    let is_digit = |c: char| c.is_ascii_digit() || ".-e".contains(c);
+    let end = text.find(|c| !is_digit(c)).unwrap_or(text.len());
+    text[..end].trim_end_matches('.').parse().ok()
+}
+
+#[test]
+fn a_default_in_words_is_the_default_of_the_reader_and_no_choice_of_words_lacks_one() {
+    let (mut n_numbers, mut n_words) = (0, 0);
+    for (schema, _) in files() {
+        each_table(&schema, &|probe| probe, &mut |table, _| {
+            let required = table["required"].as_array().into_iter().flatten();
+            let required: Vec<&str> = required.filter_map(Value::as_str).collect();
+            for (name, key) in properties(table) {
+                let meaning = key["description"].as_str().unwrap_or_default();
+                let said = meaning.split_once("Default: ").map(|(_, said)| said);
+                let number = said.and_then(leading_number);
+                if let (Some(number), Some(default)) = (number, key["default"].as_f64()) {
+                    assert_eq!(number, default, "{name}: {meaning}");
+                    n_numbers += 1;
+                }
+                let is_choice = key["enum"].is_array();
+                if is_choice && key["default"].is_null() && !required.contains(&&name[..]) {
+                    let states = meaning.to_lowercase().contains("default");
+                    assert!(states, "{name}: {meaning}");
+                    n_words += 1;
+                }
+            }
+        });
+    }
+    assert!(n_numbers > 20 && n_words > 3, "{n_numbers} {n_words}");
+}

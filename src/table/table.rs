@@ -118,18 +118,22 @@ impl Table {
         self
     }
 
-    /// Returns whether each row of the table describes a choice with a value and a cost, and not a single subject. Only columns that vary are considered; in a
-    /// table of one row, all columns except subjects.
+    /// Returns whether each row of the table describes a choice with a value and a cost, and not one of several subjects.
     pub fn offers_choices(&self) -> bool {
-        let columns = self.columns.iter().zip(&self.data);
-        let counted = columns.filter(|(column, data)| match self.n_rows {
-            1 => column.role != Role::Subject,
-            n => data.varies(0..n),
-        });
-        let roles: Vec<Role> = counted.map(|(column, _)| column.role).collect();
-        let has = |role: Role| roles.contains(&role);
+        let has = |role: Role| self.columns.iter().any(|column| column.role == role);
         let has_value = has(Role::Value(Better::More)) || has(Role::Value(Better::Less));
-        has(Role::Choice) && has(Role::Cost) && has_value && !has(Role::Subject)
+        has(Role::Choice) && has(Role::Cost) && has_value && !self.varies_in(Role::Subject)
+    }
+
+    /// Returns whether the rows of the table differ in a choice.
+    pub fn compares_choices(&self) -> bool {
+        self.varies_in(Role::Choice)
+    }
+
+    /// Returns whether a column with this role has several values.
+    fn varies_in(&self, role: Role) -> bool {
+        let mut columns = self.columns.iter().zip(&self.data);
+        columns.any(|(column, data)| column.role == role && data.varies(0..self.n_rows))
     }
 
     /// Returns the index of the column with this name; `None` if there is none.

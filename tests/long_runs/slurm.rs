@@ -304,13 +304,16 @@ fn fake_slurm(case: &Case) {
     let bin = case.path("bin");
     fs::create_dir(&bin).unwrap();
     let queue = case.path("queue").display().to_string();
+    // As squeue does, the script reads a comma as the end of a name.
     let squeue = format!(
         "#!/bin/sh\nwhile [ $# -gt 0 ]; do [ \"$1\" = --name ] && name=$2; shift; done\n\
-         grep -qx -- \"$name\" '{queue}' 2>/dev/null && printf '1\\n2\\n'\nexit 0\n"
+         echo \"$name\" | tr , '\\n' | grep -qxf - -- '{queue}' 2>/dev/null && printf '1\\n2\\n'\nexit 0\n"
     );
+    let outputs = case.path("outputs").display().to_string();
     let sbatch = format!(
-        "#!/bin/sh\nwhile [ $# -gt 0 ]; do [ \"$1\" = --job-name ] && name=$2; shift; done\n\
-         echo \"$name\" >> '{queue}'\necho 17\n"
+        "#!/bin/sh\nwhile [ $# -gt 0 ]; do\n[ \"$1\" = --job-name ] && name=$2\n\
+         [ \"$1\" = --output ] && printf '%s\\n' \"$2\" >> '{outputs}'\nshift; done\n\
+         printf '%s\\n' \"$name\" >> '{queue}'\necho 17\n"
     );
     for (name, script) in [("squeue", squeue), ("sbatch", sbatch)] {
         let path = bin.join(name);
@@ -354,6 +357,43 @@ fn runs_into_other_folders_or_with_other_seeds_are_other_jobs() {
             "{said}"
         );
     }
+}
+
+#[test]
+fn characters_that_slurm_interprets_do_not_change_what_a_job_is_called_or_where_it_writes() {
+    let case = Case::new();
+    fake_slurm(&case);
+    let long = format!("{}.toml", "n".repeat(200));
+    for study in [
+        "a,b.toml",
+        "50% noise.toml",
+        "a\nb.toml",
+        "é [1].toml",
+        &long,
+    ] {
+        case.file(study, SMALL);
+        for said in ["submitted 2 of 2 shards", "are in the queue"] {
+            let arguments = ["slurm", study, "--array", "2", "--out", "50%j"];
+            let path = format!("{}:/usr/bin:/bin", case.path("bin").display());
+            let output = case.command(&arguments).env("PATH", path).output().unwrap();
+            let found = String::from_utf8(output.stdout).unwrap();
+            let error = String::from_utf8_lossy(&output.stderr);
+            assert!(found.contains(said), "{study:?}: {found}{error}");
+        }
+    }
+    let outputs = fs::read_to_string(case.path("outputs")).unwrap();
+    for output in outputs.lines() {
+        assert!(output.starts_with("50%%j/slurm/bubbletouch-"), "{output}");
+        assert!(output.ends_with(".%j.txt"), "{output}");
+    }
+    let output = case.run(&["slurm", "a,b.toml", "--array", "2", "--out", "a\\b"]);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(
+        error.contains("--out") && error.contains("without backslashes"),
+        "{error}"
+    );
+    assert!(!case.path("a\\b").exists());
 }
 
 /// Returns the lines of a journal without the first one.

@@ -184,3 +184,33 @@ fn the_seed_of_the_command_and_an_axis_of_seeds_exclude_each_other() {
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("--seed: 3;"), "{said}");
 }
+
+#[test]
+fn plan_and_page_state_all_values_of_an_axis_and_what_test_touches_differ_in() {
+    let case = Case::new();
+    let axes = "\"skin.stroke_mm\" = [3.0, 5.0]\n\"touches.per_object\" = [8, 12]\n\"recognition.test_fraction\" = [0.25, 0.5]\n";
+    let rest = REST.replace("per_object = 12\n", "depth_mm = 2.0\n");
+    let test = "[test]\nsignal.noise_std_n = 0.02\ntouches.depth_mm = 1.5\n";
+    case.file(
+        "study.toml",
+        format!("{HEAD}{rest}[recognition]\n{test}[axes]\n{axes}"),
+    );
+    let (said, _) = case.succeeds(&["plan", "study.toml"]);
+    let differs = "test.signal.noise_std_n = 0.02, test.touches.depth_mm = 1.5";
+    assert!(said.contains("  touches  24; 36 on each of "), "{said}");
+    assert!(
+        said.contains(&format!("; test touches with {differs}")),
+        "{said}"
+    );
+    case.succeeds(&["run", "study.toml", "--out", "found"]);
+    let page = std::fs::read_to_string(case.path("found/report.html")).unwrap();
+    let (_, settings) = page.split_once("id=\"settings\"").unwrap();
+    for (name, value) in [
+        ("Touches", "24; 36"),
+        ("Stroke", "3 mm; 5 mm"),
+        ("Test touches differ in", differs),
+    ] {
+        let stated = format!("{name}</dt><dd>{value}");
+        assert!(settings.contains(&stated), "{stated}");
+    }
+}

@@ -116,6 +116,86 @@ fn peak(folder: &Path) -> Option<u64> {
     manifest["peak_memory_bytes"].as_u64()
 }
 
+/// Reconstruction study of 40 touches with 4,096 taxels.
+const RECONSTRUCTION: &str = r#"
+question = "?"
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill"]
+
+[skin]
+pitch_mm = 2.0
+size_mm = 128.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 10
+offset_x_mm = { uniform = [-10.0, 10.0] }
+offset_y_mm = { uniform = [-10.0, 10.0] }
+depth_mm = { uniform = [2.0, 4.0] }
+
+[signal]
+noise_std_full_scale = 0.1
+
+[sensing]
+ensemble = "identity"
+ratio = 2
+
+[reconstruction]
+solver = "lmmse"
+dictionary = "dct"
+test_fraction = 0.25
+"#;
+
+#[test]
+fn a_plan_states_the_memory_of_a_reconstruction_within_a_fifth() {
+    let case = Case::new();
+    // Peaks of runs on two threads (/usr/bin/time -v), MiB; runs of the full dictionary take minutes.
+    let omp = ["solver = \"omp\"", "ensemble = \"gaussian\""];
+    let changed = |text: &str, changes: &[(&str, &str)]| {
+        changes
+            .iter()
+            .fold(text.to_owned(), |text, (old, new)| text.replace(old, new))
+    };
+    let sampled = ("ensemble = \"identity\"", omp[1]);
+    let pursued = ("solver = \"lmmse\"", omp[0]);
+    let few = ("[reconstruction]", "[reconstruction]\natoms = 512");
+    let small = [
+        few,
+        pursued,
+        ("size_mm = 128.0", "size_mm = 64.0"),
+        ("ensemble = \"identity\"", "ensemble = \"sbhe\""),
+        ("per_object = 10", "per_object = 2000"),
+        (
+            "noise_std_full_scale = 0.1",
+            "noise_std_full_scale = [0.0, 0.1]",
+        ),
+    ];
+    let quarter = ("ratio = 2", "ratio = 4");
+    let two = ("dictionary = \"dct\"", "dictionary = [\"dct\", \"haar\"]");
+    for (changes, peak) in [
+        (&[][..], 969.0),
+        (&[sampled, few], 293.0),
+        (&[sampled, pursued, quarter, two], 448.0),
+        (&small, 346.0),
+    ] {
+        let text = changed(RECONSTRUCTION, changes);
+        case.file("study.toml", &text);
+        let (said, _) = case.succeeds(&["plan", "study.toml", "--threads", "2"]);
+        let (_, after) = said.split_once("memory   about ").unwrap();
+        let (planned, _) = after.split_once(" MiB").unwrap();
+        let planned: f64 = planned.parse().unwrap();
+        assert!(
+            (planned / peak - 1.0).abs() < 0.2,
+            "{planned} MiB for {peak}: {text}"
+        );
+    }
+    case.file("study.toml", RECONSTRUCTION);
+    let output = case.run(&["run", "study.toml", "--memory-gib", "0.5"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
 #[test]
 fn a_ceiling_too_low_is_refused_with_what_it_takes() {
     let study = Study::new(SMALL).of_items();

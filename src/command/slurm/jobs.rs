@@ -11,16 +11,33 @@ use std::process::Command;
 pub fn submit(name: &str, options: &[String], line: &str, results: &Path) -> Result<String> {
     let folder = results.join("slurm");
     std::fs::create_dir_all(&folder).map_err(|e| Error::io(&folder, "create folder", e))?;
-    let script = folder.join(format!("{name}.sh"));
+    // A path that begins with a dash would be an option.
+    let script = Path::new(".").join(&folder).join(format!("{name}.sh"));
     write_bytes(&script, format!("#!/bin/sh\nexec {line}\n").as_bytes())?;
-    let said = folder.join(format!("{name}.%j.txt"));
     let mut sbatch = Command::new("sbatch");
     sbatch.args(["--parsable", "--job-name", name]);
-    sbatch.arg("--output").arg(said).args(options).arg(&script);
+    sbatch.args(["--output", &output_pattern(results, name)?]);
+    sbatch.args(options).arg(&script);
     let answer = answer(&mut sbatch)?;
     // With several clusters, the output is `number;cluster`.
     let number = answer.split(';').next().unwrap_or_default();
     Ok(number.trim().to_owned())
+}
+
+/// Returns the filename pattern of a job's output in a folder of results. In a pattern, `%%` is a percent sign and `%j` is the number of the job (manual page of
+/// sbatch, "filename pattern").
+///
+/// # Errors
+/// If the path of the folder contains a character that a pattern cannot express.
+pub fn output_pattern(results: &Path, name: &str) -> Result<String> {
+    let folder = results.join("slurm");
+    // A backslash turns off all replacements of a pattern.
+    let is_plain = |path: &&str| !path.contains(['\\', '\n', '\r']);
+    let path = folder.to_str().filter(is_plain).ok_or_else(|| {
+        let allowed = "a path in UTF-8 without backslashes and line breaks, as sbatch requires";
+        Error::input("--out", format!("{results:?}"), allowed)
+    })?;
+    Ok(format!("{}/{name}.%j.txt", path.replace('%', "%%")))
 }
 
 /// Returns the shards whose cluster jobs with this name are waiting or running.

@@ -18,9 +18,8 @@ const LOG_FROM: f64 = 16.0;
 pub struct StudyAxis {
     /// Path of the key, such as `touches.depth_mm`, or `touches.offset_{x,y}_mm` for two keys.
     pub key: String,
-    /// Description of the key that is varied; of the first key if several keys are varied together. For keys of test touches, the description of the key
-    /// without `test.`.
-    pub about: Option<&'static KeyAbout>,
+    /// Descriptions of the keys that are varied together; empty if a key has none. For keys of test touches, the descriptions of the keys without `test.`.
+    pub about: Vec<&'static KeyAbout>,
     /// Whether result tables already contain a column with the values of this key.
     pub has_column: bool,
     /// Distinct values of the axis, at least one.
@@ -34,18 +33,17 @@ impl StudyAxis {
     pub(super) fn new(key: String, values: Vec<toml::Value>, known: &'static [KeyAbout]) -> Self {
         let mut axis = Self {
             key,
-            about: None,
+            about: Vec::new(),
             has_column: false,
             values,
             line: None,
         };
         let keys = axis.keys();
-        axis.about = keys
-            .first()
-            .and_then(|key| find_key(known, without_test(key)));
-        axis.has_column = axis
-            .about
-            .is_some_and(|about| about.axis == AxisPlace::Table && about.path == axis.key);
+        let about = keys.iter().map(|key| find_key(known, without_test(key)));
+        axis.about = about.collect::<Option<_>>().unwrap_or_default();
+        let mut about = axis.about.iter();
+        axis.has_column =
+            about.any(|about| about.axis == AxisPlace::Table && about.path == axis.key);
         axis
     }
 
@@ -103,9 +101,17 @@ impl StudyAxis {
         }
     }
 
-    /// Returns the key path of the axis without braces and without a last part that only selects a distribution.
+    /// Returns the key path of the axis without braces and without a last part that only selects a distribution. Single letters in braces are joined (`xy`),
+    /// names by `_`.
     fn path(&self) -> String {
-        let path = self.key.replace(['{', '}', ',', ' '], "");
+        let names = self.key.split(['{', '}']).nth(1).unwrap_or_default();
+        let is_letter = |name: &str| name.trim().len() == 1;
+        let between = if names.split(',').all(is_letter) {
+            ""
+        } else {
+            "_"
+        };
+        let path = self.key.replace(['{', '}', ' '], "").replace(',', between);
         path.strip_suffix(".within").unwrap_or(&path).to_owned()
     }
 
@@ -131,28 +137,31 @@ impl StudyAxis {
         let name: &'static str = name.leak();
         let numbers: Option<Vec<f64>> = self.values.iter().map(number).collect();
         let scale = scale(numbers);
-        let Some(about) = self.about else {
+        let [about, others @ ..] = &self.about[..] else {
             return Column::new(name, Role::Choice, last.replace('_', " "), "", scale).optional();
         };
+        let titles: Vec<String> = self.about.iter().map(|about| about.title()).collect();
+        let titles = titles.join(" and ");
+        // Keys that are varied together are a condition if one of them is.
+        let is_condition = self.about.iter().any(|about| about.role == Role::Condition);
         let (role, words) = match self.is_of_tests() {
-            true => (Role::Condition, format!("test {}", about.title())),
-            false => (about.role, about.title()),
+            true => (Role::Condition, format!("test {titles}")),
+            false if is_condition => (Role::Condition, titles),
+            false => (about.role, titles),
         };
-        let column = Column::new(
-            name,
-            role,
-            words,
-            about.unit(),
-            about.scale.unwrap_or(scale),
-        );
+        let is_alike = others.iter().all(|other| other.unit() == about.unit());
+        let unit = if is_alike { about.unit() } else { "" };
+        let column = Column::new(name, role, words, unit, about.scale.unwrap_or(scale));
         column.named(about.names.unwrap_or_default()).optional()
     }
 
-    /// Returns the value of this axis's key in a study. Returns `None` if the study has no value there, or a value of another type.
+    /// Returns the value of this axis's keys in a study. Returns `None` if the study has no value there, a value of another type, or different values for several
+    /// keys.
     pub(super) fn own(&self, study: &toml::Table) -> Option<toml::Value> {
         let own = value_at(study, self.keys().first()?)?;
         let is_number = self.values.iter().all(|value| number(value).is_some());
-        (!is_number || number(own).is_some()).then(|| own.clone())
+        let is_own = (!is_number || number(own).is_some()) && self.is_at(study, own);
+        is_own.then(|| own.clone())
     }
 
     /// Returns whether every key of the axis has the given value in a study.
@@ -207,6 +216,9 @@ mod tests {
             "skin.friction": Axes, Condition, Range::NotNegative;
             "touches.frames": Table, Choice, Range::AtLeastOne, title: "frames a touch", scale: Scale::Log;
             "touches.depth_mm": Axes, Choice, Range::Positive;
+            "touches.offset_x_mm": Axes, Condition, Range::Any;
+            "touches.offset_y_mm": Axes, Condition, Range::Any;
+            "sensing.readings_per_s": Axes, Choice, Range::Positive;
             "recognition.solver": Axes, Choice, Range::Any;
         };
         let axis = |key: &str, values: &str| {
@@ -246,6 +258,38 @@ mod tests {
                 "frames a touch",
                 Role::Choice,
                 Scale::Log,
+            ),
+            (
+                "touches.offset_{x,y}_mm",
+                "[1, 2]",
+                "offset_xy_mm",
+                "offset x and offset y (mm)",
+                Role::Condition,
+                Scale::Linear,
+            ),
+            (
+                "touches.{depth_mm,offset_x_mm}",
+                "[1, 2]",
+                "depth_mm_offset_x_mm",
+                "depth and offset x (mm)",
+                Role::Condition,
+                Scale::Linear,
+            ),
+            (
+                "skin.{stiffness_n_per_m,friction}",
+                "[1, 2]",
+                "stiffness_n_per_m_friction",
+                "stiffness and friction",
+                Role::Condition,
+                Scale::Linear,
+            ),
+            (
+                "sensing.readings_per_s",
+                "[1, 2]",
+                "readings_per_s",
+                "readings (1/s)",
+                Role::Choice,
+                Scale::Linear,
             ),
             (
                 "skin.stiffness_n_per_m",

@@ -5,6 +5,7 @@ use super::given_condition::rows_with;
 use crate::error::{Error, Result};
 use crate::report::swept::Swept;
 use crate::table::{Better, Column, Role, Scale, Table, Value, front};
+use std::collections::HashMap;
 
 /// Query for advice about a design; fields that are `None` are filled in automatically.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,7 +18,7 @@ pub struct AdviceQuery {
     pub cost: Option<String>,
     /// Fixed conditions, each as text of the form `noise=0.05`.
     pub given: Vec<String>,
-    /// Upper bounds of cost columns, as pairs (column name, bound); choices above a bound are omitted.
+    /// Upper bounds of cost columns, as pairs (column name, bound); choices above a bound are not advised.
     pub limits: Vec<(String, f64)>,
 }
 
@@ -63,8 +64,10 @@ pub struct Candidates<'a> {
     /// Cost column whose values should be small.
     pub cost: &'a Column,
     pub(super) swept: Swept<'a>,
-    /// Indices of the rows that satisfy the given conditions and have both a value and a cost.
+    /// Indices of the rows that satisfy the given conditions.
     rows: Vec<usize>,
+    /// Cost columns with the largest cost that a choice may have.
+    limits: Vec<(&'a Column, f64)>,
 }
 
 impl<'a> Candidates<'a> {
@@ -74,8 +77,12 @@ impl<'a> Candidates<'a> {
     /// If no table has these columns, or a condition or a cost limit is not valid for the table.
     pub fn new(tables: &'a [Table], asked: &AdviceQuery) -> Result<Self> {
         let mut offering: Vec<&Table> = tables.iter().filter(|t| t.offers_choices()).collect();
-        let has_several = offering.iter().any(|table| table.n_rows > 1);
-        offering.retain(|table| table.n_rows > 1 || !has_several);
+        // A table in which choices differ is preferred; a study may also have a single configuration in each condition.
+        for is_preferred in [Table::compares_choices, |table: &Table| table.n_rows > 1] {
+            if offering.iter().any(|table| is_preferred(table)) {
+                offering.retain(|table| is_preferred(table));
+            }
+        }
         if offering.is_empty() {
             let allowed = "a study with a table of choices that have a value and a cost";
             return Err(Error::input("advice", "no table offers choices", allowed));
@@ -92,21 +99,19 @@ impl<'a> Candidates<'a> {
         let has_interval = |table: &&&'a Table| value(table).interval.is_some();
         let table = *offering.iter().find(has_interval).unwrap_or(&offering[0]);
         let mut found = Self::of_columns(table, value(table), COST.columns(table, cost)[0]);
-        let rows = (0..table.n_rows).collect();
         let mut given = asked.given.iter();
-        let rows: Vec<usize> = given.try_fold(rows, |rows, text| rows_with(table, rows, text))?;
-        found.rows.retain(|row| rows.binary_search(row).is_ok());
+        found.rows = given.try_fold(found.rows, |rows, text| rows_with(table, rows, text))?;
         for (name, most) in &asked.limits {
             found.limit(name, *most)?;
         }
         Ok(found)
     }
 
-    /// Removes all candidates whose cost in the named column is absent or exceeds `most`.
+    /// Adds an upper bound of the named cost column, in the unit of the column.
     ///
     /// # Errors
-    /// If no such cost column exists, the limit is not a positive number, or no row satisfies the limit.
-    fn limit(&mut self, name: &str, most: f64) -> Result<()> {
+    /// If no such cost column exists, or the bound is not a positive number.
+    pub fn limit(&mut self, name: &str, most: f64) -> Result<()> {
         let columns = COST.columns(self.table, Some(name));
         let known = COST.columns(self.table, None).into_iter();
         refuse_none(
@@ -114,43 +119,53 @@ impl<'a> Candidates<'a> {
             ("limit of", name),
             known.map(|column| &column.name[..]).collect(),
         )?;
-        let column = columns[0];
-        let of = |row: &usize| self.table.number(&column.name, *row);
-        let refuse = |allowed: String| {
-            let place = format!("limit of {}", column.words);
-            Error::input(place, column.phrase(&Value::Number(most)), allowed)
-        };
         if !(most > 0.0 && most.is_finite()) {
-            return Err(refuse("a positive number".to_owned()));
+            return Err(over_limit(columns[0], most, "a positive number".to_owned()));
         }
-        let kept: Vec<usize> = self
-            .rows
-            .iter()
-            .copied()
-            .filter(|row| of(row) <= most)
-            .collect();
-        if kept.is_empty() {
-            let least = self.rows.iter().map(of).fold(f64::INFINITY, f64::min);
-            let least = column.phrase(&Value::Number(least));
-            return Err(refuse(format!("the smallest here is {least}")));
-        }
-        self.rows = kept;
+        self.limits.push((columns[0], most));
         Ok(())
     }
 
-    /// Creates candidates from all rows of a table that have both a value and a cost.
+    /// Returns the candidates whose costs are within all limits.
+    ///
+    /// # Errors
+    /// If there are none; the error names the first limit that no candidate meets, and the smallest cost.
+    fn within_limits(&self, candidates: &[Candidate]) -> Result<Vec<Candidate>> {
+        let mut kept = candidates.to_vec();
+        for &(column, most) in &self.limits {
+            let of = |candidate: &Candidate| self.table.number(&column.name, candidate.row);
+            let least = kept.iter().map(of).fold(f64::INFINITY, f64::min);
+            kept.retain(|candidate| of(candidate) <= most);
+            if kept.is_empty() && least.is_finite() {
+                let least = column.phrase(&Value::Number(least));
+                return Err(over_limit(
+                    column,
+                    most,
+                    format!("the smallest here is {least}"),
+                ));
+            }
+        }
+        match kept.is_empty() {
+            true => {
+                let given = format!("no {} and {}", self.value.words, self.cost.words);
+                let allowed = "at least one choice whose value and costs are known";
+                Err(Error::input(self.table.file, given, allowed))
+            }
+            false => Ok(kept),
+        }
+    }
+
+    /// Creates candidates from all rows of a table.
     pub fn of_columns(table: &'a Table, value: &'a Column, cost: &'a Column) -> Self {
         let rows: Vec<usize> = (0..table.n_rows).collect();
-        let mut found = Self {
+        Self {
             table,
             value,
             cost,
             swept: Swept::new(table, &rows),
-            rows: Vec::new(),
-        };
-        let is_known = |row: &usize| found.candidate(*row).is_some();
-        found.rows = rows.into_iter().filter(is_known).collect();
-        found
+            rows,
+            limits: Vec::new(),
+        }
     }
 
     /// Returns the candidate of a row; `None` if its value or cost is absent.
@@ -161,43 +176,86 @@ impl<'a> Candidates<'a> {
         is_known.then_some(Candidate { row, value, cost })
     }
 
-    /// Returns the candidates in one group per condition, in the order in which the conditions first occur in the table.
+    /// Returns the candidates in one group per condition, in the order in which the conditions first occur in the table. A condition in which no row has both
+    /// a value and a cost is omitted.
     pub fn by_condition(&self) -> Vec<Vec<Candidate>> {
+        let conditions = self.conditions().into_iter();
+        let candidates = conditions.map(|(_, candidates)| candidates);
+        candidates.filter(|of_one| !of_one.is_empty()).collect()
+    }
+
+    /// Returns each condition as text, with its candidates.
+    pub(crate) fn conditions(&self) -> Vec<(String, Vec<Candidate>)> {
         let conditions = self.swept.by_condition(&self.rows).into_iter();
         let candidates = |rows: Vec<usize>| {
-            rows.into_iter()
-                .filter_map(|row| self.candidate(row))
-                .collect()
+            let candidates = rows.iter().filter_map(|&row| self.candidate(row));
+            (self.swept.condition_words(rows[0]), candidates.collect())
         };
         conditions.map(candidates).collect()
     }
 
-    /// Returns, for each choice, a candidate that has the worst value and the highest cost over all conditions. Choices that were not measured in every
-    /// condition are omitted.
-    pub fn worst(&self) -> Vec<Candidate> {
-        let n_conditions = self.swept.by_condition(&self.rows).len();
-        let choices = self.swept.of_role(Role::Choice);
-        let choices = self.swept.groups(&choices, &self.rows).into_iter();
-        let measured = choices.filter(|rows| rows.len() == n_conditions);
-        let worst = |rows: Vec<usize>| {
-            let candidates = rows.iter().filter_map(|&row| self.candidate(row));
-            candidates.reduce(|a, b| {
-                let worse = if self.is_better(a.value, b.value) {
-                    b
-                } else {
-                    a
-                };
-                let cost = a.cost.max(b.cost);
-                Candidate { cost, ..worse }
-            })
-        };
-        measured.filter_map(worst).collect()
-    }
-
-    /// Returns the advice for a requirement, selected from the candidates under one condition.
+    /// Returns, for each choice, a candidate that has the worst value and the highest cost over all conditions, and the number of choices that are left out,
+    /// because they were not measured or exceed a limit in at least one condition.
     ///
     /// # Errors
-    /// If the requirement is out of range, there are no candidates, or no candidate meets the requirement; the error names the nearest candidate.
+    /// If all choices are left out; the error names the condition in which the fewest choices are within the limits.
+    pub fn worst(&self) -> Result<(Vec<Candidate>, usize)> {
+        let choices = self.swept.groups(&self.swept.free_choices(), &self.rows);
+        let numbered = choices.iter().enumerate();
+        let choice_of: HashMap<usize, usize> = numbered
+            .flat_map(|(number, rows)| rows.iter().map(move |&row| (row, number)))
+            .collect();
+        let mut measured: Vec<Vec<Candidate>> = vec![Vec::new(); choices.len()];
+        let mut fewest: Option<(usize, String)> = None;
+        let conditions = self.conditions();
+        for (condition, candidates) in &conditions {
+            let kept = self.within_limits(candidates);
+            let kept = kept.map_err(|error| error.under(format!("with {condition}: ")))?;
+            if fewest.as_ref().is_none_or(|(n, _)| kept.len() < *n) {
+                fewest = Some((kept.len(), condition.clone()));
+            }
+            for candidate in kept {
+                measured[choice_of[&candidate.row]].push(candidate);
+            }
+        }
+        let worse = |a: Candidate, b: Candidate| {
+            let cost = a.cost.max(b.cost);
+            let worse = if self.is_better(a.value, b.value) {
+                b
+            } else {
+                a
+            };
+            Candidate { cost, ..worse }
+        };
+        let everywhere = measured
+            .into_iter()
+            .filter(|of| of.len() == conditions.len());
+        let worst: Vec<Candidate> = everywhere
+            .filter_map(|of| of.into_iter().reduce(worse))
+            .collect();
+        match (worst.is_empty(), fewest) {
+            (true, Some((n, condition))) => {
+                let given = format!(
+                    "{n} of {} choices with {condition}, others elsewhere",
+                    choices.len()
+                );
+                let allowed = format!(
+                    "a choice that was measured and is within the limits in all {} conditions",
+                    conditions.len()
+                );
+                Err(Error::input("--worst", given, allowed))
+            }
+            _ => {
+                let n_left_out = choices.len() - worst.len();
+                Ok((worst, n_left_out))
+            }
+        }
+    }
+
+    /// Returns the advice for a requirement, selected from the candidates under one condition that are within all limits.
+    ///
+    /// # Errors
+    /// If the requirement is out of range, no candidate is within the limits, or none meets the requirement; the error names the nearest candidate.
     pub fn advise(&self, candidates: &[Candidate], requirement: Requirement) -> Result<Advice> {
         let (column, wanted, place) = match requirement {
             Requirement::Value(wanted) => (self.value, wanted, "required value"),
@@ -218,12 +276,9 @@ impl<'a> Candidates<'a> {
         if !is_in_range {
             return Err(refuse(range.to_owned()));
         }
+        let candidates = &self.within_limits(candidates)?;
         let front = self.front(candidates);
-        let (Some(cheapest), Some(best)) = (front.first(), front.last()) else {
-            return Err(refuse(
-                "at least one choice whose value and cost are known".to_owned(),
-            ));
-        };
+        let [cheapest, best] = [&front[0], &front[front.len() - 1]];
         let place = match requirement {
             Requirement::Value(wanted) => front
                 .iter()
@@ -293,6 +348,12 @@ impl<'a> Candidates<'a> {
             |[low, high]| if self.is_less_better() { high } else { low },
         )
     }
+}
+
+/// Returns the error about a limit of a cost column.
+fn over_limit(column: &Column, most: f64, allowed: String) -> Error {
+    let place = format!("limit of {}", column.words);
+    Error::input(place, column.phrase(&Value::Number(most)), allowed)
 }
 
 #[cfg(test)]
@@ -452,12 +513,39 @@ mod tests {
         ]);
         let candidates = Candidates::new(&tables, &AdviceQuery::default()).unwrap();
         assert_eq!(candidates.by_condition().len(), 2);
-        let worst: Vec<(usize, f64, f64)> = candidates
-            .worst()
+        let (worst, n_left_out) = candidates.worst().unwrap();
+        assert_eq!(n_left_out, 1, "measured in one condition only");
+        let worst: Vec<(usize, f64, f64)> = worst
             .iter()
             .map(|candidate| (candidate.row, candidate.value, candidate.cost))
             .collect();
         assert_eq!(worst, [(3, 0.50, 6.0), (4, 0.80, 5.0)]);
+        // A limit leaves out what exceeds it in any condition, and names a condition that nothing meets.
+        let limited = |most: f64| {
+            let limits = vec![("time".to_owned(), most)];
+            let asked = AdviceQuery {
+                limits,
+                ..AdviceQuery::default()
+            };
+            Candidates::new(&tables, &asked).and_then(|candidates| candidates.worst())
+        };
+        let (worst, n_left_out) = limited(5.0).unwrap();
+        assert_eq!((worst[0].row, worst.len(), n_left_out), (4, 1, 2));
+        let error = limited(3.0).unwrap_err().to_string();
+        let said = "with world noisy: limit of time: time 3 µs; the smallest here is time 4 µs";
+        assert!(error.contains(said), "{error}");
+        let error = limited(4.0).unwrap_err().to_string();
+        assert!(error.contains("1 of 3 choices with world quiet"), "{error}");
+    }
+
+    #[test]
+    fn choices_that_are_equally_good_are_choices() {
+        let tables = table(&[setting("a", 5.0, 1.0, 0.0), setting("b", 4.0, 1.0, 0.0)]);
+        let candidates = Candidates::new(&tables, &AdviceQuery::default()).unwrap();
+        let advice = candidates
+            .advise(&candidates.by_condition()[0], Requirement::Best)
+            .unwrap();
+        assert_eq!(candidates.setting(&advice.choice), "design b");
     }
 
     #[test]

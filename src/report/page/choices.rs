@@ -16,7 +16,7 @@ pub(crate) fn choices_html(found: &Found) -> String {
         return String::new();
     };
     let (table, value) = (offers.table, offers.value);
-    if table.n_rows < 2 {
+    if !table.compares_choices() {
         return String::new();
     }
     let costs = Setting::of_roles(table, &[Role::Cost]);

@@ -23,13 +23,10 @@ pub(crate) fn provenance_html(manifest: &Manifest) -> String {
             format!("{} to {}", manifest.started, manifest.ended),
         ),
         (
-            "Configurations",
+            "Work items",
             format!(
-                "{} in {} trials; {} evaluations were finished before this run, {} failed",
-                manifest.n_configurations,
-                manifest.n_trials,
-                manifest.n_finished_before,
-                manifest.n_failed
+                "{}; {} were finished before this run, {} failed",
+                manifest.n_configurations, manifest.n_finished_before, manifest.n_failed
             ),
         ),
         ("Seed", manifest.seed.to_string()),

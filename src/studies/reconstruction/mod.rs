@@ -9,6 +9,7 @@
 mod charts;
 mod frames;
 mod measured;
+mod memory;
 mod plan;
 pub mod rows;
 mod score;

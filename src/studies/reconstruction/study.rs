@@ -13,6 +13,7 @@ use crate::report::study_content::Beyond;
 use crate::studies::found_and_cost;
 use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
 use crate::studies::reconstruction::measured::measure_cells;
+use crate::studies::reconstruction::memory::memory;
 use crate::studies::reconstruction::plan::ReconstructionPlan;
 use crate::studies::reconstruction::plan::reconstruction_keys;
 use crate::studies::reconstruction::rows::{
@@ -104,14 +105,11 @@ impl Study for ReconstructionStudy {
 
     fn scale(&self) -> Scale {
         let n_touches: usize = self.touched.iter().map(|t| t.touches.len()).sum();
-        let n_taxels = self.plan.array.n_taxels() as f64;
-        // Memory of clean, read and reconstructed frames, and of one dictionary.
-        let frames = 3.0 * n_touches as f64 * n_taxels;
         Scale {
             objects: self.touched.len().to_string(),
             touches: format!("{n_touches} on one array"),
             n_configurations: self.plan.configurations().len(),
-            bytes: 8.0 * (frames + n_taxels * n_taxels),
+            bytes: memory(&self.plan, n_touches),
             ..Scale::default()
         }
     }

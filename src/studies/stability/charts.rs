@@ -27,7 +27,8 @@ impl StabilityPlan {
         charts
     }
 
-    /// Returns one sentence per method with its number of correct results, sorted from the largest to the smallest number.
+    /// Returns one sentence per method with its number of correct results, sorted from the largest to the smallest number. A last sentence names the table of
+    /// other programs if it does not exist.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let summary = &tables[1];
         let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
@@ -47,7 +48,15 @@ impl StabilityPlan {
         });
         let mut found: Vec<(f64, String)> = found.collect();
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        found.into_iter().map(|(_, sentence)| sentence).collect()
+        let found = found.into_iter().map(|(_, sentence)| sentence);
+        let missing = self.peers.as_ref().filter(|path| !path.exists());
+        let missing = missing.map(|path| {
+            format!(
+                "No rows of other programs: {} does not exist.",
+                path.display()
+            )
+        });
+        found.chain(missing).collect()
     }
 }
 

@@ -21,6 +21,8 @@ pub struct StabilityPlan {
     pub spec: StabilityStudySpec,
     /// Configurations, ordered by part, each with its taxel parameters without damper. Methods that this build does not contain are omitted.
     pub configurations: Vec<(StabilityConfiguration, Taxel)>,
+    /// Configurations of all methods, also of those that this build does not contain.
+    pub(super) all_methods: Vec<(StabilityConfiguration, Taxel)>,
     /// Path of the table with results of other programs; `None` if there is none.
     pub peers: Option<PathBuf>,
 }
@@ -56,7 +58,7 @@ impl StabilityPlan {
         let wanted = &spec.stability;
         check.keys("stability", wanted, STABILITY_KEYS)?;
         check.list("stability.parts", wanted.parts.clone())?;
-        let mut configurations = Vec::new();
+        let mut all_methods = Vec::new();
         for (number, part) in wanted.parts.iter().enumerate() {
             let taxel = |configuration: &StabilityConfiguration| Taxel {
                 radius: 0.5 * wanted.pitch_mm * MM,
@@ -65,12 +67,15 @@ impl StabilityPlan {
                 stroke: part.stroke_mm * MM,
             };
             let of_part = check.stability_part(number + 1, part)?.into_iter();
-            configurations.extend(
+            all_methods.extend(
                 of_part.map(|configuration| (configuration.clone(), taxel(&configuration))),
             );
         }
+        let mut configurations = all_methods.clone();
+        configurations.retain(|(configuration, _)| configuration.method.is_built());
         Ok(Self {
             configurations,
+            all_methods,
             peers: wanted.peers.as_ref().map(|path| path.within(folder)),
             spec,
         })
@@ -104,8 +109,7 @@ impl Check<'_> {
             true => of_engines.iter().copied().map(Some).collect(),
             false => vec![None],
         };
-        let methods = wanted.methods.iter().copied();
-        let methods: Vec<ContactMethod> = methods.filter(|method| method.is_built()).collect();
+        let methods = wanted.methods.clone();
         let axes = [
             methods.iter().map(|&method| iterations(method).len()).sum(),
             sides.len(),

@@ -136,6 +136,15 @@ pub struct Joints {
 /// Configuration of a work item, with its result and computing time.
 pub type StabilityRow = (StabilityConfiguration, StabilityScore, StabilityTime);
 
+/// Parameters of a scene that the columns of a [`StabilityConfiguration`] leave out: further columns of another program's row.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PeerScene {
+    /// Distance between neighbouring taxels, mm.
+    pub pitch_mm: f64,
+    /// Stroke of a taxel, mm.
+    pub stroke_mm: f64,
+}
+
 /// Program, version and date of a result computed by another program: the last columns of its row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PeerSource {

@@ -27,7 +27,8 @@ pub struct StabilitySpec {
     /// Distance between neighbouring taxels, mm, positive; the radius of a taxel is half of it. Default: 4.
     #[serde(default = "number::<4>")]
     pub pitch_mm: f64,
-    /// Table of results of another program (`benches/peers/stability.py`), relative to the study file; ignored if the file does not exist.
+    /// Table of results of another program (`benches/peers/stability.py`), relative to the study file. Each row must belong to a scene of the study. If the
+    /// file does not exist, the study has no such rows.
     #[schemars(with = "Option<String>")]
     pub peers: Option<FilePath>,
     /// Tables `[[stability.parts]]`: parts of the study, run one after the other. Each part combines all values of its axes.

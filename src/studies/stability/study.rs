@@ -70,18 +70,28 @@ impl Study for StabilityPlan {
     }
 
     fn scale(&self) -> Scale {
-        // Memory of a taxel: its state, its history and an engine's body.
-        const TAXEL_BYTES: f64 = 2000.0;
-        let n_taxels = self
+        // Memory of a taxel: its state and its history; in an engine also its body, its joint and its contact.
+        let taxel_bytes =
+            |configuration: &StabilityConfiguration| match configuration.method.is_engine() {
+                true => 2e4,
+                false => 2e3,
+            };
+        let configurations = self
             .configurations
             .iter()
-            .map(|(configuration, _)| configuration.n_taxels());
-        let most = n_taxels.max().unwrap_or(0);
+            .map(|(configuration, _)| configuration);
+        let bytes = configurations
+            .clone()
+            .map(|one| taxel_bytes(one) * one.n_taxels() as f64);
+        let most = configurations
+            .map(StabilityConfiguration::n_taxels)
+            .max()
+            .unwrap_or(0);
         Scale {
             objects: "a ball and a plunger".to_owned(),
             touches: format!("one a configuration, on up to {most} taxels"),
             n_configurations: self.configurations.len(),
-            item_bytes: TAXEL_BYTES * most as f64,
+            item_bytes: bytes.fold(0.0, f64::max),
             ..Scale::default()
         }
     }

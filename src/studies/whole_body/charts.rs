@@ -72,14 +72,33 @@ impl WholeBodyPlan {
         }));
         let skins = (0..steps.n_rows).filter(|&row| steps.word("series", row) == "skin");
         for rungs in steps.groups(&["touched"], skins) {
-            let (first, last) = (rungs[0], rungs[rungs.len() - 1]);
+            let n_taxels = |row: &usize| steps.number("n_taxels", *row);
+            let by_size = |a: &usize, b: &usize| n_taxels(a).total_cmp(&n_taxels(b));
+            let ends = (
+                rungs.iter().copied().min_by(by_size),
+                rungs.iter().copied().max_by(by_size),
+            );
+            let (Some(first), Some(last)) = ends else {
+                continue;
+            };
+            if n_taxels(&first) == n_taxels(&last) {
+                continue;
+            }
+            let touched = rungs
+                .iter()
+                .map(|&row| steps.number("touched_mean", row).round());
+            let fewest = touched.clone().fold(f64::INFINITY, f64::min);
+            let most = touched.fold(0.0, f64::max);
+            let touched = match fewest == most {
+                true => short_number(most),
+                false => format!("{} to {}", short_number(fewest), short_number(most)),
+            };
             let growth = steps.number("us_median", last) / steps.number("us_median", first);
-            let [taxels, touched, time] =
-                ["n_taxels", "touched", "us_median"].map(|name| steps.words(name, last));
+            let [smallest, taxels] = [first, last].map(|row| steps.words("n_taxels", row));
             answers.push(format!(
-                "From {} to {taxels} taxels with {touched} touched, the time of a step is {} times as long: {time} ({} steps/s).",
-                steps.words("n_taxels", first),
+                "From {smallest} to {taxels} taxels with {touched} touched, the time of a step is {} times as long: {} ({} steps/s).",
                 short_number((100.0 * growth).round() / 100.0),
+                steps.words("us_median", last),
                 short_number(steps.number("steps_per_s", last).round())
             ));
         }

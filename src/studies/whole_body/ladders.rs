@@ -13,14 +13,14 @@ use crate::world::{Extrusion, Oscillation, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Numbers of patches around and along a cylindrical sleeve of skin, in the scaling series of the skin. With ten patches of 10,000 taxels each, 100,000 taxels
-/// are one sleeve. The series of growing touches and of growing objects need a larger area, as large as a trunk.
-const SMALL: (usize, usize) = (5, 2);
-/// Numbers of patches around and along a cylindrical sleeve of skin, in the scaling series of the touch and of the object.
-const LARGE: (usize, usize) = (9, 4);
-/// Maximum fraction of a sleeve's taxels that the touching spheres may cover, 0 to 1. With a larger fraction, the square of spheres might not fit around the
-/// sleeve.
-const MAX_TOUCHED: f64 = 0.4;
+/// Numbers of patches around and along a cylindrical sleeve of skin, from the smallest to the largest sleeve. With ten patches of 10,000 taxels each, 100,000
+/// taxels are one sleeve. The series of growing touches and of growing objects begin with the second sleeve, which is as large as a trunk.
+const SLEEVES: [(usize, usize); 3] = [(5, 2), (9, 4), (18, 8)];
+/// Number of taxels of a patch on a skin that is larger than its first sleeve.
+const PATCH_TAXELS: usize = 10_000;
+/// Largest relative difference between the number of touched taxels that a size asks for and the measured mean. The depth is found at the start of the path; the
+/// mean over the path differs from it by about 1 %.
+const SAME_TOUCH: f64 = 0.05;
 /// Amplitude of the rotation of the square of spheres about the sleeve's axis, radians.
 const SWING: f64 = 0.05;
 /// Amplitude of the translation of the square of spheres along the sleeve, as a fraction of the side length of the square.
@@ -30,10 +30,11 @@ const PERIOD: f64 = 0.5;
 /// Number of bisections in the search for the press depth at which the required number of taxels is touched.
 const N_HALVINGS: usize = 40;
 
-/// One size in a scaling series: the numbers of taxels, of touched taxels and of spheres.
+/// One size in a scaling series: the numbers of taxels, of touched taxels and of spheres that the study asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ScalingPoint {
     pub series: Series,
+    /// Name of the work item.
     pub name: String,
     sleeve: (usize, usize),
     n_taxels: usize,
@@ -43,10 +44,9 @@ pub(super) struct ScalingPoint {
 
 /// Returns all sizes of all scaling series in the specification.
 pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
-    let small = SMALL.0 * SMALL.1 * 10_000;
     let mut rungs = Vec::new();
     for &n_touched in &wanted.touched_at_taxels {
-        let has_room = |n: &&usize| n_touched as f64 <= MAX_TOUCHED * small.min(**n) as f64;
+        let has_room = |n: &&usize| n_touched <= LaddersSpec::max_touched(**n);
         rungs.extend(
             wanted
                 .taxels
@@ -55,7 +55,7 @@ pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
                 .map(|&n_taxels| ScalingPoint {
                     series: Series::Skin,
                     name: format!("{n_taxels} taxels, {n_touched} touched"),
-                    sleeve: SMALL,
+                    sleeve: sleeve(&SLEEVES, n_touched),
                     n_taxels,
                     n_touched,
                     n_spheres: wanted.spheres[0],
@@ -65,7 +65,7 @@ pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
     let large = |series, name, n_touched, n_spheres| ScalingPoint {
         series,
         name,
-        sleeve: LARGE,
+        sleeve: sleeve(&SLEEVES[1..], n_touched),
         n_taxels: wanted.taxels_at_touch,
         n_touched,
         n_spheres,
@@ -79,6 +79,33 @@ pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
         large(Series::Spheres, name, wanted.touched_at_spheres, n)
     }));
     rungs
+}
+
+/// Returns the smallest of the given sleeves that has room for a touch of `n_touched` taxels, or the largest one.
+fn sleeve(sleeves: &[(usize, usize)], n_touched: usize) -> (usize, usize) {
+    let has_room = |(around, along): &&(usize, usize)| {
+        n_touched <= LaddersSpec::max_touched(around * along * PATCH_TAXELS)
+    };
+    let smallest = sleeves.iter().find(has_room);
+    *smallest.unwrap_or(&sleeves[sleeves.len() - 1])
+}
+
+impl ScalingPoint {
+    /// Returns the name of the measured case, and the number of touched taxels that cases of a series share. The number is the one that the study asks for,
+    /// unless the measured mean of `touched` differs from it.
+    fn measured(&self, n_taxels: usize, touched: f64) -> (String, usize) {
+        let asked = self.n_touched as f64;
+        let n_touched = match (touched - asked).abs() <= SAME_TOUCH * asked {
+            true => self.n_touched,
+            false => touched.round() as usize,
+        };
+        let name = match self.series {
+            Series::Skin => format!("{n_taxels} taxels, {n_touched} touched"),
+            Series::Touch => format!("{n_touched} touched"),
+            Series::Spheres | Series::Scene => self.name.clone(),
+        };
+        (name, n_touched)
+    }
 }
 
 /// Simulates one size of a scaling series and measures its computing times.
@@ -115,7 +142,11 @@ pub(super) fn climb(plan: &WholeBodyPlan, rung: &ScalingPoint) -> Result<Driven>
         }
     }
     drive.path = path.shifted(-deep * aim.from);
-    drive.run(plan, (rung.series, &rung.name), &[])
+    let mut driven = drive.run(plan, (rung.series, &rung.name), &[])?;
+    let (name, n_touched) = rung.measured(driven.case.n_taxels, driven.count.touched_mean);
+    driven.case.name = name;
+    driven.n_touched = Some(n_touched);
+    Ok(driven)
 }
 
 /// Cylinder covered with skin: the numbers of patches around and along it, and the side length of a patch, metres.
@@ -132,7 +163,8 @@ const APART: f64 = 1.0;
 impl Sleeve {
     /// Returns a sleeve of patches with 100 × 100 taxels each. If the skin has fewer taxels than such a sleeve, the patches are smaller.
     fn of_body(n_taxels: usize, (n_around, n_along): (usize, usize), pitch: f64) -> Self {
-        let a_patch = (n_taxels as f64 / (n_around * n_along) as f64).min(1e4);
+        let a_patch = n_taxels as f64 / (n_around * n_along) as f64;
+        let a_patch = a_patch.min(PATCH_TAXELS as f64);
         Self {
             n_around,
             n_along,

@@ -11,7 +11,7 @@ use crate::scene::{Movement, ObjectSpec, PlannedRobot, Reader};
 use crate::sensing::Ensemble;
 use crate::studies::recognition::spec::keys::shared_keys;
 use crate::studies::whole_body::spec::{
-    BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, WholeBodyStudySpec,
+    BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodyStudySpec,
 };
 use crate::world::{MeshFolders, Motion, Oscillation, Robot, Taxel};
 use glam::DVec3;
@@ -48,6 +48,19 @@ pub struct WholeBodyPlan {
     pub compressions: Vec<(String, Option<usize>)>,
     /// Target position and approach direction of the objects that are recognised.
     pub aim: Aim,
+    /// Size of the covered robot; zero until the study is loaded.
+    pub(super) size: BodySize,
+}
+
+/// Size of a robot that is covered with skin.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct BodySize {
+    /// Number of taxels; for very fine skins, extrapolated from a coarser skin.
+    pub n_taxels: f64,
+    /// Memory of the skin, bytes.
+    pub body_bytes: f64,
+    /// Memory of a state of the skin at rest, bytes.
+    pub state_bytes: f64,
 }
 
 /// Plan of a scene: an object, its motion, and the joint positions of the robot.
@@ -152,6 +165,10 @@ impl WholeBodyPlan {
         let compressions = check.compressions(&wanted.sensing)?;
         let n_measured = compressions.len() * wanted.sensing.measurements;
         check.body_recognition(&wanted.recognition, n_measured)?;
+        let ladders = wanted.ladders.iter();
+        ladders
+            .map(|ladders| check.touched_at_taxels(ladders))
+            .collect::<Result<()>>()?;
         let radius_mm = wanted.taxel_radius_mm.unwrap_or(0.5 * wanted.pitch_mm);
         Ok(Self {
             taxel: Taxel {
@@ -172,6 +189,7 @@ impl WholeBodyPlan {
             robot,
             robot_file,
             spec,
+            size: BodySize::default(),
         })
     }
 
@@ -270,6 +288,18 @@ fn direction(reader: &Reader, key: &str, from: [f64; 3]) -> Result<DVec3> {
 }
 
 impl Check<'_> {
+    /// Checks that each touch of the series of growing skins fits on at least one skin.
+    fn touched_at_taxels(&self, ladders: &LaddersSpec) -> Result<()> {
+        let most = LaddersSpec::max_touched(ladders.taxels.iter().copied().max().unwrap_or(0));
+        match ladders.touched_at_taxels.iter().find(|&&n| n > most) {
+            Some(n) => {
+                let allowed = format!("at most {most}, 40 % of the largest skin in ladders.taxels");
+                Err(self.error("whole_body.ladders.touched_at_taxels", n, allowed))
+            }
+            None => Ok(()),
+        }
+    }
+
     fn compressions(&self, wanted: &BodySensingSpec) -> Result<Vec<(String, Option<usize>)>> {
         let blocks = &wanted.sbhe_blocks;
         if let Some(block) = blocks.iter().find(|block| !block.is_power_of_two()) {

@@ -131,10 +131,11 @@ pub struct BodyStage {
 row! {
 /// Number of touched taxels in steps that are timed with all threads in use. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
 pub struct BodyTouch {
-    /// Number of deflected taxels per step, averaged over all steps and rounded to two digits.
-    touched: f64 => Condition "touched taxels, about": Log;
+    /// Number of touched taxels of a size of a scaling series as the study asks for it, if `touched_mean` differs from it by at most 5 %. Otherwise, and for
+    /// scenes, `touched_mean` rounded to a whole number.
+    touched: f64 => Condition "touched taxels": Log;
     /// Number of deflected taxels per step, averaged over all steps.
-    touched_mean: f64 => Note "touched taxels": Log;
+    touched_mean: f64 => Note "mean of touched taxels": Log;
 } }
 
 row! {
@@ -162,6 +163,9 @@ pub struct Driven {
     pub times: Vec<(BodyStage, StepTime)>,
     /// Recognition results of the case, one for each compression.
     pub sensed: Vec<BodySensed>,
+    /// Number of touched taxels that the sizes of a scaling series share; `None` for a scene.
+    #[serde(default)]
+    pub n_touched: Option<usize>,
 }
 
 /// Results of all work items: recognition accuracies of compressions, and results of scenes and scaling series.

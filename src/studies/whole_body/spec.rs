@@ -127,11 +127,12 @@ pub struct BodyRecognitionSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LaddersSpec {
-    /// Total number of taxels of each skin in the series of growing skins.
+    /// Approximate total number of taxels of each skin in the series of growing skins. Tables list the actual numbers.
     pub taxels: Vec<usize>,
-    /// Approximate numbers of touched taxels in the series in which the skin grows. Each skin is timed with each number that it is large enough for.
+    /// Approximate numbers of touched taxels in the series in which the skin grows, each at most 40 % of the largest skin. Each skin is timed with each number
+    /// that is at most 40 % of its taxels.
     pub touched_at_taxels: Vec<usize>,
-    /// Approximate numbers of touched taxels in the scaling series of the touch.
+    /// Approximate numbers of touched taxels in the scaling series of the touch. A size that the skin cannot reach has its measured number in tables.
     pub touched: Vec<usize>,
     /// Numbers of spheres of the object in the scaling series of the object; half of the spheres are on the side away from the skin. The series of growing
     /// skins and of growing touches use the first number.
@@ -140,6 +141,14 @@ pub struct LaddersSpec {
     pub touched_at_spheres: usize,
     /// Number of taxels of the skin in the scaling series of the touch and of the object.
     pub taxels_at_touch: usize,
+}
+
+impl LaddersSpec {
+    /// Returns the largest number of touched taxels on a skin of `n_taxels` taxels, which is 40 % of them. The square of spheres of a larger touch might not fit
+    /// around the skin.
+    pub(super) fn max_touched(n_taxels: usize) -> usize {
+        (0.4 * n_taxels as f64) as usize
+    }
 }
 
 impl BodyRecognitionSpec {

@@ -116,6 +116,7 @@ impl Drive<'_> {
             count: count(steps, n_bytes as f64 / self.body.n_taxels() as f64),
             times,
             sensed: decided,
+            n_touched: None,
         })
     }
 }

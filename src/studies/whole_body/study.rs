@@ -17,7 +17,7 @@ use crate::studies::whole_body::drive::{Drive, Posture};
 use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
 use crate::studies::whole_body::objects::of_scene;
 use crate::studies::whole_body::plan::whole_body_keys;
-use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
+use crate::studies::whole_body::plan::{BodySize, ScenePlan, WholeBodyPlan};
 use crate::studies::whole_body::recognition::learn;
 use crate::studies::whole_body::rows::{
     BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStage, BodyTouch, Series, StepTime,
@@ -25,7 +25,7 @@ use crate::studies::whole_body::rows::{
 };
 use crate::studies::whole_body::spec::WholeBodyStudySpec;
 use crate::table::{File, Table};
-use crate::whole_body::CoveredRobot;
+use crate::whole_body::{BodyState, CoveredRobot};
 use std::collections::BTreeMap;
 
 const CASES: File<(BodyCase, BodyCount)> =
@@ -78,7 +78,11 @@ impl Study for WholeBodyPlan {
         source.refuse_objects("a whole body is touched by the objects that its study names")?;
         let mut spec = WholeBodyStudySpec::parse(&source.place, &source.text)?;
         spec.seed = source.seed(spec.seed);
-        Self::new(&source.place, &source.folder, spec)
+        let plan = Self::new(&source.place, &source.folder, spec)?;
+        Ok(Self {
+            size: plan.body_size()?,
+            ..plan
+        })
     }
 
     fn facts(&self) -> Result<Facts> {
@@ -102,12 +106,8 @@ impl Study for WholeBodyPlan {
     }
 
     fn scale(&self) -> Scale {
-        // Memory of a taxel: its position and the columns of its compressions.
-        const TAXEL_BYTES: f64 = 150.0;
-        // Approximate area of a body, square metres.
-        const AREA: f64 = 2.0;
         let n_objects = self.recognition().objects.len();
-        let n_taxels = AREA / (self.pitch * self.pitch);
+        let n_taxels = self.size.n_taxels;
         Scale {
             objects: format!("{n_objects} to tell apart, {} scenes", self.scenes.len()),
             touches: format!(
@@ -115,7 +115,7 @@ impl Study for WholeBodyPlan {
                 self.recognition().n_touches()
             ),
             n_configurations: self.compressions.len() + self.scenes.len(),
-            bytes: TAXEL_BYTES * n_taxels,
+            bytes: self.memory(),
             ..Scale::default()
         }
     }
@@ -175,7 +175,9 @@ impl Study for WholeBodyPlan {
         let (mut cases, mut times, mut steps) = (Vec::new(), Vec::new(), Vec::new());
         for of in driven {
             let touch = BodyTouch {
-                touched: round_to_two(of.count.touched_mean),
+                touched: of
+                    .n_touched
+                    .map_or(of.count.touched_mean.round(), |n| n as f64),
                 touched_mean: of.count.touched_mean,
             };
             steps.push((of.case.clone(), touch, of.times[0].1.clone()));
@@ -208,16 +210,64 @@ impl Study for WholeBodyPlan {
     }
 }
 
-/// Rounds a number to two significant digits; for example, 10,008 taxels become 10,000.
-fn round_to_two(value: f64) -> f64 {
-    let unit = 10f64.powf(value.max(1.0).log10().floor() - 1.0);
-    (value / unit).round() * unit
-}
+/// Maximum number of taxels of a skin that is made to determine its size. The size of a finer skin is extrapolated from a skin of at least a quarter of this
+/// number.
+const MAX_COUNTED: usize = 4_000_000;
 
 impl WholeBodyPlan {
+    /// Returns the size of the covered robot.
+    ///
+    /// # Errors
+    /// If the robot cannot be covered.
+    fn body_size(&self) -> Result<BodySize> {
+        // Coarser skins come first, so that a much too fine skin is never made.
+        let mut pitch = self.pitch.max(self.side);
+        loop {
+            let covered = self.cover(pitch);
+            // A coarse skin may have no place on a small link.
+            let n_taxels = covered
+                .as_ref()
+                .map_or(0, |covered| covered.body().n_taxels());
+            if pitch > self.pitch && n_taxels < MAX_COUNTED / 4 {
+                pitch = self.pitch.max(0.5 * pitch);
+                continue;
+            }
+            let covered = covered?;
+            let (body, finer) = (covered.body(), (pitch / self.pitch).powi(2));
+            return Ok(BodySize {
+                n_taxels: finer * body.n_taxels() as f64,
+                body_bytes: finer * body.n_bytes() as f64,
+                state_bytes: finer * BodyState::at_rest(body).n_bytes() as f64,
+            });
+        }
+    }
+
     fn rungs(&self) -> Vec<ScalingPoint> {
         let ladders = self.spec.whole_body.ladders.as_ref();
         ladders.map_or_else(Vec::new, rungs)
+    }
+
+    /// Returns the approximate memory of the skins, the compressions and the pictures, bytes.
+    fn memory(&self) -> f64 {
+        // Memory of the picture of the body, and part of the memory of every study that is needed for its pictures alone.
+        const PICTURE_BYTES: f64 = 7e7;
+        const DRAWING_BYTES: f64 = 1.35e8;
+        // Memory of a taxel of a scaling series, and of a non-zero entry of a measurement matrix.
+        const LADDER_BYTES: f64 = 10.0;
+        const ENTRY_BYTES: f64 = 16.0;
+        let m = self.spec.whole_body.sensing.measurements as f64;
+        let n = self.size.n_taxels;
+        let compressions = self.compressions.iter().map(|(_, block)| {
+            let entries = block.map_or(n.sqrt(), |block| (block as f64).min(n));
+            4.0 * n + ENTRY_BYTES * m * entries
+        });
+        let rows = 8.0 * m * (self.compressions.len() * self.recognition().n_touches()) as f64;
+        let ladders = self.spec.whole_body.ladders.iter();
+        let ladders = ladders.flat_map(|of| of.taxels.iter().chain([&of.taxels_at_touch]));
+        let largest = ladders.copied().max().unwrap_or(0) as f64;
+        let states = self.size.state_bytes * rayon::current_num_threads() as f64;
+        let measured = states + compressions.sum::<f64>() + rows + LADDER_BYTES * largest;
+        self.size.body_bytes + PICTURE_BYTES.max(measured - DRAWING_BYTES)
     }
 
     /// Returns the robot covered with skin, whose neighbouring taxels are `pitch` metres apart.

@@ -197,3 +197,32 @@ fn conditions_of_the_world_are_given_and_never_advised() {
         assert!(error.contains(said), "{given}: {error}");
     }
 }
+
+#[test]
+fn training_touches_that_follow_the_split_are_no_choice() {
+    let case = Case::new();
+    let study = "question = \"?\"\ntrials = 2\n[objects]\nsets = [\"cans\"]\n[skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n\
+         [touches]\noffset_x_mm = { grid = [-6.0, 6.0, 4] }\nyaw_deg = { grid = [0.0, 45.0, 4] }\ndepth_mm = 3.0\n\
+         [recognition]\nclassifier = [\"linear_svm\", \"nearest_centroid\"]\n";
+    let axes = "[axes]\n\"recognition.split\" = [\"random\", \"half_of_yaws\"]\n";
+    case.file("study.toml", format!("{study}{axes}"));
+    case.succeeds(&["run", "study.toml", "--out", "found"]);
+    let advice = json(&case, &["--max-measurements", "64", "--worst"]);
+    let answer = &advice["answers"][0];
+    assert_eq!(answer["n_left_out"], 0, "{advice}");
+    let setting = answer["choice"]["setting"].as_str().unwrap();
+    assert!(
+        setting.starts_with("classifier ") && !setting.contains("training"),
+        "{setting}"
+    );
+    // A value together with a limit of its cost.
+    for arguments in [["--reach", "0.01"], ["--accuracy", "0.01"]] {
+        let arguments = [&["advise", "found", "--budget", "1e-6"][..], &arguments].concat();
+        let error = refused(&case, &arguments);
+        assert!(
+            error.contains("in none of 2 conditions; with poses held out random: "),
+            "{error}"
+        );
+        assert!(error.contains("limit of time of a decision"), "{error}");
+    }
+}

@@ -293,7 +293,8 @@ fn keys_that_are_out_of_range_are_named_with_their_part() {
 }
 
 #[test]
-fn rows_of_other_programs_stand_in_the_parts_that_ask_for_such_cells() {
+fn rows_of_other_programs_stand_in_the_parts_that_contain_their_scenes_and_other_rows_are_refused()
+{
     let case = Case::new();
     let study = QUICK.replacen(
         "question = \"What breaks?\"",
@@ -303,12 +304,13 @@ fn rows_of_other_programs_stand_in_the_parts_that_ask_for_such_cells() {
     case.file("study.toml", &study);
     let (without, _) = case.succeeds(&["run", "study.toml", "--out", "without"]);
     assert!(!without.contains("MuJoCo"), "no file, no rows: {without}");
+    let said = "No rows of other programs: peers.csv does not exist.";
+    assert!(without.contains(said), "{without}");
     let header = "part,scene,method,solver_iterations,taxels,stiffness_n_per_m,taxel_mass_kg,object_mass_kg,dt_s,mass_ratio,\
                   explicit_limit_s,damping_n_s_per_m,contact_stiffness_n_per_m,outcome,force_imbalance,deflection_error,n_steps,\
-                  simulated_s,wall_s,per_simulated_s,program,version,date\n";
-    let asked = "1,rest,mujoco_discrete,,8,10,1e-7,1e-3,1e-3,1e4,2e-4,0.1,,right,1e-9,2e-5,500,0.5,1.0,2.0,MuJoCo,4.0.0,2026-11-22\n";
-    let foreign = asked.replace("8,10,", "8,77,");
-    case.file("peers.csv", format!("{header}{asked}{foreign}"));
+                  simulated_s,wall_s,per_simulated_s,pitch_mm,stroke_mm,program,version,date\n";
+    let asked = "1,rest,mujoco_discrete,,8,10,1e-7,1e-3,1e-3,1e4,2e-4,0.1,,right,1e-9,2e-5,500,0.5,1.0,2.0,4,2,MuJoCo,4.0.0,2026-11-22\n";
+    case.file("peers.csv", format!("{header}{asked}"));
     let (with, _) = case.succeeds(&["run", "study.toml", "--out", "with"]);
     assert!(with.contains("MuJoCo"), "{with}");
     let configurations: Vec<StabilityConfiguration> =
@@ -321,14 +323,50 @@ fn rows_of_other_programs_stand_in_the_parts_that_ask_for_such_cells() {
     assert!(svg.contains("MuJoCo 4.0.0, 2026-11-22"));
     let press = fs::read_to_string(case.path("with/stability_press.svg")).unwrap();
     assert!(!press.contains("MuJoCo"));
-    case.file(
-        "peers.csv",
-        format!("{header}{}", asked.replace("right", "fine")),
-    );
-    let output = case.run(&["run", "study.toml", "--out", "broken"]);
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(error.contains("peers.csv: line 2"), "{error}");
+    // A row belongs to a scene, in whichever part it stands.
+    let (before, parts) = study.split_once("[[stability.parts]]").unwrap();
+    let inserted = "[[stability.parts]]\nscene = \"press\"\nmethods = [\"quasi_static\"]\ntaxels = 4\nstiffness_n_per_m = 5.0\n\
+                    taxel_mass_kg = 1e-3\ndt_s = 1e-2\n\n";
+    let inserted = format!("{before}{inserted}[[stability.parts]]{parts}");
+    case.file("inserted.toml", inserted);
+    case.succeeds(&["run", "inserted.toml", "--out", "inserted"]);
+    let read = |folder: &str| -> Vec<StabilityConfiguration> {
+        read_rows(&case.path(folder).join("stability.csv")).unwrap()
+    };
+    let mut moved = read("inserted");
+    moved.retain(|one| one.method.is_peer());
+    assert_eq!((moved.len(), moved[0].part), (1, 2));
+    let refused = |study: &str, rows: &str, line: &str| {
+        case.file("study.toml", study);
+        case.file("peers.csv", format!("{header}{rows}"));
+        let output = case.run(&["run", "study.toml", "--out", "broken"]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{rows}: {error}");
+        assert!(
+            error.contains("peers.csv: ") && error.contains(line),
+            "{rows}: {error}"
+        );
+    };
+    refused(&study, &asked.replace("right", "fine"), "line 2");
+    for (old, new) in [
+        ("8,10,", "8,77,"),
+        ("2.0,4,2,", "2.0,5,2,"),
+        ("2.0,4,2,", "2.0,4,3,"),
+        ("1e-7,1e-3,1e-3", "1e-7,1e-3,1.1e-3"),
+        ("mujoco_discrete", "quasi_static"),
+    ] {
+        assert!(asked.contains(old));
+        refused(
+            &study,
+            &format!("{asked}{}", asked.replace(old, new)),
+            "line 3",
+        );
+    }
+    refused(&study, &format!("{asked}{asked}"), "line 3");
+    let deeper = study.replacen("scene = \"rest\"", "scene = \"rest\"\nstroke_mm = 3.0", 1);
+    refused(&deeper, asked, "line 2");
+    let coarser = study.replacen("peers =", "pitch_mm = 5.0\npeers =", 1);
+    refused(&coarser, asked, "line 2");
     let study = QUICK.replacen("\"semi_implicit\"", "\"mujoco_euler\"", 1);
     case.file("study.toml", &study);
     let output = case.run(&["run", "study.toml"]);

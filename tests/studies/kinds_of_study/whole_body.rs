@@ -185,6 +185,49 @@ fn tables_obey_their_laws() {
 }
 
 #[test]
+fn scaling_points_are_named_and_grouped_by_what_was_measured() {
+    let changed = STUDY
+        .replace("taxels = [2000, 20000]", "taxels = [20000, 5000, 2000]")
+        .replace(
+            "touched_at_taxels = [200, 900]",
+            "touched_at_taxels = [200, 6000]",
+        )
+        .replace("touched = [100, 400]", "touched = [100, 30000]")
+        .replace("steps = 20", "steps = 5");
+    let case = case(&changed);
+    let (said, _) = case.succeeds(&["plan", "study.toml"]);
+    assert!(said.contains("on a body of about 18118 taxels"), "{said}");
+    let (said, _) = case.succeeds(&["run", "study.toml", "--out", "1"]);
+    let path = case.path("1/steps.csv");
+    let cases: Vec<BodyCase> = read_rows(&path).unwrap();
+    let steps: Vec<BodyTouch> = read_rows(&path).unwrap();
+    let number = |text: &str| -> f64 { text.split(' ').next().unwrap().parse().unwrap() };
+    let mut groups = Vec::new();
+    for (case, step) in cases.iter().zip(&steps) {
+        let about = format!("{case:?} {step:?}");
+        match case.series {
+            Series::Touch => {
+                let named = number(&case.name);
+                assert!((named / step.touched_mean - 1.0).abs() <= 0.05, "{about}");
+            }
+            Series::Skin => {
+                assert_eq!(number(&case.name), case.n_taxels as f64, "{about}");
+                let (_, touched) = case.name.split_once(", ").unwrap();
+                assert_eq!(number(touched), step.touched, "{about}");
+                groups.push(step.touched);
+            }
+            _ => {}
+        }
+    }
+    // Of the sizes of one touch, all belong to one group; no growth is stated for a single size.
+    assert_eq!(groups[..3], [200.0; 3]);
+    assert_eq!(groups.len(), 4);
+    assert_eq!(said.matches("the time of a step is").count(), 1, "{said}");
+    let smallest = cases.iter().map(|case| case.n_taxels).min().unwrap();
+    assert!(said.contains(&format!("From {smallest} to ")), "{said}");
+}
+
+#[test]
 fn a_study_of_a_body_takes_no_objects_and_misses_none() {
     let case = case(STUDY);
     for command in ["plan", "run"] {
@@ -307,6 +350,11 @@ fn keys_of_a_body_study_that_are_out_of_range_are_named() {
             "training_touches = 20",
             "training_touches = 0",
             "key whole_body.recognition.training_touches: 0",
+        ),
+        (
+            "touched_at_taxels = [200, 900]",
+            "touched_at_taxels = [200, 9000]",
+            "key whole_body.ladders.touched_at_taxels: 9000; at most 8000",
         ),
         (
             "touched = [100, 400]",

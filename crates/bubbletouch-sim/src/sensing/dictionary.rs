@@ -9,7 +9,7 @@ use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, ArrayViewMut2, Axis, s}
 use serde::{Deserialize, Serialize};
 
 /// Default number of components of a PCA dictionary.
-const PCA_ATOMS: usize = 256;
+pub const PCA_ATOMS: usize = 256;
 
 /// Basis from which the atoms of a dictionary are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]

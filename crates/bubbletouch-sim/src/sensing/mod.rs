@@ -77,7 +77,7 @@ mod wavelet;
 
 pub use coherence::{Coherence, Extremes};
 pub use columns::Columns;
-pub use dictionary::{Basis, Dictionary, Energy};
+pub use dictionary::{Basis, Dictionary, Energy, PCA_ATOMS};
 pub use ensembles::{
     Adapt, Draw, Ensemble, EnsembleAbout, Learn, Operator, Source, TrainingFrames,
 };

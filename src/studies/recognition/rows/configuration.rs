@@ -71,7 +71,8 @@ pub struct Configuration {
     frame_values: usize => hidden;
     /// Numbers of rows and columns of the images that represent frames of the array, one for each sensor.
     image_shapes: Vec<(usize, usize)> => hidden;
-    /// Side length of the array along x, mm: number of columns nx times the pitch.
+    /// Side length of the array along x, mm: number of columns times the pitch. For a layout other than a grid, the side length of the square grid with the same
+    /// pitch that defines its size.
     size_mm: f64 => always of "skin.size_mm";
     /// Noise standard deviation of a taxel's reading, in `noise_unit`.
     noise_std: f64 => always of "signal.noise_std_full_scale";
@@ -109,7 +110,8 @@ pub struct Configuration {
     classifier: ClassifierKind => always of "recognition.classifier";
     /// Penalty C of the classifier; empty if C is chosen by cross-validation or the classifier has no C.
     c: Option<f64> => always of "recognition.c";
-    /// Maximum number of training touches per object in the configuration.
+    /// Maximum number of training touches per object in the configuration. Without the key, the smallest number of training touches of an object in any trial;
+    /// all training touches are then used.
     train_touches: usize => always of "recognition.train_touches";
     /// Fraction of the training touches that are labelled as another object, 0 to 1. The column is present only if the study has the key.
     mislabelled_fraction: Option<f64> => if_given of "recognition.mislabelled_fraction";

@@ -24,8 +24,8 @@ pub struct TrialScore {
     /// trials repeat splits, as splits by pose do if there are more trials than parts. Statistical tests count all trials of a split once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     distinct_split: Option<usize> => Note "same split as": Linear, optional;
-    /// Number of training rows (readings of training touches) of the trial.
-    n_train: usize => Note "training rows": Linear;
+    /// Number of training touches of the trial, over all objects. Further readings and tilted copies of a touch are not counted.
+    n_train: usize => Note "touches trained on": Linear;
     /// Number of test rows of the trial. A test row is a group of `touches_per_decision` test touches.
     n_test: usize => Note "test rows": Linear;
     /// Number of test touches, over all objects, that do not fill a complete group of `touches_per_decision` touches.

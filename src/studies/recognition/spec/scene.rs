@@ -27,7 +27,7 @@ pub struct SkinSpec {
     /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and two forces across it).
     pub sensed: Option<SensedSpec>,
     /// Friction coefficient μ ≥ 0 between taxels and object, with `sensed = "shear"`. Friction acts only if taxels move along the object, in a slide or on a
-    /// curved layout. The taxels of a flat array that is pressed straight on do not slip.
+    /// curved layout. The taxels of a flat array that is pressed straight on do not slip. Default: 0.
     pub friction: Option<f64>,
     /// Tangential stiffness k_t of a taxel, N/m, positive; used with `friction`. Default: the stiffness along the axis.
     pub shear_stiffness_n_per_m: Option<f64>,

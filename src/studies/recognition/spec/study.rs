@@ -205,7 +205,7 @@ pub struct RecognitionSpec {
     pub folds: Option<usize>,
     /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If the
     /// values are drawn (`{ uniform = … }`), touches of an object that are connected by a chain of neighbours form a group. Neighbours differ by less than
-    /// `group_by_mm` and `group_by_deg` on each drawn axis.
+    /// `group_by_mm` and `group_by_deg` on each drawn axis. Default: no groups.
     pub group_by: Option<GroupSpec>,
     /// Distance below which two drawn offsets or depths are neighbours, mm, positive; used with `group_by`.
     pub group_by_mm: Option<f64>,

@@ -12,13 +12,14 @@ use crate::studies::recognition::spec::keys::recognition_keys;
 use crate::studies::recognition::spec::pose_split::{GroupSpec, PoseSplit};
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::studies::recognition::study::load::load_study;
-use crate::studies::recognition::study::recognition_study::{Family, RecognitionStudy};
+use crate::studies::recognition::study::recognition_study::{Family, RecognitionStudy, distinct};
 use crate::studies::recognition::study::rows::RecognitionRows;
 use crate::studies::recognition::sweep::configurations::StudyPart;
 use crate::studies::recognition::training::evaluation_inputs::{FamilyInputs, family_name};
 use crate::studies::source::Source;
 use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{ChartSpec, Table};
+use std::collections::HashSet;
 
 /// Names of the tables and columns that contain the intervals of accuracies.
 const ACCURACIES: &str = "accuracy.csv, summary.csv: accuracy_low, accuracy_high";
@@ -229,17 +230,40 @@ impl RecognitionStudy {
     }
 
     pub(crate) fn sections(&self, tables: &[Table]) -> Result<Vec<Section>> {
-        let row = |name: &str, value: String| (name.to_owned(), value);
-        let first = self.first();
-        let spec = &first.plan.spec;
-        let mut settings = first.touched.settings();
-        settings.extend([
-            row("Touches", first.sweep.labels.len().to_string()),
-            row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
-            row("Split", split_words(spec)),
-            row("Trials", spec.trials.to_string()),
-            row("Seed", spec.seed.to_string()),
-        ]);
+        let mut settings: Vec<(String, String)> = Vec::new();
+        let mut add = |name: &str, value: String| settings.push((name.to_owned(), value));
+        let of_touches: Vec<_> = self
+            .parts()
+            .iter()
+            .map(|part| part.touched.settings())
+            .collect();
+        let mut names: Vec<&String> = of_touches.iter().flatten().map(|(name, _)| name).collect();
+        let mut known = HashSet::new();
+        names.retain(|name| known.insert(*name));
+        for name in names {
+            let value = |settings: &Vec<(String, String)>| {
+                let own = settings.iter().find(|(other, _)| other == name);
+                own.map_or("none".to_owned(), |(_, value)| value.clone())
+            };
+            add(name, distinct(of_touches.iter().map(value)));
+        }
+        let of_spec =
+            |value: fn(&StudySpec) -> String| self.of_parts(|part| value(&part.plan.spec));
+        add(
+            "Touches",
+            self.of_parts(|part| part.sweep.labels.len().to_string()),
+        );
+        add(
+            "Stroke",
+            of_spec(|spec| format!("{} mm", spec.skin.stroke_mm)),
+        );
+        add("Split", of_spec(split_words));
+        match self.test_keys() {
+            keys if keys.is_empty() => {}
+            keys => add("Test touches differ in", keys),
+        }
+        add("Trials", self.n_trials().to_string());
+        add("Seed", of_spec(|spec| spec.seed.to_string()));
         charts::sections(&settings, &gallery(self.samples()?), tables)
     }
 

@@ -201,6 +201,24 @@ impl RecognitionStudy {
         &self.parts
     }
 
+    /// Returns the distinct values of a property of the study's parts as text; see [`distinct`].
+    pub(crate) fn of_parts(&self, value: impl Fn(&StudyPart) -> String) -> String {
+        distinct(self.parts.iter().map(value))
+    }
+
+    /// Returns the keys of the table `[test]` with their values as text, without the keys that are axes; empty if there are none.
+    pub(crate) fn test_keys(&self) -> String {
+        let spec = &self.first().plan.spec;
+        let mut keys = Vec::new();
+        leaves("test", &spec.test, &mut keys);
+        keys.retain(|(key, _)| !spec.axes.has(key));
+        let keys: Vec<String> = keys
+            .iter()
+            .map(|(key, value)| format!("{key} = {value}"))
+            .collect();
+        keys.join(", ")
+    }
+
     /// Returns the part of the study that contains the configuration with this number; the last part if no part contains it.
     pub fn part_of(&self, configuration: usize) -> &StudyPart {
         let has_it = |part: &&StudyPart| {
@@ -437,8 +455,37 @@ impl RecognitionStudy {
     /// Returns the sample touches for pictures, from the first combination of the values in `[axes]`.
     pub(crate) fn samples(&self) -> Result<&Samples> {
         let first = self.first();
-        let make = || first.touched.samples(&first.plan, &first.sweep.groups);
-        self.samples.get(make)
+        self.samples.get(|| {
+            let mut samples = first.touched.samples(&first.plan, &first.sweep.groups)?;
+            if self.parts.len() > 1 {
+                let pictures = std::iter::once(&mut samples.shown).chain(&mut samples.each);
+                pictures.for_each(|one| one.caption += ", at the first value of each axis");
+            }
+            Ok(samples)
+        })
+    }
+}
+
+/// Returns the distinct texts in the order of their first occurrence. Of more than eight texts, only the first and the last are listed.
+pub(crate) fn distinct(texts: impl Iterator<Item = String>) -> String {
+    let mut known = HashSet::new();
+    let texts: Vec<String> = texts.filter(|text| known.insert(text.clone())).collect();
+    match &texts[..] {
+        [first, .., last] if texts.len() > 8 => {
+            format!("{} values from {first} to {last}", texts.len())
+        }
+        _ => texts.join("; "),
+    }
+}
+
+/// Appends the values of a TOML table and of its subtables, each with its path below `prefix`.
+fn leaves<'t>(prefix: &str, table: &'t toml::Table, found: &mut Vec<(String, &'t toml::Value)>) {
+    for (name, value) in table {
+        let path = format!("{prefix}.{name}");
+        match value {
+            toml::Value::Table(inner) => leaves(&path, inner, found),
+            value => found.push((path, value)),
+        }
     }
 }
 

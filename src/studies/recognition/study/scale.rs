@@ -59,16 +59,20 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
     let n_made = |(part, _): Placed| 1.0 + f64::from(u8::from(part.plan.tested.is_some()));
     let frames = groups().map(|g| n_made(g) * n_frames(g) * (most_bytes(n_values(g)) + 16) as f64);
     let frames = largest(frames);
-    let first = study.first();
-    let n_touches = first.sweep.labels.len();
+    let n_touches = study.of_parts(|part| part.sweep.labels.len().to_string());
+    let mut touches = match study.n_arrays() {
+        1 => format!("{n_touches} on one array"),
+        n => format!("{n_touches} on each of {n} arrays"),
+    };
+    match study.test_keys() {
+        keys if keys.is_empty() => {}
+        keys => touches += &format!("; test touches with {keys}"),
+    }
     Scale {
-        objects: first.touched.class_names().len().to_string(),
-        touches: match study.n_arrays() {
-            1 => format!("{n_touches} on one array"),
-            n => format!("{n_touches} on each of {n} arrays"),
-        },
+        objects: study.of_parts(|part| part.touched.class_names().len().to_string()),
+        touches,
         n_configurations: study.n_configurations(),
-        bytes: frames + CELL_BYTES * (study.n_configurations() * first.plan.spec.trials) as f64,
+        bytes: frames + CELL_BYTES * (study.n_configurations() * study.n_trials()) as f64,
         // While a thread is blocked by other threads, it computes another group. Two items can therefore be in memory.
         item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
     }
