@@ -193,11 +193,14 @@ fn plan_and_page_state_all_values_of_an_axis_and_what_test_touches_differ_in() {
     let test = "[test]\nsignal.noise_std_n = 0.02\ntouches.depth_mm = 1.5\n";
     case.file(
         "study.toml",
-        format!("{HEAD}{rest}[recognition]\n{test}[axes]\n{axes}"),
+        format!("{HEAD}{rest}[recognition]\nclassifier = \"linear_svm\"\n{test}[axes]\n{axes}"),
     );
     let (said, _) = case.succeeds(&["plan", "study.toml"]);
     let differs = "test.signal.noise_std_n = 0.02, test.touches.depth_mm = 1.5";
-    assert!(said.contains("  touches  24; 36 on each of "), "{said}");
+    assert!(
+        said.contains("  touches  24; 36 on each of 2 arrays; "),
+        "{said}"
+    );
     assert!(
         said.contains(&format!("; test touches with {differs}")),
         "{said}"

@@ -247,10 +247,13 @@ impl RecognitionStudy {
             .sum()
     }
 
-    /// Returns the number of arrays on which touches are simulated.
+    /// Returns the number of different arrays on which touches are simulated.
     pub fn n_arrays(&self) -> usize {
         let made = (0..self.touch_sets.len()).map(|touches| self.made_on(touches));
-        let arrays = made.map(|(part, array, _)| (part, array));
+        let arrays = made.map(|(part, array, _)| {
+            let array = &self.parts[part].plan.arrays[array];
+            format!("{array:?}")
+        });
         arrays.collect::<HashSet<_>>().len()
     }
 
