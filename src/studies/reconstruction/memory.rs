@@ -4,7 +4,7 @@ use crate::sensing::{Basis, PCA_ATOMS, Solver};
 use crate::studies::reconstruction::plan::ReconstructionPlan;
 
 /// Memory of the picture of sample frames, bytes.
-const PICTURE_BYTES: f64 = 2e7;
+const PICTURE_BYTES: f64 = 4e7;
 /// Part of the memory of every study that is needed for its pictures alone, bytes. The matrices of the configurations are freed before.
 const DRAWING_BYTES: f64 = 1.6e8;
 

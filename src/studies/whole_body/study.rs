@@ -250,8 +250,8 @@ impl WholeBodyPlan {
     /// Returns the approximate memory of the skins, the compressions and the pictures, bytes.
     fn memory(&self) -> f64 {
         // Memory of the picture of the body, and part of the memory of every study that is needed for its pictures alone.
-        const PICTURE_BYTES: f64 = 7e7;
-        const DRAWING_BYTES: f64 = 1.35e8;
+        const PICTURE_BYTES: f64 = 9e7;
+        const DRAWING_BYTES: f64 = 1.15e8;
         // Memory of a taxel of a scaling series, and of a non-zero entry of a measurement matrix.
         const LADDER_BYTES: f64 = 10.0;
         const ENTRY_BYTES: f64 = 16.0;
