@@ -144,7 +144,9 @@ fn a_default_in_words_is_the_default_of_the_reader_and_no_choice_of_words_lacks_
                     assert_eq!(number, default, "{name}: {meaning}");
                     n_numbers += 1;
                 }
-                let is_choice = key["enum"].is_array() && !meaning.starts_with("Another name of");
+                let is_other =
+                    meaning.starts_with("Another name of") || meaning.contains("instead of");
+                let is_choice = key["enum"].is_array() && !is_other;
                 if is_choice && key["default"].is_null() && !required.contains(&&name[..]) {
                     let states = meaning.to_lowercase().contains("default");
                     assert!(states, "{name}: {meaning}");
