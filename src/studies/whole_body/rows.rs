@@ -133,9 +133,9 @@ row! {
 pub struct BodyTouch {
     /// Number of touched taxels of a size of a scaling series as the study asks for it, if `touched_mean` differs from it by at most 5 %. Otherwise, and for
     /// scenes, `touched_mean` rounded to a whole number.
-    touched: f64 => Condition "touched taxels": Log;
+    touched: f64 => Condition "touched taxels, about": Log;
     /// Number of deflected taxels per step, averaged over all steps.
-    touched_mean: f64 => Note "mean of touched taxels": Log;
+    touched_mean: f64 => Note "touched taxels": Log;
 } }
 
 row! {
