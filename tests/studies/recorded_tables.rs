@@ -116,6 +116,11 @@ fn every_reader_finds_the_readings_of_tables_of_pandas_and_of_loggers() {
                 format!("{touch},{touch},{cells}")
             }),
         ),
+        ("numbers of chosen columns", table("3,5,6,12", plain)),
+        (
+            "an index of adjacent rows without a header",
+            table("", |touch, cells| format!("{},{cells}", touch + 70)),
+        ),
         (
             "an index of chosen rows",
             table(",0,1,2,3", |touch, cells| {

@@ -1,11 +1,11 @@
 //! Tables in text files: `.csv`, `.tsv` and `.txt` with a row in each line. Separators are tabs, semicolons, commas or spaces.
 //!
 //! **First line.** The first line is a header if it has a text above a column of numbers. Numbers 0 … k − 1 (or 1 … k) in the first line are a header, too;
-//! pandas writes them as the names of k columns. If the number of rows is known, such a line is a header only if the table has one line more than rows.
+//! pandas writes them as the names of k columns. Chosen columns have ascending whole numbers above readings with fractions. If the number of rows is known, such a line is a header only if the table has one line more than rows.
 //! A first line of texts above texts is then a header, too.
 //!
 //! **Columns that are left out.** A column without a name, or with the name `Unnamed: …` of pandas, is left out. A column that counts the rows from 0 or 1 is an
-//! index and is left out; the count may begin again with each touch. An empty column behind the last separator of all lines is no column. A note states what
+//! index and is left out; the count may begin again with each touch. So is a column of at least 8 consecutive integers. An empty column behind the last separator of all lines is no column. A note states what
 //! was left out.
 //!
 //! **Readings.** The columns of frames have names of one family (module `column_names`), or match given patterns.
@@ -17,6 +17,9 @@ use std::path::Path;
 
 /// Minimum number of consecutive integers that are a count of rows. With a smaller value, entries 0 and 1 of class columns are taken as an index.
 const MIN_COUNT: usize = 3;
+/// Minimum number of consecutive integers that are a count from any number, such as the index of chosen rows. With a smaller value, readings that rise by one
+/// are taken as an index.
+const MIN_RUN: usize = 8;
 
 /// Content of a table, which decides which of its lines and columns are data.
 #[derive(Clone, Copy, Debug)]
@@ -348,8 +351,18 @@ impl Table {
             true => 1,
             false => 2,
         };
-        let is_count = counts_from(&numbered, 0.0) && numbered.len() >= n_min
-            || counts_from(&numbered, 1.0) && numbered.len() >= MIN_COUNT;
+        let counts_few = counts_from(&numbered, 0.0) && numbered.len() >= n_min;
+        // Ascending whole numbers above columns of which most have fractions are the names of chosen columns.
+        let has_fraction = |&column: &usize| {
+            let mut below = self.column(column).skip(1).filter_map(number);
+            below.any(|number| number.fract() != 0.0)
+        };
+        let are_chosen = numbered.len() == first.len()
+            && first.len() >= MIN_COUNT
+            && first.iter().all(|cell| cell.parse::<u32>().is_ok())
+            && numbered.is_sorted_by(|a, b| a < b)
+            && 2 * (0..first.len()).filter(has_fraction).count() > first.len();
+        let is_count = counts_few || is_count(&numbered) || are_chosen;
         // A known number of rows makes a first line of texts a header.
         is_count || n_rows.is_some() && are_texts
     }
@@ -386,17 +399,32 @@ fn counts_from(numbers: &[f64], first: f64) -> bool {
     counted.all(|(k, &number)| number == first + k as f64)
 }
 
-/// Returns whether the cells of a column count the rows from 0 or 1; the count may begin again, such as with each touch.
-fn counts_rows(cells: impl Iterator<Item = Option<f64>>) -> bool {
-    let mut cells = cells.peekable();
-    let Some(&Some(first @ (0.0 | 1.0))) = cells.peek() else {
+/// Returns whether numbers count from 0 or 1, or are a long run of consecutive integers.
+fn is_count(numbers: &[f64]) -> bool {
+    let Some(&first) = numbers.first() else {
         return false;
     };
+    let n_min = match first {
+        0.0 | 1.0 => MIN_COUNT,
+        _ => MIN_RUN,
+    };
+    first.fract() == 0.0 && numbers.len() >= n_min && counts_from(numbers, first)
+}
+
+/// Returns whether the cells of a column count the rows. A count from 0 or 1 may begin again, such as with each touch.
+fn counts_rows(cells: impl Iterator<Item = Option<f64>>) -> bool {
+    let mut cells = cells.peekable();
+    let Some(&Some(first)) = cells.peek() else {
+        return false;
+    };
+    if first.fract() != 0.0 {
+        return false;
+    }
     let Some(numbers) = cells.collect::<Option<Vec<f64>>>() else {
         return false;
     };
     let mut runs = numbers.chunk_by(|a, b| *b == a + 1.0);
-    runs.all(|run| run.len() >= MIN_COUNT && run[0] == first)
+    is_count(&numbers) || runs.all(|run| run[0] == first && first <= 1.0 && is_count(run))
 }
 
 /// Returns an error if the file is an export of a pressure mat with a block of lines for each frame.
