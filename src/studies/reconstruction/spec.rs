@@ -45,13 +45,15 @@ pub struct ReconstructionSpec {
     #[serde(default = "default_most_atoms")]
     pub most_atoms: usize,
     /// Regularisation parameter λ of the ℓ1 problem, as a multiple of the universal threshold σ a √(2 ln k), positive. Here σ is the noise standard deviation,
-    /// a the root mean square norm of the columns of ΦΨ, and k the number of atoms. Default: 0.3.
+    /// a the root mean square norm of the columns of ΦΨ, and k the number of atoms. σ is at least 0.001 of the root mean square of the training frames.
+    /// Default: 0.3.
     #[serde(default = "default_lambda_scale")]
     pub lambda_scale: f64,
-    /// Relative duality gap at which the ℓ1 solver stops, positive. Default: 1e-3.
+    /// Duality gap at which the ℓ1 solver stops, relative to the minimised objective, positive. Default: 0.01.
     #[serde(default = "default_tolerance")]
     pub tolerance: f64,
-    /// Maximum number of steps of the ℓ1 solver per frame, at least 1. Default: 500.
+    /// Maximum number of steps of the ℓ1 solver per frame, at least 1. `n_capped` counts the frames that need more, as frames without noise often do. Default:
+    /// 500.
     #[serde(default = "default_most_steps")]
     pub most_steps: usize,
     /// Fraction of the touches that are held out for testing, between 0 and 1. Default: 0.25.

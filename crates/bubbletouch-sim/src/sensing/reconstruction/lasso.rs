@@ -2,8 +2,10 @@
 //!
 //! The method is FISTA (Beck and Teboulle 2009). Let L be the largest eigenvalue of AᵀA. A step is a gradient step of length 1/L from a point extrapolated
 //! along the last change, then soft thresholding by λ/L. The momentum restarts if it points uphill (O'Donoghue and Candès 2015). The dual value at θ = s·(y −
-//! Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is a lower bound of the objective. A frame is solved if the gap between objective and dual value is small (Kim et al.
-//! 2007).
+//! Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is a lower bound of the objective. A frame is solved if the gap between objective and dual value is small,
+//! relative to the objective (Kim et al. 2007).
+//!
+//! A small λ needs many steps. A frame therefore starts with a large penalty, which is reduced to λ in stages (continuation: Hale, Yin and Zhang 2008).
 
 use crate::error::{Error, Result};
 use crate::sensing::{SensedDictionary, Solved};
@@ -16,6 +18,10 @@ const CHECK_EVERY: usize = 5;
 /// (Kuczyński and Woźniakowski 1992).
 const POWER_STEPS: usize = 60;
 const MARGIN: f64 = 1.02;
+/// Ratio of the penalties of two stages. From 0.1 to 0.5, the numbers of steps differ by less than 10 %.
+const REDUCTION: f64 = 0.25;
+/// Relative duality gap that ends a stage. With 0.2, the steps that remain at λ are too many; with 0.02, the stages take more steps than they save.
+const STAGE_GAP: f64 = 0.05;
 
 /// Parameters of the ℓ1 problem, with a stopping rule. The coefficients α of a frame minimise ½‖Aα − y‖² + λ‖α‖₁, where y are the measurements and A the
 /// measured atoms.
@@ -23,7 +29,8 @@ const MARGIN: f64 = 1.02;
 pub struct Lasso {
     /// Penalty λ of the ℓ1 norm, positive, in the unit of the measurements times the norm of an atom.
     pub lambda: f64,
-    /// Largest duality gap of a solved frame, as a fraction of half its squared norm of measurements; positive.
+    /// Largest duality gap of a solved frame, as a fraction of its objective ½‖Aα − y‖² + λ‖α‖₁; positive. The gap bounds the distance of the objective
+    /// from its minimum.
     pub tolerance: f64,
     /// Maximum number of solver steps per frame; at least 1.
     pub most_steps: usize,
@@ -67,9 +74,9 @@ impl Lasso {
         self.check()?;
         let centred = sensed.centred(measurements);
         let mut solved = Solved::zeros(measurements.nrows(), sensed.atoms().nrows());
-        let mut open = Open::new(sensed, &centred, curvature.0);
+        let mut open = Open::new(sensed, &centred, curvature.0, self.lambda);
         for step in 1..=self.most_steps {
-            open.step(self.lambda);
+            open.step();
             let is_last = step == self.most_steps;
             if is_last || step % CHECK_EVERY == 0 {
                 open.retire(self, is_last, &mut solved);
@@ -124,6 +131,8 @@ struct Open<'a> {
     frames: Vec<usize>,
     /// Squared norm ‖y‖² of each frame's measurements y.
     square: Vec<f64>,
+    /// Penalty of each frame's current stage; at least λ.
+    penalty: Vec<f64>,
     /// Momentum parameter of the FISTA iteration for each frame.
     momentum: Vec<f64>,
     /// Products Aᵀy of the measured atoms A with the measurements y, one row per frame.
@@ -134,16 +143,22 @@ struct Open<'a> {
 }
 
 impl<'a> Open<'a> {
-    fn new(sensed: &'a SensedDictionary<'a>, y: &Array2<f64>, curvature: f64) -> Self {
+    fn new(sensed: &'a SensedDictionary<'a>, y: &Array2<f64>, curvature: f64, lambda: f64) -> Self {
         let n_frames = y.nrows();
         let shape = (n_frames, sensed.atoms().nrows());
+        let b = y.dot(&sensed.atoms().t());
+        let steepest = |b: ArrayView1<f64>| b.iter().fold(lambda, |most, b| most.max(b.abs()));
         Self {
             sensed,
             curvature,
             frames: (0..n_frames).collect(),
             square: y.outer_iter().map(|y| y.dot(&y)).collect(),
             momentum: vec![1.0; n_frames],
-            b: y.dot(&sensed.atoms().t()),
+            penalty: b
+                .outer_iter()
+                .map(|b| (REDUCTION * steepest(b)).max(lambda))
+                .collect(),
+            b,
             alpha: Array2::zeros(shape),
             ahead: Array2::zeros(shape),
         }
@@ -161,7 +176,7 @@ impl<'a> Open<'a> {
         gradient
     }
 
-    fn step(&mut self, lambda: f64) {
+    fn step(&mut self) {
         let gradient = self.gradient(&self.ahead);
         let length = 1.0 / self.curvature;
         for (row, gradient) in gradient.outer_iter().enumerate() {
@@ -172,7 +187,7 @@ impl<'a> Open<'a> {
                 ahead,
                 gradient,
                 length,
-                lambda,
+                self.penalty[row],
                 &mut self.momentum[row],
             );
         }
@@ -185,8 +200,13 @@ impl<'a> Open<'a> {
         for (row, &frame) in self.frames.iter().enumerate() {
             let (alpha, b) = (self.alpha.row(row), self.b.row(row));
             let square = self.square[row];
-            let gap = duality_gap(alpha, b, gradient.row(row), square, rule.lambda);
-            let is_solved = gap <= rule.tolerance * 0.5 * square;
+            let penalty = self.penalty[row];
+            let (primal, gap) = duality_gap(alpha, b, gradient.row(row), square, penalty);
+            if penalty > rule.lambda && gap <= STAGE_GAP * primal {
+                self.penalty[row] = (REDUCTION * penalty).max(rule.lambda);
+                self.momentum[row] = 1.0;
+            }
+            let is_solved = penalty == rule.lambda && gap <= rule.tolerance * primal;
             if is_solved || is_last {
                 solved.coefficients.row_mut(frame).assign(&alpha);
                 solved.capped[frame] = !is_solved;
@@ -201,6 +221,7 @@ impl<'a> Open<'a> {
             *matrix = matrix.select(Axis(0), &kept);
         }
         self.frames = kept.iter().map(|&row| self.frames[row]).collect();
+        self.penalty = kept.iter().map(|&row| self.penalty[row]).collect();
         self.square = kept.iter().map(|&row| self.square[row]).collect();
         self.momentum = kept.iter().map(|&row| self.momentum[row]).collect();
     }
@@ -242,14 +263,14 @@ fn step_row(
     });
 }
 
-/// Returns the duality gap (objective minus dual value) at the coefficients α; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².
+/// Returns the objective and the duality gap (objective minus dual value) at the coefficients α; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².
 fn duality_gap(
     alpha: ArrayView1<f64>,
     b: ArrayView1<f64>,
     gradient: ArrayView1<f64>,
     square: f64,
     lambda: f64,
-) -> f64 {
+) -> (f64, f64) {
     let along = alpha.dot(&b);
     let residual = square - along + alpha.dot(&gradient);
     let steepest = gradient.iter().fold(0.0f64, |most, g| most.max(g.abs()));
@@ -262,5 +283,5 @@ fn duality_gap(
     let primal = 0.5 * residual + lambda * l1;
     // ½‖y‖² − ½‖y − θ‖² with y·(y − Aα) = ‖y‖² − αᵀb.
     let dual = s * (square - along) - 0.5 * s * s * residual;
-    primal - dual
+    (primal, primal - dual)
 }

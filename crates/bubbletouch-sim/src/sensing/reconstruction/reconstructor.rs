@@ -25,7 +25,7 @@ pub struct Effort {
     pub most_atoms: usize,
     /// Ratio of the ℓ1 penalty to the universal threshold ([`Lasso::universal_lambda`]); positive.
     pub lambda_scale: f64,
-    /// Relative duality gap at which an ℓ1 problem counts as solved; positive.
+    /// Duality gap at which an ℓ1 problem counts as solved, relative to its objective; positive.
     pub tolerance: f64,
     /// Maximum number of steps of the ℓ1 solver per frame.
     pub most_steps: usize,
@@ -166,7 +166,8 @@ impl Default for Effort {
             most_atoms: 128,
             // The universal threshold is too large: on noisy touches the error is lowest at a third of it.
             lambda_scale: 0.3,
-            tolerance: 1e-3,
+            // With 1e-3, the error changes by less than 0.3 % and noise-free frames take up to twice as many steps.
+            tolerance: 1e-2,
             most_steps: 500,
         }
     }

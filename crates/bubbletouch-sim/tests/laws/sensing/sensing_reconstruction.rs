@@ -297,6 +297,37 @@ fn the_l1_solution_agrees_with_scikit_learn() {
     }
 }
 
+/// Reference: minima of the objective by `Lasso` of scikit-learn 1.9.1, as above.
+#[test]
+fn a_solved_l1_objective_is_within_the_tolerance_of_scikit_learn_at_any_penalty() {
+    let (projection, dictionary, y) = golden_problem();
+    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+    for (lambda, minimum) in [
+        (5e-1, 2.030066164644258),
+        (5e-2, 0.3375109799824605),
+        (5e-3, 0.036636369069384354),
+        (5e-4, 0.0036936724369639614),
+        (5e-5, 0.00036966759899665133),
+    ] {
+        let tolerance = Effort::default().tolerance;
+        for (most_steps, is_enough) in [(10_000, true), (3, false)] {
+            let lasso = Lasso {
+                lambda,
+                tolerance,
+                most_steps,
+            };
+            let found = lasso.solve(&sensed, y.view()).unwrap();
+            let alpha = found.coefficients.row(0);
+            let left = &y.row(0) - &alpha.dot(&sensed.atoms());
+            let l1: f64 = alpha.iter().map(|a| a.abs()).sum();
+            let excess = (0.5 * left.dot(&left) + lambda * l1) / minimum - 1.0;
+            assert!(excess > -1e-9, "{lambda}: {excess}");
+            assert_eq!(found.capped[0], !is_enough, "{lambda}");
+            assert_eq!(excess <= tolerance, is_enough, "{lambda}: {excess}");
+        }
+    }
+}
+
 /// Computes the LMMSE estimate with the explicit covariance, solving one system per measurement.
 fn dense_lmmse(sensed: &SensedDictionary, noise_std: f64, y: ArrayView2<f64>) -> Array2<f64> {
     let (phi, dictionary) = (sensed.projection().matrix(), sensed.dictionary());
