@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Times MuJoCo and bubbletouch on equal presses: both programs get the same objects and poses in one run.
 
-A patch of 64 x 64 taxels (balls of radius 1 mm, 2 mm apart) is pressed 3 mm into an object. MuJoCo has two methods: taxels as bodies on slide
-joints, and its tactile sensor on a signed-distance octree. bubbletouch presses packed objects and exact meshes. Errors are relative to the exact
-contact with the mesh, which tests of bubbletouch compare with a slow reference implementation. README.md beside this file describes the settings.
+A patch of 64 x 64 taxels, 2 mm apart, is pressed 3 mm into an object. Three quantities are read, and errors are relative to the exact value of the
+same quantity: the way of balls of 1 mm along the taxel's axis, the way of points along the axis, and the depth of points by signed distance.
+README.md beside this file describes the methods and the settings.
 """
 
 import argparse
@@ -25,9 +25,13 @@ import trimesh
 ROOT = Path(__file__).resolve().parents[2]
 SIDE, PITCH, RADIUS, STROKE, DEPTH = 64, 2e-3, 1e-3, 5e-3, 3e-3
 STIFFNESS, TAXEL_MASS = 100.0, 1e-3
+# Quantities that a method reads of a taxel. A point is the foremost point of the ball at rest.
+BALLS, POINTS, DISTANCE = "way of balls", "way of points", "signed distance of points"
+# Radius of the taxels that bubbletouch presses for the way of points, metres.
+POINT_RADIUS = 1e-9
 
 COLUMNS = [
-    "date", "machine", "program", "version", "method", "setting", "object", "n_taxels", "n_touches", "us_per_touch",
+    "date", "machine", "program", "version", "quantity", "method", "setting", "object", "n_taxels", "n_touches", "us_per_touch",
     "error_mm", "error_p95_mm", "error_max_mm", "build_s",
 ]
 
@@ -58,11 +62,12 @@ class Ours:
     def __init__(self, binary, scratch):
         self.binary, self.scratch = binary, Path(scratch)
 
-    def press(self, source, poses, depth=None, repeat=1):
+    def press(self, source, poses, depth=None, repeat=1, radius=RADIUS):
         """Returns deflections, metres, (n, n_taxels), and the command's JSON output with the travel and the time of each press."""
         file, out = self.scratch / "poses.csv", self.scratch / "out.npy"
         np.savetxt(file, poses, delimiter=",", header="x,y,z,qw,qx,qy,qz", comments="", fmt="%.17g")
         command = [self.binary, "press", *source, "--poses", str(file), "--repeat", str(repeat), "--json", "--out", str(out)]
+        command += ["--taxel-radius-mm", f"{1e3 * radius:.9g}"]
         command += ["--depth-mm", str(1e3 * depth)] if depth else []
         done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, RAYON_NUM_THREADS="1"))
         if done.returncode != 0:
@@ -81,16 +86,31 @@ class Ours:
         return kept, time.perf_counter() - start
 
 
-class TactileSensor:
+class Peer:
+    """A method of MuJoCo: `model` and `data`, with the quantity that it reads and the time to build the model."""
+
+    def compile(self, spec):
+        start = time.perf_counter()
+        self.model = spec.compile()
+        self.build_s = time.perf_counter() - start
+        self.data = mujoco.MjData(self.model)
+
+    def place(self, pose):
+        """Sets the pose of the object relative to the patch, whose points are at the height of the foremost points of the balls."""
+        self.data.qpos[:] = pose
+        self.data.qpos[2] -= RADIUS
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+
+
+class TactileSensor(Peer):
     """MuJoCo's tactile sensor: the depth of each vertex of a pad inside the object, from the object's signed-distance octree."""
 
-    method = "mujoco_tactile"
+    method, quantity = "mujoco_tactile", DISTANCE
 
     def __init__(self, mesh, octree_depth):
         self.setting = f"octree depth {octree_depth}"
-        spec = mujoco.MjSpec()
-        spec.option.gravity = [0, 0, 0]
-        add_mesh(spec, "object", mesh.vertices, mesh.faces, needsdf=True, octree_maxdepth=octree_depth)
+        spec = object_on_free_joint(mesh, needsdf=True, octree_maxdepth=octree_depth)
         xs = grid()
         vertices = np.array([[x, y, 0.0] for y in xs for x in xs])
         corner = np.arange(SIDE * SIDE).reshape(SIDE, SIDE)[:-1, :-1].ravel()
@@ -99,28 +119,11 @@ class TactileSensor:
         # The sensor reads only objects that collide with its body. A box provides the collisions and costs 6 us.
         spec.worldbody.add_geom(name="pad", type=mujoco.mjtGeom.mjGEOM_MESH, meshname="pad", contype=0, conaffinity=0)
         spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.064, 0.064, 0.01], pos=[0, 0, -0.01])
-        body = spec.worldbody.add_body(name="object")
-        body.add_freejoint()
-        body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="object")
         spec.add_sensor(
             name="skin", type=mujoco.mjtSensor.mjSENS_TACTILE, objtype=mujoco.mjtObj.mjOBJ_MESH, objname="pad",
             reftype=mujoco.mjtObj.mjOBJ_GEOM, refname="pad",
         )
-        start = time.perf_counter()
-        self.model = spec.compile()
-        self.build_s = time.perf_counter() - start
-        self.data = mujoco.MjData(self.model)
-        # Height of the tips of the taxels; `tune` chooses the best constant height of the pad's vertices.
-        self.height = RADIUS
-
-    def tune(self, poses, truth):
-        """Sets the height of the vertices to the value with the smallest mean error, between 0.5 and 1.2 taxel radii."""
-        heights = np.linspace(0.5 * RADIUS, 1.2 * RADIUS, 29)
-        errors = []
-        for height in heights:
-            self.height = height
-            errors.append(error_of(np.array([self.read(pose) for pose in poses]), truth)[0])
-        self.height = heights[int(np.argmin(errors))]
+        self.compile(spec)
 
     def read(self, pose):
         self.evaluate(pose)
@@ -128,19 +131,41 @@ class TactileSensor:
 
     def evaluate(self, pose):
         """Evaluates only the stages that the sensor needs: kinematics, collisions and the sensor. A whole step takes slightly longer."""
-        model, data = self.model, self.data
-        data.qpos[:] = pose
-        data.qpos[2] -= self.height
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_comPos(model, data)
-        mujoco.mj_collision(model, data)
-        mujoco.mj_sensorVel(model, data)
+        self.place(pose)
+        mujoco.mj_collision(self.model, self.data)
+        mujoco.mj_sensorVel(self.model, self.data)
 
 
-class Bodies:
+class Rays(Peer):
+    """MuJoCo's rangefinder of an orthographic camera: one ray along the axis of each taxel (`mj_ray`), which starts one stroke behind its point."""
+
+    method, quantity, setting = "mujoco_rays", POINTS, "rangefinder of a camera"
+
+    def __init__(self, mesh):
+        spec = object_on_free_joint(mesh)
+        camera = spec.worldbody.add_camera(name="skin", pos=[0, 0, -STROKE], quat=[0, 1, 0, 0])
+        camera.proj, camera.fovy, camera.resolution = mujoco.mjtProjection.mjPROJ_ORTHOGRAPHIC, SIDE * PITCH, [SIDE, SIDE]
+        spec.add_sensor(
+            name="skin", type=mujoco.mjtSensor.mjSENS_RANGEFINDER, objtype=mujoco.mjtObj.mjOBJ_CAMERA, objname="skin",
+            intprm=[1 << int(mujoco.mjtRayDataField.mjRAYDATA_DIST), 0, 0],
+        )
+        self.compile(spec)
+
+    def read(self, pose):
+        self.evaluate(pose)
+        distance = self.data.sensordata
+        return np.where(distance < 0, 0, np.maximum(0, STROKE - distance))
+
+    def evaluate(self, pose):
+        self.place(pose)
+        mujoco.mj_camlight(self.model, self.data)
+        mujoco.mj_sensorPos(self.model, self.data)
+
+
+class Bodies(Peer):
     """Taxels as bodies on slide joints in MuJoCo. Each taxel is a ball of 1 g on a spring with critical damping."""
 
-    method = "mujoco_bodies"
+    method, quantity = "mujoco_bodies", BALLS
 
     def __init__(self, mesh, n_steps, dt):
         """Creates the model. The object is the convex hull of `mesh`, or a ball if `mesh` is a radius in metres."""
@@ -168,10 +193,7 @@ class Bodies:
                     type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, -1], stiffness=[STIFFNESS, 0, 0], damping=[damping, 0, 0]
                 )
                 taxel.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[RADIUS, 0, 0], mass=TAXEL_MASS, contype=2, conaffinity=1, **contact)
-        start = time.perf_counter()
-        self.model = spec.compile()
-        self.build_s = time.perf_counter() - start
-        self.data = mujoco.MjData(self.model)
+        self.compile(spec)
 
     def read(self, pose):
         self.evaluate(pose)
@@ -185,11 +207,37 @@ class Bodies:
             mujoco.mj_step(model, data)
 
 
+def object_on_free_joint(mesh, **options):
+    """Returns a model without gravity whose only body is the object, a mesh with a free joint."""
+    spec = mujoco.MjSpec()
+    spec.option.gravity = [0, 0, 0]
+    add_mesh(spec, "object", mesh.vertices, mesh.faces, **options)
+    body = spec.worldbody.add_body(name="object")
+    body.add_freejoint()
+    body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="object")
+    return spec
+
+
 def add_mesh(spec, name, vertices, faces, **options):
     mesh = spec.add_mesh(name=name)
     mesh.uservert, mesh.userface = np.asarray(vertices).ravel().tolist(), np.asarray(faces).ravel().tolist()
     for key, value in options.items():
         setattr(mesh, key, value)
+
+
+def depths_by_distance(mesh, poses, inside):
+    """Returns the exact signed distance of the points below the surface of a closed mesh, metres, (n, n_taxels): an independent slow computation.
+
+    Points with a way of zero (`inside`, (n, n_taxels), is false) are outside and have depth zero.
+    """
+    xs = grid()
+    points = np.array([[x, y, RADIUS] for y in xs for x in xs])
+    depths = np.zeros(inside.shape)
+    for pose, of_pose, row in zip(poses, inside, depths):
+        turn = trimesh.transformations.quaternion_matrix(pose[3:])[:3, :3]
+        in_object = (points[of_pose] - pose[:3]) @ turn
+        row[of_pose] = trimesh.proximity.closest_point_naive(mesh, in_object)[1]
+    return depths
 
 
 def error_of(felt, truth):
@@ -200,40 +248,50 @@ def error_of(felt, truth):
 
 
 def timed(evaluate, poses):
-    """Returns the evaluation time of each pose, microseconds."""
+    """Returns the processor time of each pose's evaluation, microseconds."""
     times = []
     for pose in poses:
-        start = time.perf_counter()
+        start = time.thread_time()
         evaluate(pose)
-        times.append(1e6 * (time.perf_counter() - start))
+        times.append(1e6 * (time.thread_time() - start))
     return times
 
 
-def compare(object_name, truth, peers, ours, poses, rounds):
-    """Returns the table rows of an object. Peers and bubbletouch alternate; the times are medians over all rounds."""
-    times = {id(peer): [] for peer in peers}
-    our_times = {setting: [] for setting, *_ in ours[1]}
+def compare(object_name, truth, peers, ours, sources, poses, rounds):
+    """Returns the table rows of an object. Peers and bubbletouch alternate; the times are medians over all rounds.
+
+    `truth` has the exact readings of each quantity; `sources` has the quantity, name, arguments and packing time of each source of ours.
+    """
+    times = {method: [] for method in (*peers, *range(len(sources)))}
+    pressed = [lambda repeat=1, source=source: press(ours, *source[::2], poses, repeat) for source in sources]
     for _ in range(rounds):
-        for setting, source, _ in ours[1]:
-            our_times[setting].append(ours[0].press(source, poses, repeat=20)[1]["us"])
+        for number, press_all in enumerate(pressed):
+            times[number].append(press_all(repeat=20)[1]["us"])
         for peer in peers:
-            times[id(peer)] += timed(peer.evaluate, poses)
+            times[peer] += timed(peer.evaluate, poses)
     rows = []
-    for setting, source, build_s in ours[1]:
-        felt, _ = ours[0].press(source, poses)
-        rows.append(("bubbletouch", "bubbletouch", setting, statistics.median(our_times[setting]), error_of(felt, truth), build_s))
+    for number, (quantity, setting, _, build_s) in enumerate(sources):
+        errors = error_of(pressed[number]()[0], truth[quantity])
+        rows.append(("bubbletouch", quantity, "bubbletouch", setting, statistics.median(times[number]), errors, build_s))
     for peer in peers:
-        felt = np.array([peer.read(pose) for pose in poses])
-        rows.append(("MuJoCo", peer.method, peer.setting, statistics.median(times[id(peer)]), error_of(felt, truth), peer.build_s))
+        errors = error_of(np.array([peer.read(pose) for pose in poses]), truth[peer.quantity])
+        rows.append(("MuJoCo", peer.quantity, peer.method, peer.setting, statistics.median(times[peer]), errors, peer.build_s))
     return [row_of(object_name, len(poses), *row) for row in rows]
 
 
-def row_of(object_name, n_touches, program, method, setting, us, errors, build_s):
+def press(ours, quantity, source, poses, repeat=1):
+    """Presses an object with bubbletouch; for the way of points, with balls of nearly no radius at the foremost points."""
+    if quantity == BALLS:
+        return ours.press(source, poses, repeat=repeat)
+    return ours.press(source, poses - [0, 0, RADIUS, 0, 0, 0, 0], repeat=repeat, radius=POINT_RADIUS)
+
+
+def row_of(object_name, n_touches, program, quantity, method, setting, us, errors, build_s):
     row = dict(zip(["error_mm", "error_p95_mm", "error_max_mm"], [f"{error:.6f}" for error in errors]))
     version = mujoco.__version__ if program == "MuJoCo" else package_version()
     return row | {
-        "date": datetime.date.today().isoformat(), "machine": machine(), "program": program, "version": version, "method": method,
-        "setting": setting, "object": object_name, "n_taxels": SIDE * SIDE, "n_touches": n_touches, "us_per_touch": f"{us:.3f}",
+        "date": datetime.date.today().isoformat(), "machine": machine(), "program": program, "version": version,
+        "quantity": quantity, "method": method, "setting": setting, "object": object_name, "n_taxels": SIDE * SIDE, "n_touches": n_touches, "us_per_touch": f"{us:.3f}",
         "build_s": "" if np.isnan(build_s) else f"{build_s:.2f}",
     }
 
@@ -256,19 +314,19 @@ def on_mesh(path, ours, options):
     print(f"{path.stem}: {len(mesh.faces)} triangles", flush=True)
     high = draw_poses(mesh.bounds, options.touches, seed=len(mesh.faces))
     exact = ["--mesh", str(path), "--model", "mesh"]
-    truth, said = ours.press(exact, high, depth=DEPTH)
+    _, said = ours.press(exact, high, depth=DEPTH)
     poses = high.copy()
     poses[:, 2] -= 1e-3 * np.array([press["travel_mm"] for press in said["presses"]])
-    truth, _ = ours.press(exact, poses)
-    sources = [("exact mesh", exact, 0.0)]
+    sources = [(BALLS, "exact mesh", exact, 0.0), (POINTS, "exact mesh", exact, 0.0)]
     for tolerance in options.tolerances_mm:
         kept, build_s = ours.pack(path, tolerance)
-        sources.append((f"packed within {tolerance:g} mm", ["--spheres", str(kept)], build_s))
+        sources.append((BALLS, f"packed within {tolerance:g} mm", ["--spheres", str(kept)], build_s))
+    rays = Rays(mesh)
+    points = np.array([rays.read(pose) for pose in poses])
+    truth = {BALLS: ours.press(exact, poses)[0], POINTS: points, DISTANCE: depths_by_distance(mesh, poses, points > 0)}
     sensors = [TactileSensor(mesh, depth) for depth in options.octree_depths]
-    for sensor in sensors:
-        sensor.tune(poses, truth)
     bodies = [Bodies(mesh, n, dt) for dt in options.dts for n in options.steps]
-    return compare(path.stem, truth, sensors + bodies, (ours, sources), poses, options.rounds)
+    return compare(path.stem, truth, [rays, *sensors, *bodies], ours, sources, poses, options.rounds)
 
 
 def on_ball(ours, options, radius=0.05):
@@ -280,23 +338,21 @@ def on_ball(ours, options, radius=0.05):
     _, said = ours.press(source, high, depth=DEPTH)
     poses = high.copy()
     poses[:, 2] -= 1e-3 * np.array([press["travel_mm"] for press in said["presses"]])
-    truth, _ = ours.press(source, poses)
+    truth = {BALLS: ours.press(source, poses)[0]}
     bodies = [Bodies(radius, n, dt) for dt in options.dts for n in options.steps]
-    return compare("ball_100mm", truth, bodies, (ours, [("one sphere", source, 0.0)]), poses, options.rounds)
+    return compare("ball_100mm", truth, bodies, ours, [(BALLS, "one sphere", source, 0.0)], poses, options.rounds)
 
 
 def tell(rows):
-    """Prints the rows. For MuJoCo, prints the ratio of its time to the shortest time of bubbletouch with an equal or smaller error."""
-    for name in dict.fromkeys(row["object"] for row in rows):
-        of_object = [row for row in rows if row["object"] == name]
-        ours = [row for row in of_object if row["program"] == "bubbletouch"]
-        for row in of_object:
-            print(f"  {name:28} {row['program']:12} {row['setting']:28} {float(row['us_per_touch']):10.1f} us  {float(row['error_mm']):.4f} mm", end="")
-            better = [our for our in ours if float(our["error_mm"]) <= float(row["error_mm"])]
-            if row["program"] == "MuJoCo" and better:
-                best = min(better, key=lambda our: float(our["us_per_touch"]))
-                print(f"  {float(row['us_per_touch']) / float(best['us_per_touch']):7.1f} x {best['setting']}", end="")
-            print()
+    """Prints the rows. For MuJoCo, prints the ratio of its time to the shortest time of bubbletouch for an equal quantity at an equal or smaller error."""
+    for row in rows:
+        print("  {object:24} {program:12} {quantity:24} {setting:28} {us_per_touch:>10} us  {error_mm} mm".format(**row), end="")
+        equal = [our for our in rows if our["program"] == "bubbletouch" and our["object"] == row["object"] and our["quantity"] == row["quantity"]]
+        better = [our for our in equal if float(our["error_mm"]) <= float(row["error_mm"]) + 1e-3]
+        if row["program"] == "MuJoCo" and better:
+            best = min(better, key=lambda our: float(our["us_per_touch"]))
+            print(f"  {float(row['us_per_touch']) / float(best['us_per_touch']):7.1f} x {best['setting']}", end="")
+        print()
 
 
 def main():

@@ -147,23 +147,29 @@ def small_patch(table, options):
     contact.SIDE = SIDE
     shapes = small_shapes()
     patch = bt.Patch.grid(SIDE, SIDE, PITCH, STROKE, taxel_radius=RADIUS)
+    points = bt.Patch.grid(SIDE, SIDE, PITCH, STROKE, taxel_radius=contact.POINT_RADIUS)
     out, many = np.zeros((SIDE, SIDE)), np.zeros((1024, SIDE, SIDE))
     for name, (vertices, triangles, limit) in shapes.items():
         mesh = bt.Mesh(vertices, triangles)
         poses = contact_poses(patch, mesh, 16, DEPTH, seed=len(triangles))
         batch = np.tile(poses, (64, 1))
-        sensor = contact.TactileSensor(trimesh.Trimesh(vertices, triangles, process=False), 6)
+        solid = trimesh.Trimesh(vertices, triangles, process=False)
+        sensor, rays = contact.TactileSensor(solid, 6), contact.Rays(solid)
+        lower = poses - [0, 0, RADIUS, 0, 0, 0, 0]
         calls = {
             "one pose": lambda: [patch.press(mesh, pose, out=out) for pose in poses],
             "batch": lambda: patch.press(mesh, batch, out=many, threads=1),
+            "points": lambda: [points.press(mesh, pose, out=out) for pose in lower],
+            "rays": lambda: [rays.evaluate(pose) for pose in poses],
             "tactile": lambda: [sensor.evaluate(pose) for pose in poses],
         }
-        times = alternate(calls, options.rounds, 4)
-        one, each, peer = times["one pose"] / 16, times["batch"] / 1024, times["tactile"] / 16
+        times = {call: us / (1024 if call == "batch" else 16) for call, us in alternate(calls, options.rounds, 4).items()}
         of_shape = (name, len(triangles), SIDE * SIDE)
-        table.add("read", *of_shape, "bubbletouch", "one pose", one, peer / one, limit)
-        table.add("read", *of_shape, "bubbletouch", "batch of 1,024", each, peer / each, 0.8 * limit)
-        table.add("read", *of_shape, "MuJoCo", "tactile sensor", peer)
+        table.add("read", *of_shape, "bubbletouch", "one pose", times["one pose"], limit=limit)
+        table.add("read", *of_shape, "bubbletouch", "batch of 1,024", times["batch"], limit=0.8 * limit)
+        table.add("read", *of_shape, "bubbletouch", "way of points", times["points"], times["rays"] / times["points"])
+        table.add("read", *of_shape, "MuJoCo", "rays", times["rays"])
+        table.add("read", *of_shape, "MuJoCo", "tactile sensor", times["tactile"])
     model = mujoco.MjModel.from_xml_string(TOUCH_GRID)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)

@@ -34,6 +34,7 @@ mod own_objects;
 mod page;
 mod paths;
 mod press;
+mod printed_numbers;
 mod readme;
 mod recording;
 mod report;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Returns the README and the chapters of the guide by name, as (file, text).
-fn documents() -> Vec<(String, String)> {
+pub(crate) fn documents() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let guide = fs::read_dir(root.join("guide")).unwrap();
     let mut paths: Vec<_> = guide.map(|entry| entry.unwrap().path()).collect();
