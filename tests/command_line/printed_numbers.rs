@@ -3,6 +3,7 @@
 //! A comment after the text names the cells: `<!-- FILE [where KEY=VALUE and …]: SHOWN = VALUE; … -->`. `FILE` is a CSV file, `SHOWN` the number as the text
 //! prints it. `VALUE` is `[min|max|median|count] [COLUMN] [where …]`, a number, or a quotient `VALUE / VALUE`. `SHOWN < VALUE` states a bound.
 //! Conditions compare with `=`, `<` or `>=`. Without `min`, `max`, `median` or `count`, exactly one row meets all conditions.
+#![cfg(unix)]
 
 use super::readme::documents;
 use std::path::Path;

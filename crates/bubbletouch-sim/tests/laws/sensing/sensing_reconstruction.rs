@@ -310,7 +310,7 @@ fn a_solved_l1_objective_is_within_the_tolerance_of_scikit_learn_at_any_penalty(
         (5e-5, 0.00036966759899665133),
     ] {
         let tolerance = Effort::default().tolerance;
-        for (most_steps, is_enough) in [(10_000, true), (3, false)] {
+        for most_steps in [3, 10_000] {
             let lasso = Lasso {
                 lambda,
                 tolerance,
@@ -322,8 +322,9 @@ fn a_solved_l1_objective_is_within_the_tolerance_of_scikit_learn_at_any_penalty(
             let l1: f64 = alpha.iter().map(|a| a.abs()).sum();
             let excess = (0.5 * left.dot(&left) + lambda * l1) / minimum - 1.0;
             assert!(excess > -1e-9, "{lambda}: {excess}");
-            assert_eq!(found.capped[0], !is_enough, "{lambda}");
-            assert_eq!(excess <= tolerance, is_enough, "{lambda}: {excess}");
+            assert!(found.capped[0] || excess <= tolerance, "{lambda}: {excess}");
+            let is_capped = most_steps == 3 && lambda < 0.1;
+            assert_eq!(found.capped[0], is_capped, "{lambda}: {excess}");
         }
     }
 }
