@@ -82,6 +82,34 @@ def test_a_stock_environment_has_a_skin_on_a_body() -> None:
     assert all(env.observation_space.contains(observation) for observation in copies)
 
 
+def test_an_environment_is_made_again_and_says_what_the_taxels_do_not_carry() -> None:
+    gymnasium.register("BubbletouchGrasp-v0", Grasp)
+    env = SkinObservation(gymnasium.make("BubbletouchGrasp-v0", disable_env_checker=True), layout(), match="normal_force")
+    again = env.spec.make(disable_env_checker=True)
+    assert isinstance(again, SkinObservation)
+    for made in (env, again):
+        observation, info = made.reset(seed=3)
+        assert info["skin"]["contacts"].shape == (2, 2) and info["skin"]["residuals"].shape == (2, len(made.skin.bodies))
+        for _ in range(30):
+            observation, _, _, _, info = made.step(np.zeros(1, np.float32))
+        assert info["skin"]["contacts"][:, 0].any()
+    # Taxels without stiffness carry little, which is said once.
+    soft = {name: bt.Patch.grid(16, 10, 2e-3, 4e-3, stiffness=0.5) for name in ("left_pad", "right_pad")}
+    env = SkinObservation(Grasp(), soft, match="normal_force")
+    with pytest.warns(UserWarning, match="the taxels do not carry all contact forces"):
+        env.reset(seed=3)
+        for _ in range(30):
+            info = env.step(np.zeros(1, np.float32))[-1]
+    assert (info["skin"]["residuals"] > 1.0).any() and (info["skin"]["contacts"][:, 1] > 100).any()
+    # An environment that compiles its model again has a new skin.
+    inner = env.unwrapped
+    inner.model = with_object("gripper", BOX.replace("0.03", "0.02", 1), 'pos="0.003 0.004 0.115"')
+    inner.data = mujoco.MjData(inner.model)
+    before = env.skin
+    env.reset(seed=3)
+    assert env.skin is not before
+
+
 def test_other_environments_and_spaces_are_refused() -> None:
     with pytest.raises(ValueError, match="env: CartPoleEnv; an environment with MuJoCo"):
         SkinObservation(gymnasium.make("CartPole-v1"), layout())

@@ -184,6 +184,7 @@ class Skin:
     objects: index of the rigid object to which each body belongs, (n_bodies,), from 0. If None, each body is an object. Requested forces act between
     patches and objects, so the bodies of an object press a patch together.
     can_touch: pairs of patch and body that can touch, (n_patches, n_bodies) bool; None for all pairs. A body never presses a patch that it cannot touch.
+    carriers: index of the rigid body that carries each patch, (n_patches,), from 0, for the argument loads of read(). If None, each patch has its own.
 
     Raises ValueError if the sequence of patches is empty, if the indices of objects skip a number, or if can_touch has another shape.
     """
@@ -195,6 +196,7 @@ class Skin:
         *,
         objects: Sequence[int] | None = None,
         can_touch: ArrayLike | None = None,
+        carriers: Sequence[int] | None = None,
     ) -> Skin: ...
     @property
     def n_taxels(self) -> int:
@@ -212,11 +214,13 @@ class Skin:
         output: Literal["deflection", "force"] = "deflection",
         forces: ArrayLike | None = None,
         directions: ArrayLike | None = None,
+        loads: Sequence[ArrayLike] | None = None,
         reach: float | None = None,
         shear: ShearState | None = None,
         out: NDArray[np.float64] | None = None,
         wrenches: NDArray[np.float64] | None = None,
         contacts: NDArray[np.int64] | None = None,
+        taxel_forces: NDArray[np.float64] | None = None,
         pair_forces: NDArray[np.float64] | None = None,
         residuals: NDArray[np.float64] | None = None,
         travels: NDArray[np.float64] | None = None,
@@ -233,6 +237,14 @@ class Skin:
         normal force of a pair is the sum of the forces of the patch's taxels along their axes under this object alone. The patch travels from its pose
         until it has the requested force. A pair with force 0 has no contact, even if patch and object overlap. A pair with NaN is read at its pose.
         directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_objects, 3); default z.
+        loads: contact forces of an engine, instead of forces: a tuple of arrays with a row for each contact, for one set of poses. pairs: carrier of the patch
+        and object, (m, 2). points: (m, 3), metres. normal forces on the carrier: (m, 3), newtons. Two more arrays are optional: friction forces, (m, 3),
+        and torques about the points, (m, 3), N·m. All vectors are in the world. A contact acts on the nearest patch of the carrier that faces it: the normal
+        force is within 60° of the nearest taxel's reversed axis, and the point within one spacing (or the radius) of the taxel's axis and
+        within reach along it. Other contacts act on no patch. The taxels of a flat patch have the sum and the moment of the normal forces, those of a
+        curved patch the sum along their axes. With friction forces, the sum and the moment of all forces on the patch are those of the contacts. A contact
+        at the rim is up to half a spacing outside all taxels; wrenches contain the torque of this offset.
+
         reach: largest travel towards the object, metres. The default is the patch's largest stroke plus its largest taxel diameter. If the force is not
         reached, the press ends at this travel, or before the object is behind the substrate.
         shear: ShearState of this skin, which is advanced by one step. The wrenches then contain friction and the lateral forces of inclined contacts.
@@ -241,8 +253,10 @@ class Skin:
         out: the frame; this array is returned.
         wrenches: (n_patches, 6), force and torque of the normal forces on each patch, in the patch's frame about its origin, newtons and newton metres.
         contacts: (n_patches, 2), numbers of touched taxels and of taxels at their stroke.
+        taxel_forces: (n_taxels, 3), force on each taxel in the frame of its patch, newtons: along the axis and, with friction loads, tangential.
         pair_forces: (n_patches, n_objects), normal force of each pair, newtons.
-        residuals: (n_patches, n_objects), requested force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
+        residuals: (n_patches, n_objects), requested force minus normal force of each pair, newtons; 0 for pairs that are read at their poses. A load
+        that acts on no patch of its carrier belongs to the nearest one, if it is nearer than the diameter of the patch.
         travels: (n_patches, n_objects), travel of the patch of each pair, metres; NaN for pairs with force 0.
         """
 

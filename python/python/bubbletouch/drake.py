@@ -8,7 +8,7 @@ The patches do not affect the dynamics. The interface equals bubbletouch.mujoco.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -19,7 +19,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context
 
 import bubbletouch._core as _core
-from bubbletouch._contact_forces import Contact, ContactForces
+from bubbletouch._contact_forces import contact_loads
 
 Array = NDArray[np.float64]
 
@@ -58,28 +58,38 @@ class Skin:
         self.bodies = list(dict.fromkeys(bodies[i] for i in self._touching))
         objects = {i: self.bodies.index(bodies[i]) for i in self._touching}
         surfaces = [shape_surface(of.GetShape(i), tolerance) for i in self._touching]
-        self.skin = _core.Skin(list(layout.values()), surfaces, objects=list(objects.values()), can_touch=np.array([can[i] for i in self._touching]).T)
-        self._contact_forces = ContactForces(list(layout.values()), carriers, bodies, objects)
+        groups = list(dict.fromkeys(carriers))
+        # Index of the carrier and of the object of each geometry; -1 for none.
+        self._carrier = {i: groups.index(body) if body in groups else -1 for i, body in bodies.items()}
+        self._object = {i: objects.get(i, -1) for i in found}
+        self.skin = _core.Skin(
+            list(layout.values()), surfaces, objects=list(objects.values()), can_touch=np.array([can[i] for i in self._touching]).T,
+            carriers=[groups.index(body) for body in carriers],
+        )
 
-    def read(self, context: Context, *, match: Literal["normal_force"] | None = None, **options: Any) -> Array:
+    def read(self, context: Context, *, match: Literal["normal_force", "contact_force"] | None = None, **options: Any) -> Array:
         """Returns the readings at the poses of the diagram's context, (n_taxels,). The options are those of bubbletouch.Skin.read; `match` is the one of
         bubbletouch.mujoco.Skin.read, with the point contacts of the plant's contact results."""
         plant = self._plant.GetMyContextFromRoot(context)
         query: Any = self._scene_graph.get_query_output_port().Eval(self._scene_graph.GetMyContextFromRoot(context))
         patches = _parts([frame.CalcPoseInWorld(plant) for frame in self._frames])
         bodies = _parts([query.GetPoseInWorld(identity) for identity in self._touching])
-        if match not in (None, "normal_force"):
-            raise ValueError(f'match: {match!r}; None or "normal_force"')
-        if match is None:
-            return self.skin.read(patches, bodies, **options)
-        overlaps = np.empty((len(self._frames), len(self.bodies)))
-        self.skin.read(patches, bodies, pair_forces=overlaps)
-        results = self._plant.get_contact_results_output_port().Eval(plant)
-        forces, directions, beside = self._contact_forces.wanted(_contacts(results), patches, overlaps)
-        read = self.skin.read(patches, bodies, forces=forces, directions=directions, **options)
-        if options.get("residuals") is not None:
-            options["residuals"] += beside
-        return read
+        if match not in (None, "normal_force", "contact_force"):
+            raise ValueError(f'match: {match!r}; None or "normal_force" or "contact_force"')
+        loads = None if match is None else self._loads(self._plant.get_contact_results_output_port().Eval(plant), match)
+        return self.skin.read(patches, bodies, loads=loads, **options)
+
+    def _loads(self, results: Any, match: str) -> tuple[NDArray[np.generic], ...]:
+        contacts = [results.point_pair_contact_info(k) for k in range(results.num_point_pair_contacts())]
+        pairs = [(c.point_pair().id_A, c.point_pair().id_B) for c in contacts]
+        carriers, objects = (np.array([[of[i] for i in pair] for pair in pairs], int).reshape(-1, 2) for of in (self._carrier, self._object))
+        points = np.array([c.contact_point() for c in contacts]).reshape(-1, 3)
+        # Drake's normal points from B to A, and its force acts on B.
+        normals = -np.array([c.point_pair().nhat_BA_W for c in contacts]).reshape(-1, 3)
+        forces = np.array([c.contact_force() for c in contacts]).reshape(-1, 3)
+        normal = np.einsum("ck,ck->c", forces, normals)[:, None] * normals
+        others = () if match == "normal_force" else (forces - normal, np.zeros_like(forces))
+        return contact_loads(carriers, objects, points, normal, *others)
 
 
 def shape_surface(shape: Any, tolerance: float = 1e-5) -> _core.Mesh | _core.SphereUnion:
@@ -107,13 +117,6 @@ def shape_surface(shape: Any, tolerance: float = 1e-5) -> _core.Mesh | _core.Sph
 def _parts(poses: Sequence[Any]) -> tuple[Array, Array]:
     """Returns the positions (n, 3) and rotation matrices (n, 9) of rigid transforms."""
     return np.array([X.translation() for X in poses]), np.array([X.rotation().matrix().ravel() for X in poses])
-
-
-def _contacts(results: Any) -> Iterator[Contact]:
-    for info in map(results.point_pair_contact_info, range(results.num_point_pair_contacts())):
-        pair = info.point_pair()
-        normal = -pair.nhat_BA_W  # Drake's normal points from B to A, and its force acts on B.
-        yield Contact(pair.id_A, pair.id_B, info.contact_point(), normal, float(info.contact_force() @ normal))
 
 
 __all__ = ["Skin", "shape_surface"]

@@ -5,6 +5,7 @@ use bubbletouch::geometry::{Aabb, Pose};
 use bubbletouch::objects::Model;
 use bubbletouch::world::{self, Taxels};
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Patch of a skin, with a ball that contains all its taxels.
 pub struct SkinPatch {
@@ -20,6 +21,11 @@ pub struct SkinPatch {
     pub stroke: f64,
     /// Centre and radius of a ball around all taxels, in the patch frame, metres.
     ball: (DVec3, f64),
+    /// Largest distance, metres, of a contact from the axis of the nearest taxel at which it acts on the patch: the largest spacing.
+    /// If larger, contacts beside the skin act on it; if smaller, contacts on the rim do not.
+    margin: f64,
+    /// The same taxels with a stroke that is larger by `reach`.
+    deep: world::Patch,
 }
 
 /// Body that may touch the skin.
@@ -71,12 +77,15 @@ impl SkinPatch {
             |(min, max), center| (min.min(*center), max.max(*center)),
         );
         let is_flat = min.z == max.z && layout.axes().iter().all(|axis| *axis == DVec3::Z);
+        let reach = stroke + 2.0 * radius;
         Self {
             first,
+            margin: radius.max(largest_spacing(&patch)),
+            deep: deepened(&patch, reach),
             is_even: is_flat
                 && layout.as_grid().is_some()
                 && matches!(patch.taxels(), Taxels::Equal(_)),
-            reach: stroke + 2.0 * radius,
+            reach,
             stroke,
             ball: (0.5 * (min + max), 0.5 * (max - min).length() + radius),
             patch,
@@ -91,6 +100,47 @@ impl SkinPatch {
         let nearest = center.clamp(body.bounds.min, body.bounds.max);
         let reach = radius + margin;
         center.distance_squared(nearest) <= reach * reach
+    }
+
+    /// Returns the distance of a point from the nearest taxel, metres, and whether a contact there acts on the patch: it faces the taxel, with at least the
+    /// cosine `facing` between `direction` and the taxel's axis, and is within the margin beside the taxels. It is at most `reach` before the taxel; points of
+    /// deep contacts are up to twice as far behind it.
+    pub fn place(
+        &self,
+        point: DVec3,
+        direction: DVec3,
+        facing: f64,
+        reach: Option<f64>,
+    ) -> (f64, bool) {
+        let layout = self.patch.layout();
+        let squares = layout
+            .centers()
+            .iter()
+            .map(|center| center.distance_squared(point));
+        let nearest = squares.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        let (taxel, square) = nearest.expect("a patch has taxels");
+        let (axis, offset) = (layout.axes()[taxel], point - layout.centers()[taxel]);
+        let height = offset.dot(axis);
+        let beside = (square - height * height).max(0.0).sqrt();
+        let reach = reach.unwrap_or(0.0).max(self.reach);
+        let acts = direction.dot(axis) >= facing * direction.length()
+            && beside <= self.margin * (1.0 + 1e-9)
+            && (-2.0 * reach..=reach).contains(&height);
+        (square.sqrt(), acts)
+    }
+
+    /// Returns the diameter of the ball around all taxels, metres.
+    pub fn size(&self) -> f64 {
+        2.0 * self.ball.1
+    }
+
+    /// Returns the patch with a stroke that is larger by `reach`, metres.
+    pub fn deep(&self, reach: f64) -> Cow<'_, world::Patch> {
+        if reach == self.reach {
+            Cow::Borrowed(&self.deep)
+        } else {
+            Cow::Owned(deepened(&self.patch, reach))
+        }
     }
 
     /// Replaces each deflection of a frame by the deflection under one body at its pose if the latter is larger.
@@ -143,6 +193,41 @@ impl SkinPatch {
         }
         counts
     }
+}
+
+/// Returns a patch with a stroke that is larger by `reach`, metres.
+fn deepened(patch: &world::Patch, reach: f64) -> world::Patch {
+    let deeper = |taxel: &world::Taxel| world::Taxel {
+        stroke: taxel.stroke + reach,
+        ..*taxel
+    };
+    let taxels = match patch.taxels() {
+        Taxels::Equal(taxel) => Taxels::Equal(deeper(taxel)),
+        Taxels::Each(taxels) => Taxels::Each(taxels.iter().map(deeper).collect()),
+    };
+    world::Patch::new(patch.name(), patch.layout().clone(), taxels)
+        .expect("a larger stroke is valid")
+}
+
+/// Returns the largest distance between a taxel and its nearest neighbour, metres; 0 for a single taxel.
+fn largest_spacing(patch: &world::Patch) -> f64 {
+    let centers = patch.layout().centers();
+    if let Some(grid) = patch.layout().as_grid() {
+        return if centers.len() > 1 { grid.pitch } else { 0.0 };
+    }
+    let nearest = centers.iter().enumerate().map(|(taxel, center)| {
+        let others = centers
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != taxel);
+        others
+            .map(|(_, other)| center.distance_squared(*other))
+            .fold(f64::INFINITY, f64::min)
+    });
+    let largest = nearest
+        .filter(|square| square.is_finite())
+        .fold(0.0, f64::max);
+    largest.sqrt()
 }
 
 /// Replaces each deflection of a frame by the given one, if that is larger.

@@ -1,6 +1,6 @@
 //! Class `ShearState`: shear springs with friction of all taxels of a skin, from one read to the next.
 
-use super::parts::SkinPatch;
+use super::parts::{RigidObject, SkinPatch};
 use crate::arrays::{to_rows, whole_number};
 use crate::errors::{bad_input, guarded};
 use bubbletouch::contact::{
@@ -86,26 +86,42 @@ impl ShearState {
     }
 
     /// Presses a patch under all bodies at their poses and advances its shear springs by one step; the deflections are in the workspace. Adds the force and
-    /// the torque on the patch to `wrench`. `patch` is the number of the patch in the set of poses number `set`.
+    /// the torque on the patch to `wrench`. `patch` is the number of the patch in the set of poses number `set`. Bodies of one rigid object drag a taxel
+    /// as one body.
     pub fn step(
         &mut self,
         (set, number, patch): (usize, usize, &world::Patch),
-        (models, poses): (&[Model], &[Pose]),
+        (models, poses, objects): (&[Model], &[Pose], &[RigidObject]),
         wrench: &mut [f64],
         workspace: &mut Workspace,
     ) {
         press_with_contacts(patch, models, poses, workspace);
-        let contacts = workspace.contacts();
+        // A rigid object moves with its first body.
+        let object_of = |body: usize| {
+            objects
+                .iter()
+                .position(|object| object.members.contains(&body))
+        };
+        let of_object = |contact: &TaxelContact| TaxelContact {
+            object: object_of(contact.object).expect("each body that presses belongs to an object"),
+            ..*contact
+        };
+        let contacts: Vec<TaxelContact> = workspace.contacts().iter().map(of_object).collect();
+        let first = |object: &RigidObject| object.members.first().and_then(|body| poses.get(*body));
+        let object_poses = objects
+            .iter()
+            .map(|object| first(object).copied().unwrap_or_default());
+        let object_poses: Vec<Pose> = object_poses.collect();
         let n_taxels = self.n_taxels();
         let state = &mut self.states[set * self.ranges.len() + number];
-        state.step(patch, contacts, poses, NormalForce::Springs);
+        state.step(patch, &contacts, &object_poses, NormalForce::Springs);
         let (first, last) = self.ranges[number];
         let forces = &mut self.forces[set * n_taxels..][first..last];
         forces.fill(DVec3::ZERO);
-        for contact in contacts {
+        for contact in &contacts {
             forces[contact.taxel] = force_on_taxel(patch, state, contact);
         }
-        let load = state.load(patch, contacts).on_object;
+        let load = state.load(patch, &contacts).on_object;
         let six = load.force.to_array().into_iter();
         for (sum, term) in wrench.iter_mut().zip(six.chain(load.torque.to_array())) {
             *sum -= term;

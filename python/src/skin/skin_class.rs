@@ -1,5 +1,6 @@
 //! Class `Skin`: its arguments and results, and the loop over patches and bodies.
 
+use super::contact_loads::{ContactLoads, PatchLoads};
 use super::filled::{Target, read_optional};
 use super::force_match::{WantedForce, press_pair};
 use super::parts::{Body, RigidObject, SkinPatch, take_maximum};
@@ -11,7 +12,10 @@ use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
 use crate::patch::Patch;
 use crate::press::output::Output;
-use bubbletouch::contact::Workspace;
+use bubbletouch::contact::{
+    CarriedLoad, LoadPart, LoadWorkspace, PointLoad, Workspace, Wrench, carry_loads, is_flat,
+    press_at_pose, share_friction, travel_direction,
+};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::Model;
 use bubbletouch::world::{Shear, Shears};
@@ -32,6 +36,7 @@ const OUT_OF_REACH: f64 = 1e6;
 /// objects: index of the rigid object to which each body belongs, (n_bodies,), from 0. If None, each body is an object. Requested forces act between
 /// patches and objects, so the bodies of an object press a patch together.
 /// can_touch: pairs of patch and body that can touch, (n_patches, n_bodies) bool; None for all pairs. A body never presses a patch that it cannot touch.
+/// carriers: index of the rigid body that carries each patch, (n_patches,), from 0, for the argument loads of read(). If None, each patch has its own.
 ///
 /// Raises ValueError if the sequence of patches is empty, if the indices of objects skip a number, or if can_touch has another shape.
 #[pyclass(frozen, module = "bubbletouch")]
@@ -46,6 +51,8 @@ pub struct Skin {
     models: Vec<Model>,
     /// Number of taxels of all patches.
     n_taxels: usize,
+    /// Rigid body that carries each patch.
+    carriers: Vec<usize>,
     arguments: Arguments,
     spare: Spare<SkinWorkspace>,
 }
@@ -56,6 +63,7 @@ struct Arguments {
     bodies: Vec<Py<PyAny>>,
     objects: Option<Vec<usize>>,
     can_touch: Option<Py<PyAny>>,
+    carriers: Option<Vec<usize>>,
 }
 
 /// Memory that successive calls of `read` reuse: copies of the arguments, and results.
@@ -73,6 +81,11 @@ struct SkinWorkspace {
     forces: Vec<f64>,
     /// Direction of travel of each pair, three numbers per pair; empty if all directions are z.
     directions: Vec<f64>,
+    load_workspace: LoadWorkspace,
+    /// Loads of one pair, and tangential force on each taxel in the frame of its patch, newtons; zero without friction loads.
+    pair_loads: Vec<PointLoad>,
+    tangential: Vec<DVec3>,
+    taxel_forces: Vec<f64>,
     frame: Vec<f64>,
     wrenches: Vec<f64>,
     contacts: Vec<i64>,
@@ -98,17 +111,20 @@ struct ReadOptions {
     reach: Option<f64>,
     /// Whether the results of pairs are requested.
     wants_pairs: bool,
+    /// Whether the forces on the taxels are requested.
+    wants_taxel_forces: bool,
 }
 
 #[pymethods]
 impl Skin {
     #[new]
-    #[pyo3(signature = (patches, bodies, *, objects=None, can_touch=None))]
+    #[pyo3(signature = (patches, bodies, *, objects=None, can_touch=None, carriers=None))]
     fn new(
         patches: Vec<Bound<Patch>>,
         bodies: Vec<Bound<PyAny>>,
         objects: Option<Vec<i128>>,
         can_touch: Option<&Bound<PyAny>>,
+        carriers: Option<Vec<i128>>,
     ) -> PyResult<Self> {
         guarded(|| {
             if patches.is_empty() {
@@ -117,11 +133,25 @@ impl Skin {
             let index = |object| whole_number("objects", object);
             let objects = objects.map(|all| all.into_iter().map(index).collect());
             let objects: Option<Vec<usize>> = objects.transpose()?;
+            let index = |carrier| whole_number("carriers", carrier);
+            let carriers = carriers.map(|all| all.into_iter().map(index).collect());
+            let carriers: Option<Vec<usize>> = carriers.transpose()?;
+            if let Some(carriers) = &carriers
+                && carriers.len() != patches.len()
+            {
+                let allowed = format!("one for each of {} patches", patches.len());
+                return Err(bad_input(
+                    "carriers",
+                    format!("{} indices", carriers.len()),
+                    allowed,
+                ));
+            }
             let arguments = Arguments {
                 patches: patches.iter().map(|patch| patch.clone().unbind()).collect(),
                 bodies: bodies.iter().map(|body| body.clone().unbind()).collect(),
                 objects: objects.clone(),
                 can_touch: can_touch.map(|given| given.clone().unbind()),
+                carriers: carriers.clone(),
             };
             let mut first = 0;
             let parts = patches.iter().map(|patch| {
@@ -149,6 +179,7 @@ impl Skin {
                 excluded,
                 models: bodies.iter().map(|body| body.model.clone()).collect(),
                 bodies,
+                carriers: carriers.unwrap_or_else(|| (0..parts.len()).collect()),
                 parts,
                 n_taxels: first,
                 arguments,
@@ -182,6 +213,14 @@ impl Skin {
     /// normal force of a pair is the sum of the forces of the patch's taxels along their axes under this object alone. The patch travels from its pose
     /// until it has the requested force. A pair with force 0 has no contact, even if patch and object overlap. A pair with NaN is read at its pose.
     /// directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_objects, 3); default z.
+    /// loads: contact forces of an engine, instead of forces: a tuple of arrays with a row for each contact, for one set of poses. pairs: carrier of the patch
+    /// and object, (m, 2). points: (m, 3), metres. normal forces on the carrier: (m, 3), newtons. Two more arrays are optional: friction forces, (m, 3),
+    /// and torques about the points, (m, 3), N·m. All vectors are in the world. A contact acts on the nearest patch of the carrier that faces it: the normal
+    /// force is within 60° of the nearest taxel's reversed axis, and the point within one spacing (or the radius) of the taxel's axis and
+    /// within reach along it. Other contacts act on no patch. The taxels of a flat patch have the sum and the moment of the normal forces, those of a
+    /// curved patch the sum along their axes. With friction forces, the sum and the moment of all forces on the patch are those of the contacts. A contact
+    /// at the rim is up to half a spacing outside all taxels; wrenches contain the torque of this offset.
+    ///
     /// reach: largest travel towards the object, metres. The default is the patch's largest stroke plus its largest taxel diameter. If the force is not
     /// reached, the press ends at this travel, or before the object is behind the substrate.
     /// shear: ShearState of this skin, which is advanced by one step. The wrenches then contain friction and the lateral forces of inclined contacts.
@@ -190,10 +229,12 @@ impl Skin {
     /// out: the frame; this array is returned.
     /// wrenches: (n_patches, 6), force and torque of the normal forces on each patch, in the patch's frame about its origin, newtons and newton metres.
     /// contacts: (n_patches, 2), numbers of touched taxels and of taxels at their stroke.
+    /// taxel_forces: (n_taxels, 3), force on each taxel in the frame of its patch, newtons: along the axis and, with friction loads, tangential.
     /// pair_forces: (n_patches, n_objects), normal force of each pair, newtons.
-    /// residuals: (n_patches, n_objects), requested force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
+    /// residuals: (n_patches, n_objects), requested force minus normal force of each pair, newtons; 0 for pairs that are read at their poses. A load
+    /// that acts on no patch of its carrier belongs to the nearest one, if it is nearer than the diameter of the patch.
     /// travels: (n_patches, n_objects), travel of the patch of each pair, metres; NaN for pairs with force 0.
-    #[pyo3(signature = (patch_poses, body_poses, *, output="deflection", forces=None, directions=None, reach=None, shear=None, out=None, wrenches=None, contacts=None, pair_forces=None, residuals=None, travels=None))]
+    #[pyo3(signature = (patch_poses, body_poses, *, output="deflection", forces=None, directions=None, loads=None, reach=None, shear=None, out=None, wrenches=None, contacts=None, taxel_forces=None, pair_forces=None, residuals=None, travels=None))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn read<'py>(
         &self,
@@ -203,11 +244,13 @@ impl Skin {
         output: &str,
         forces: Option<&Bound<'py, PyAny>>,
         directions: Option<&Bound<'py, PyAny>>,
+        loads: Option<&Bound<'py, PyAny>>,
         reach: Option<f64>,
         shear: Option<&Bound<'py, ShearState>>,
         out: Option<Bound<'py, PyAny>>,
         wrenches: Option<&Bound<'py, PyAny>>,
         contacts: Option<&Bound<'py, PyAny>>,
+        taxel_forces: Option<&Bound<'py, PyAny>>,
         pair_forces: Option<&Bound<'py, PyAny>>,
         residuals: Option<&Bound<'py, PyAny>>,
         travels: Option<&Bound<'py, PyAny>>,
@@ -217,6 +260,7 @@ impl Skin {
                 output: Output::from_argument(output)?,
                 reach: reach_of(reach)?,
                 wants_pairs: pair_forces.is_some() || residuals.is_some() || travels.is_some(),
+                wants_taxel_forces: taxel_forces.is_some(),
             };
             let mut scratch = self.spare.take().unwrap_or_default();
             let n_sets = self.read_pose_sets((patch_poses, body_poses), &mut scratch)?;
@@ -229,11 +273,13 @@ impl Skin {
             let vectors = shape(&[n_patches, n_objects, 3]);
             read_optional("directions", directions, &vectors, &mut scratch.directions)?;
             check_pairs(&scratch.forces, &scratch.directions)?;
+            let loads = self.read_loads(loads, n_sets, &mut scratch, (options, shear.is_some()))?;
             let float = |place, array: Option<&Bound<'py, PyAny>>, last: &[usize]| {
                 Target::<f64>::new(place, array, (&shape(last), "a float64"))
             };
             let out_target = float("out", out.as_ref(), &[self.n_taxels])?;
             let wrenches = float("wrenches", wrenches, &[n_patches, 6])?;
+            let taxel_forces = float("taxel_forces", taxel_forces, &[self.n_taxels, 3])?;
             let pair_forces = float("pair_forces", pair_forces, &[n_patches, n_objects])?;
             let residuals = float("residuals", residuals, &[n_patches, n_objects])?;
             let travels = float("travels", travels, &[n_patches, n_objects])?;
@@ -255,7 +301,14 @@ impl Skin {
                 }
             };
             let (read, state) = (&mut scratch, shear.as_deref_mut());
-            py.detach(|| self.compute(read, n_sets.unwrap_or(1), options, state));
+            py.detach(|| match &loads {
+                Some((loads, part)) if state.is_none() => self.carry(read, (loads, *part), options),
+                _ => self.compute(read, n_sets.unwrap_or(1), options, state),
+            });
+            for (patch, object, force) in loads.iter().flat_map(|(loads, _)| &loads.beside) {
+                scratch.pairs.residuals[patch * n_objects + object] += force;
+            }
+            taxel_forces.fill(&scratch.taxel_forces)?;
             wrenches.fill(&scratch.wrenches)?;
             pair_forces.fill(&scratch.pairs.forces)?;
             residuals.fill(&scratch.pairs.residuals)?;
@@ -320,10 +373,12 @@ impl Skin {
             bodies,
             objects,
             can_touch,
+            carriers,
         } = &self.arguments;
         let named = PyDict::new(py);
         named.set_item("objects", objects)?;
         named.set_item("can_touch", can_touch)?;
+        named.set_item("carriers", carriers)?;
         Ok(((patches, bodies).into_pyobject(py)?, named))
     }
 
@@ -336,6 +391,9 @@ impl Skin {
         )
     }
 }
+
+/// Largest relative difference between required and carried force that counts as rounding.
+const CARRIED: f64 = 1e-9;
 
 impl Skin {
     /// Reads the poses of patches and bodies. Returns the number of sets, or `None` if the arrays have no axis of sets.
@@ -357,6 +415,221 @@ impl Skin {
             (patches, &mut scratch.patch_poses),
             (bodies, &mut scratch.body_poses),
         )
+    }
+
+    /// Reads contact loads and assigns them to patches. With shear springs, the forces and directions of the pairs follow from the loads.
+    fn read_loads(
+        &self,
+        given: Option<&Bound<PyAny>>,
+        n_sets: Option<usize>,
+        scratch: &mut SkinWorkspace,
+        (options, has_shear): (ReadOptions, bool),
+    ) -> PyResult<Option<(PatchLoads, LoadPart)>> {
+        let Some(given) = given else { return Ok(None) };
+        if n_sets.is_some() || !scratch.forces.is_empty() {
+            let given = if n_sets.is_some() {
+                "poses with an axis of sets"
+            } else {
+                "loads beside forces"
+            };
+            return Err(bad_input(
+                "loads",
+                given,
+                "one set of poses, without forces",
+            ));
+        }
+        let n_carriers = self.carriers.iter().max().map_or(0, |last| last + 1);
+        let n_objects = self.objects[0].len();
+        let loads = ContactLoads::read(given, n_carriers, n_objects)?;
+        if has_shear && loads.part == LoadPart::Whole {
+            let allowed = "normal forces only: friction forces of the engine and shear springs exclude each other";
+            return Err(bad_input(
+                "shear",
+                "a state beside friction forces",
+                allowed,
+            ));
+        }
+        let found = loads.by_patch(
+            &self.parts,
+            &self.carriers,
+            &scratch.patch_poses,
+            options.reach,
+        );
+        if has_shear {
+            clear(&mut scratch.forces, self.parts.len() * n_objects);
+            scratch.directions.clear();
+            for pair in found.loads.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+                let (patch, object, _) = pair[0];
+                scratch.forces[patch * n_objects + object] =
+                    pair.iter().map(|(_, _, load)| load.normal.length()).sum();
+            }
+            for at in 0..self.parts.len() * n_objects {
+                let of_pair = found
+                    .loads
+                    .iter()
+                    .filter(|(patch, object, _)| patch * n_objects + object == at);
+                let of_pair: Vec<PointLoad> = of_pair.map(|(_, _, load)| *load).collect();
+                let direction = travel_direction(&self.parts[at / n_objects].patch, &of_pair);
+                scratch.directions.extend(direction.to_array());
+            }
+        }
+        Ok(Some((found, loads.part)))
+    }
+
+    /// Computes all results for one set of poses under contact loads into the scratch memory. An object without loads does not press.
+    fn carry(
+        &self,
+        scratch: &mut SkinWorkspace,
+        (loads, part): (&PatchLoads, LoadPart),
+        options: ReadOptions,
+    ) {
+        let (n_patches, n_objects) = (self.parts.len(), self.objects[0].len());
+        clear(&mut scratch.frame, self.n_taxels);
+        clear(&mut scratch.wrenches, n_patches * 6);
+        clear(&mut scratch.pairs.forces, n_patches * n_objects);
+        clear(&mut scratch.pairs.residuals, n_patches * n_objects);
+        scratch.pairs.travels.clear();
+        scratch
+            .pairs
+            .travels
+            .resize(n_patches * n_objects, f64::NAN);
+        scratch.contacts.clear();
+        scratch.contacts.resize(n_patches * 2, 0);
+        scratch.tangential.clear();
+        scratch.tangential.resize(self.n_taxels, DVec3::ZERO);
+        for pair in loads.loads.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            let (number, object, _) = pair[0];
+            let part_of = &self.parts[number];
+            let reach = options.reach.unwrap_or(part_of.reach);
+            scratch.pair_loads.clear();
+            scratch
+                .pair_loads
+                .extend(pair.iter().map(|(_, _, load)| *load));
+            let object_of = &self.objects[number][object];
+            let patch_from_world = scratch.patch_poses[number].inverse();
+            scratch.placed.clear();
+            let placed = scratch
+                .body_poses
+                .iter()
+                .map(|pose| patch_from_world.compose(pose));
+            scratch.placed.extend(placed);
+            let taxels = part_of.first..part_of.first + part_of.patch.n_taxels();
+            let (frame, workspace) = (&mut scratch.frame[taxels.clone()], &mut scratch.workspace);
+            let of_pair = &mut scratch.object_frame;
+            of_pair.clear();
+            of_pair.extend_from_slice(frame);
+            let carried = if is_flat(&part_of.patch) {
+                scratch.object_poses.clear();
+                let deeper = |member: &usize| {
+                    let mut pose = scratch.placed[*member];
+                    pose.translation.z -= reach;
+                    pose
+                };
+                scratch
+                    .object_poses
+                    .extend(object_of.members.iter().map(deeper));
+                press_at_pose(
+                    &part_of.deep(reach),
+                    &object_of.models,
+                    &scratch.object_poses,
+                    workspace,
+                );
+                let deep = (workspace.deflections(), reach);
+                carry_loads(
+                    &part_of.patch,
+                    deep,
+                    (&scratch.pair_loads, part),
+                    frame,
+                    &mut scratch.load_workspace,
+                )
+            } else {
+                let direction = travel_direction(&part_of.patch, &scratch.pair_loads);
+                let force = scratch
+                    .pair_loads
+                    .iter()
+                    .map(|load| load.normal.length())
+                    .sum();
+                let wanted = WantedForce {
+                    force,
+                    direction,
+                    reach,
+                };
+                let poses = (&scratch.placed[..], &mut scratch.object_poses);
+                let held = press_pair(part_of, object_of, poses, wanted, workspace);
+                for (taxel, deflection) in workspace.deflections().iter().enumerate() {
+                    let stroke = part_of.patch.taxels().at(taxel).stroke;
+                    frame[taxel] = (frame[taxel] + deflection).min(stroke);
+                }
+                CarriedLoad {
+                    force: held.force,
+                    required: force,
+                    travel: held.travel,
+                }
+            };
+            let at = number * n_objects + object;
+            scratch.pairs.forces[at] = carried.force;
+            scratch.pairs.residuals[at] = carried.required - carried.force;
+            scratch.pairs.travels[at] = carried.travel;
+            of_pair
+                .iter_mut()
+                .zip(&*frame)
+                .for_each(|(before, after)| *before = after - *before);
+            let rest = share_friction(
+                &part_of.patch,
+                (&scratch.pair_loads, part),
+                of_pair,
+                &mut scratch.tangential[taxels],
+            );
+            // The wrench of forces that the taxels carry contains the torque of contacts on the rim.
+            let is_carried = (carried.required - carried.force).abs() <= CARRIED * carried.required;
+            if is_carried && (part == LoadPart::Whole || is_flat(&part_of.patch)) {
+                let torque = &mut scratch.wrenches[number * 6 + 3..][..3];
+                torque
+                    .iter_mut()
+                    .zip(rest.torque.to_array())
+                    .for_each(|(sum, term)| *sum += term);
+            }
+        }
+        for (number, part) in self.parts.iter().enumerate() {
+            let taxels = part.first..part.first + part.patch.n_taxels();
+            let frame = &mut scratch.frame[taxels.clone()];
+            let wrench = &mut scratch.wrenches[number * 6..][..6];
+            part.add_wrench(frame, wrench);
+            let centers = part.patch.layout().centers();
+            for (center, force) in centers.iter().zip(&scratch.tangential[taxels]) {
+                let Wrench { force, torque } = Wrench::at(*center, *force);
+                let six = force.to_array().into_iter().chain(torque.to_array());
+                wrench
+                    .iter_mut()
+                    .zip(six)
+                    .for_each(|(sum, term)| *sum += term);
+            }
+            scratch.contacts[number * 2..][..2].copy_from_slice(&part.count(frame));
+        }
+        self.write_taxel_forces(scratch, 1, options);
+        for part in &self.parts {
+            let frame = &mut scratch.frame[part.first..][..part.patch.n_taxels()];
+            options.output.convert(&part.patch, frame);
+        }
+    }
+
+    /// Writes the forces on all taxels from deflections and tangential forces, if they are requested.
+    fn write_taxel_forces(&self, scratch: &mut SkinWorkspace, n: usize, options: ReadOptions) {
+        scratch.taxel_forces.clear();
+        if !options.wants_taxel_forces {
+            return;
+        }
+        for set in 0..n {
+            for part in &self.parts {
+                let (layout, taxels) = (part.patch.layout(), part.patch.taxels());
+                for (taxel, axis) in layout.axes().iter().enumerate() {
+                    let at = set * self.n_taxels + part.first + taxel;
+                    let tangential = scratch.tangential.get(at).copied().unwrap_or_default();
+                    let force = tangential - taxels.at(taxel).stiffness * scratch.frame[at] * *axis;
+                    scratch.taxel_forces.extend(force.to_array());
+                }
+            }
+        }
     }
 
     /// Computes all results of `n` sets of poses into the scratch memory.
@@ -384,8 +657,12 @@ impl Skin {
             let wrench = &mut scratch.wrenches[index * 6..][..6];
             if let Some(shear) = &mut shear {
                 let bodies = match is_near {
-                    true => (&self.models[..], &scratch.placed[..]),
-                    false => (&[][..], &[][..]),
+                    true => (
+                        &self.models[..],
+                        &scratch.placed[..],
+                        &self.objects[number][..],
+                    ),
+                    false => (&[][..], &[][..], &[][..]),
                 };
                 let patch = (set, number, &part.patch);
                 shear.step(patch, bodies, wrench, &mut scratch.workspace);
@@ -397,9 +674,14 @@ impl Skin {
                 true => part.count(frame),
                 false => [0, 0],
             });
-            if is_near {
-                options.output.convert(&part.patch, frame);
-            }
+        }
+        scratch.tangential.clear();
+        self.write_taxel_forces(scratch, n, options);
+        for index in 0..n_read {
+            let part = &self.parts[index % n_patches];
+            let taxels = (index / n_patches) * self.n_taxels + part.first..;
+            let frame = &mut scratch.frame[taxels][..part.patch.n_taxels()];
+            options.output.convert(&part.patch, frame);
         }
     }
 

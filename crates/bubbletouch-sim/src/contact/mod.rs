@@ -44,6 +44,7 @@ mod instructions;
 mod lanes_below;
 pub(crate) mod law;
 mod mesh;
+mod point_loads;
 mod press;
 mod press_summary;
 mod root_search;
@@ -63,6 +64,10 @@ pub(crate) use instructions::for_instructions;
 pub use lanes_below::LanesBelow;
 pub use law::saturation_limit;
 pub use mesh::stopping_height;
+pub use point_loads::{
+    CarriedLoad, LoadPart, LoadWorkspace, PointLoad, carry_loads, is_flat, share_friction,
+    travel_direction,
+};
 pub use press::{
     Goal, first_contact, press, press_at_pose, press_into, press_onto_zeros, press_to_depth,
     press_to_force, press_to_travel,
