@@ -35,9 +35,9 @@ impl Projection {
         }
         let image = |(image, m): (usize, usize)| {
             let taxels = image * n..(image + 1) * n;
-            let frames = match training.frames.is_empty() {
-                true => training.frames,
-                false => training.frames.slice_move(s![.., taxels]),
+            let frames = match training.frames.ncols() {
+                0 => training.frames,
+                _ => training.frames.slice_move(s![.., taxels]),
             };
             let training = TrainingFrames { frames, ..training };
             Self::learned(ensemble, grid, m, (training, seed))

@@ -1,11 +1,13 @@
 //! Forward selection of taxels by validation accuracy.
 //!
 //! The validated classifier is the nearest neighbour in the selected taxels, each divided by its standard deviation over the training frames. A frame is
-//! validated against all frames of other groups (leave one group out); it is correct if its nearest frame has its class. Let dᵢⱼ be the squared distance of
-//! frames i and j in the taxels selected so far. A candidate with readings a gives dᵢⱼ + (aᵢ − aⱼ)², so that each candidate costs one pass over all pairs.
+//! validated against all frames of other groups (leave one group out); it is correct if its nearest frame has its class. If several frames are equally near, as
+//! for readings of few levels, it counts as the fraction of them that have its class. Let dᵢⱼ be the squared distance of frames i and j in the taxels selected
+//! so far. A candidate with readings a gives dᵢⱼ + (aᵢ − aⱼ)², so that each candidate costs one pass over all pairs.
 //!
 //! Each step adds the candidate with the most correct frames. If these numbers are equal, the candidate is added that has the largest sum of margins (o −
-//! s) / (o + s). Here s is the distance of a frame to the nearest frame of its class, and o the distance to the nearest frame of other classes.
+//! s) / (o + s). Here s is the squared distance of a frame to the nearest frame of its class, and o that to the nearest frame of other classes. If these sums are
+//! equal too, the candidate with the largest sum of √o is added. With one frame of each class, only this sum differs.
 
 use crate::error::{Error, Result};
 use crate::random::Seed;
@@ -66,8 +68,8 @@ pub(crate) fn greedy_taxels(
     Ok(selected)
 }
 
-/// Score of a set of taxels: number of correct frames, then the sum of margins.
-type Score = (usize, f64);
+/// Score of a set of taxels: number of correct frames, then the sum of margins, then the sum of distances to other classes.
+type Score = (f64, f64, f64);
 
 /// Validated frames with the distances of all pairs in the selected taxels.
 struct Validated {
@@ -114,20 +116,32 @@ impl Validated {
     fn score(&self, candidate: usize) -> Score {
         let readings = self.readings.row(candidate);
         let readings = readings.as_slice().expect("rows are whole");
-        let (mut n_correct, mut margins) = (0, 0.0);
+        let (mut n_correct, mut margins, mut distances) = (0.0, 0.0, 0.0);
         for ((row, own), &reading) in self.distances.outer_iter().zip(&self.own).zip(readings) {
             let row = row.to_slice().expect("rows are whole");
             let least =
                 |range: Range<usize>| nearest(&row[range.clone()], &readings[range], reading);
             let same = least(own.clone());
             let other = least(0..own.start).min(least(own.end..row.len()));
-            n_correct += usize::from(same < other);
+            if same < other {
+                n_correct += 1.0;
+            } else if same == other && same.is_finite() {
+                let count = |range: Range<usize>| {
+                    let pairs = row[range.clone()].iter().zip(&readings[range]);
+                    let near = pairs.filter(|&(&d, &r)| squared(reading, (d, r)) == same);
+                    near.count() as f64
+                };
+                n_correct += count(own.clone()) / count(0..row.len());
+            }
             let (same, other) = (f64::from(same), f64::from(other));
             if (same + other).is_finite() && same + other > 0.0 {
                 margins += (other - same) / (other + same);
             }
+            if other.is_finite() {
+                distances += other.sqrt();
+            }
         }
-        (n_correct, margins)
+        (n_correct, margins, distances)
     }
 
     fn add(&mut self, taxel: usize) {
@@ -141,14 +155,18 @@ impl Validated {
     }
 }
 
+/// Returns dⱼ + (a − aⱼ)² for a = `reading`.
+fn squared(reading: f32, (distance, other): (f32, f32)) -> f32 {
+    distance + (reading - other) * (reading - other)
+}
+
 /// Returns the smallest of dⱼ + (a − aⱼ)²; infinity if there is none.
 fn nearest(distances: &[f32], readings: &[f32], reading: f32) -> f32 {
-    let squared = |distance: f32, other: f32| distance + (reading - other) * (reading - other);
     let mut lanes = [f32::INFINITY; LANES];
     let (mut d, mut r) = (distances.chunks_exact(LANES), readings.chunks_exact(LANES));
     for (distances, readings) in d.by_ref().zip(r.by_ref()) {
         for lane in 0..LANES {
-            let distance = squared(distances[lane], readings[lane]);
+            let distance = squared(reading, (distances[lane], readings[lane]));
             lanes[lane] = if distance < lanes[lane] {
                 distance
             } else {
@@ -157,7 +175,7 @@ fn nearest(distances: &[f32], readings: &[f32], reading: f32) -> f32 {
         }
     }
     let rest = d.remainder().iter().zip(r.remainder());
-    let rest = rest.map(|(&distance, &other)| squared(distance, other));
+    let rest = rest.map(|(&distance, &other)| squared(reading, (distance, other)));
     lanes.into_iter().chain(rest).fold(f32::INFINITY, f32::min)
 }
 
@@ -200,8 +218,8 @@ mod tests {
         (frames, labels, groups)
     }
 
-    /// Returns the number of frames whose nearest frame of another group has their class, and the sum of margins, computed from the definition.
-    fn slow_score(taxels: &[usize], training: &TrainingFrames) -> (usize, f64) {
+    /// Returns the score of a set of taxels, computed from the definition.
+    fn slow_score(taxels: &[usize], training: &TrainingFrames) -> Score {
         let frames = training.frames;
         let scaled = |frame: usize, taxel: usize| {
             let column = frames.column(taxel);
@@ -209,46 +227,88 @@ mod tests {
             let variance = column.mapv(|v| (v - mean).powi(2)).mean().unwrap();
             (frames[[frame, taxel]] - mean) / variance.sqrt()
         };
-        let (mut n_correct, mut margins) = (0, 0.0);
+        let (mut n_correct, mut margins, mut distances) = (0.0, 0.0, 0.0);
         for i in 0..frames.nrows() {
-            let mut nearest = [f64::INFINITY; 2];
+            let (mut nearest, mut n_near) = ([f64::INFINITY; 2], [0.0; 2]);
             for j in (0..frames.nrows()).filter(|&j| training.groups[j] != training.groups[i]) {
                 let differences = taxels
                     .iter()
                     .map(|&taxel| scaled(i, taxel) - scaled(j, taxel));
                 let distance: f64 = differences.map(|d| d * d).sum();
                 let class = usize::from(training.labels[i] != training.labels[j]);
-                nearest[class] = nearest[class].min(distance);
+                // Sums of equal terms in another order differ by rounding.
+                if distance < nearest[class] - 1e-9 {
+                    (nearest[class], n_near[class]) = (distance, 0.0);
+                }
+                n_near[class] += f64::from(u8::from(distance < nearest[class] + 1e-9));
             }
-            n_correct += usize::from(nearest[0] < nearest[1]);
-            margins += (nearest[1] - nearest[0]) / (nearest[1] + nearest[0]);
+            let [same, other] = nearest;
+            n_correct += match (same - other).abs() < 1e-9 {
+                true => n_near[0] / (n_near[0] + n_near[1]),
+                false => f64::from(u8::from(same < other)),
+            };
+            if same + other > 0.0 {
+                margins += (other - same) / (other + same);
+            }
+            distances += other.sqrt();
         }
-        (n_correct, margins)
+        (n_correct, margins, distances)
     }
 
     #[test]
     fn each_step_adds_the_taxel_that_brute_force_finds() {
         let (frames, labels, groups) = training();
-        let training = TrainingFrames {
-            frames: frames.view(),
-            labels: &labels,
-            groups: &groups,
-            selection: Selection::Greedy,
-        };
-        let fast = greedy_taxels(&training, 6, &Seed::new(1)).unwrap();
+        // Readings of two levels have many equally near frames.
+        let touched = frames.mapv(|reading| f64::from(u8::from(reading > 0.4)));
+        for frames in [frames, touched] {
+            check_steps(&TrainingFrames {
+                frames: frames.view(),
+                labels: &labels,
+                groups: &groups,
+                selection: Selection::Greedy,
+            });
+        }
+    }
+
+    fn check_steps(training: &TrainingFrames) {
+        let fast = greedy_taxels(training, 6, &Seed::new(1)).unwrap();
         let mut slow: Vec<usize> = Vec::new();
         while slow.len() < 6 {
             let left = (0..18).filter(|taxel| !slow.contains(taxel));
-            let scores = left.map(|taxel| {
-                (
-                    slow_score(&[&slow[..], &[taxel]].concat(), &training),
-                    taxel,
-                )
-            });
+            let scores =
+                left.map(|taxel| (slow_score(&[&slow[..], &[taxel]].concat(), training), taxel));
             let best = scores.reduce(|a, b| if b.0 > a.0 { b } else { a });
             slow.push(best.unwrap().1);
         }
         assert_eq!(fast, slow);
+    }
+
+    #[test]
+    fn one_of_equally_near_frames_counts_by_their_classes() {
+        // Taxels 0 to 9 are independent of the class; taxel 10 is on for 3 of 4 frames of one class and for 1 of 4 frames of the other.
+        let labels: Vec<usize> = (0..80).map(|frame| frame % 2).collect();
+        let frames = Array2::from_shape_fn((80, 11), |(frame, taxel)| {
+            let is_on = match taxel {
+                0..10 => (frame / 2) >> (taxel % 5) & 1 == 1,
+                _ => ((frame / 2 + taxel) % 4 == 0) != (labels[frame] == 1),
+            };
+            f64::from(u8::from(is_on))
+        });
+        let training = TrainingFrames {
+            labels: &labels,
+            ..TrainingFrames::from(frames.view())
+        };
+        assert_eq!(greedy_taxels(&training, 1, &Seed::new(1)).unwrap(), [10]);
+    }
+
+    #[test]
+    fn one_frame_of_each_class_selects_the_taxel_that_separates_most_classes() {
+        let frames = ndarray::arr2(&[[0.0, 0.0], [0.0, 1.0], [0.0, 2.0], [1.0, 3.0]]);
+        let training = TrainingFrames {
+            labels: &[0, 1, 2, 3],
+            ..TrainingFrames::from(frames.view())
+        };
+        assert_eq!(greedy_taxels(&training, 1, &Seed::new(1)).unwrap(), [1]);
     }
 
     #[test]
