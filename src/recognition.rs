@@ -35,6 +35,7 @@
 //! ```
 
 pub use crate::learning::classifiers::{ClassifierAbout, ClassifierKind, Train};
+pub use crate::learning::model_file::ModelFile;
 pub use crate::learning::{classifiers, data, evaluation};
 pub use crate::statistics;
 pub use bubbletouch_sim::features;

@@ -18,7 +18,7 @@ pub use crate::inputs::units::millimetres;
 pub use crate::report::pictures::snapshots::Snapshots;
 pub use crate::statistics::p_status::CONFIDENCE;
 pub use crate::studies::recognition::exports::feature_files::{
-    FEATURE_FILES, FeatureSet, read_features,
+    FEATURE_FILES, FeatureSet, NewRows, read_features, read_new_rows,
 };
 pub use crate::studies::recognition::exports::touch_files::{
     ReadFrames, TOUCH_FILES, touch_units, write_human_touches, write_touches,

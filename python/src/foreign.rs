@@ -1,6 +1,6 @@
 //! Classifiers and features of a study whose code is in Python.
 //!
-//! The objects come from `bubbletouch/_foreign.py`. A trainer has the methods `fit(rows, labels, seed)`, `predict(model, rows)` and
+//! The objects come from `bubbletouch/_foreign.py`. A trainer has the methods `fit(rows, labels, seed, groups)`, `predict(model, rows)` and
 //! `log_probabilities(model, rows)`. A function has the method `compute(frames)`.
 
 use bubbletouch::recognition::classifiers::foreign as classifiers;
@@ -61,20 +61,48 @@ struct Model {
     model: Py<PyAny>,
 }
 
+impl Trainer {
+    fn train(
+        &self,
+        rows: &Dataset,
+        groups: Option<&[usize]>,
+        seed: u32,
+    ) -> std::result::Result<Box<dyn classifiers::ForeignModel>, svm::Error> {
+        let groups: Option<Vec<i64>> =
+            groups.map(|groups| groups.iter().map(|&group| group as i64).collect());
+        let model = self.0.call(FIT, |object| {
+            let py = object.py();
+            let labels = rows.targets.mapv(|label| label as i64);
+            let groups = groups.map(|groups| groups.to_pyarray(py));
+            let given = (
+                rows.records.to_pyarray(py),
+                labels.to_pyarray(py),
+                seed,
+                groups,
+            );
+            Ok(object.call_method1("fit", given)?.unbind())
+        })?;
+        let trainer = self.0.clone();
+        Ok(Box::new(Model { trainer, model }))
+    }
+}
+
 impl classifiers::ForeignClassifier for Trainer {
     fn fit(
         &self,
         rows: &Dataset,
         seed: u32,
     ) -> std::result::Result<Box<dyn classifiers::ForeignModel>, svm::Error> {
-        let model = self.0.call(FIT, |object| {
-            let py = object.py();
-            let labels = rows.targets.mapv(|label| label as i64);
-            let given = (rows.records.to_pyarray(py), labels.to_pyarray(py), seed);
-            Ok(object.call_method1("fit", given)?.unbind())
-        })?;
-        let trainer = self.0.clone();
-        Ok(Box::new(Model { trainer, model }))
+        self.train(rows, None, seed)
+    }
+
+    fn fit_groups(
+        &self,
+        rows: &Dataset,
+        groups: &[usize],
+        seed: u32,
+    ) -> std::result::Result<Box<dyn classifiers::ForeignModel>, svm::Error> {
+        self.train(rows, Some(groups), seed)
     }
 }
 

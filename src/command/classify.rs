@@ -7,7 +7,6 @@ use crate::command::terminal::streams::say;
 use bubbletouch::files::check_single_output;
 use bubbletouch::quantile::quantile;
 use bubbletouch::random::Seed;
-use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost, TrainedClassifier};
 use bubbletouch::recognition::classifiers::parameters;
 use bubbletouch::recognition::data::dataset::Dataset;
@@ -18,7 +17,10 @@ use bubbletouch::recognition::statistics::grouped::{
 };
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen};
 use bubbletouch::recognition::svm::{Multiclass, Solver};
-use bubbletouch::study::{CONFIDENCE, FeatureSet, KeyValue, read_features, write_npy, write_texts};
+use bubbletouch::recognition::{ClassifierKind, ModelFile};
+use bubbletouch::study::{
+    CONFIDENCE, FeatureSet, KeyValue, NewRows, read_features, read_new_rows, write_npy, write_texts,
+};
 use bubbletouch::{Error, Result};
 use ndarray::{Array1, Axis};
 use serde::de::IntoDeserializer;
@@ -27,7 +29,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Train, test and time one classifier on exported features
+/// Train, test and time one classifier on exported features, or apply a saved one
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  bubbletouch classify features --classifier rbf_svm --c-grid 0.1,1,10"
@@ -38,8 +40,13 @@ pub struct Args {
     /// The folder contains features, labels, train and test as .npy, .npz or .csv files.
     folder: PathBuf,
     /// Train this classifier: linear_svm, rbf_svm, polynomial_svm, …
-    #[arg(long, value_name = "NAME", value_parser = word::<ClassifierKind>, help_heading = "Classifier")]
-    classifier: ClassifierKind,
+    #[arg(long, value_name = "NAME", value_parser = word::<ClassifierKind>, required_unless_present = "model", help_heading = "Classifier")]
+    classifier: Option<ClassifierKind>,
+    /// Apply the trained classifier that --save wrote
+    ///
+    /// The test rows are predicted, or all rows if the folder has no test rows. With labels, the accuracy is printed.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["classifier", "groups", "c", "c_grid", "gamma_grid", "cv_folds", "solver", "multiclass", "tolerance", "train_rows", "save"], help_heading = "Input")]
+    model: Option<PathBuf>,
     /// Read the group of every row (pose, grasp, day, …)
     ///
     /// The file contains one integer or text for each row of features. A group that both trains and tests is refused. Folds of --c-grid keep groups
@@ -103,6 +110,9 @@ pub struct Args {
     /// Write the predicted labels of the test rows to .npy
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     predictions: Option<PathBuf>,
+    /// Write the trained classifier
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    save: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -183,18 +193,31 @@ pub fn classify(args: &Args) -> Result<()> {
     if args.repeat == 0 {
         return Err(Error::input("--repeat", 0, "at least 1"));
     }
-    args.check_parameters()?;
-    args.predictions
-        .as_deref()
-        .map_or(Ok(()), check_single_output)?;
+    for path in [&args.predictions, &args.save].into_iter().flatten() {
+        check_single_output(path)?;
+    }
+    let kind = match (&args.model, args.classifier) {
+        (None, Some(kind)) => kind,
+        (model, _) => return args.apply(model.as_deref().expect("a required option")),
+    };
+    args.check_parameters(kind)?;
     let set = read_features(&args.folder)?;
     let set = match &args.groups {
         None => set,
         Some(path) => set.with_groups(path)?,
     };
-    let (findings, predicted) = args.train_and_test(&set)?;
+    let (findings, predicted, classifier) = args.train_and_test(kind, &set)?;
     if let Some(path) = &args.predictions {
         write_predictions(path, &set.classes, &predicted)?;
+    }
+    if let Some(path) = &args.save {
+        let classes = set.classes;
+        let file = ModelFile {
+            kind,
+            classes,
+            classifier,
+        };
+        file.write(path)?;
     }
     match args.json {
         true => {
@@ -205,10 +228,79 @@ pub fn classify(args: &Args) -> Result<()> {
     }
 }
 
+/// Values that `bubbletouch classify --model` prints; in JSON, one key per field.
+#[derive(Serialize)]
+struct Applied {
+    program: &'static str,
+    classifier: ClassifierKind,
+    n_rows: usize,
+    n_measurements: usize,
+    /// Number of correct predictions; `None` without labels.
+    n_correct: Option<usize>,
+    accuracy: Option<f64>,
+    /// Time of each repetition to predict all rows, including scaling, s.
+    predict_s: Vec<f64>,
+}
+
 impl Args {
-    fn train_and_test(&self, set: &FeatureSet) -> Result<(Findings, Array1<usize>)> {
-        let classifier = self.classifier()?;
-        let is_svm = self.classifier.is_kernel_svm();
+    /// Applies a trained classifier to the rows of the folder.
+    fn apply(&self, model: &Path) -> Result<()> {
+        for key in parameters::keys() {
+            let option = format!("--{}", key.replace('_', "-"));
+            let is_given = self.parameters.has(key);
+            check_used(&option, is_given, false, "--classifier")?;
+        }
+        let model = ModelFile::read(model)?;
+        let NewRows { features, labels } = read_new_rows(&self.folder)?;
+        let (mut predict_s, mut predicted) = (Vec::new(), Array1::default(0));
+        for _ in 0..self.repeat {
+            let start = Instant::now();
+            predicted = model.classifier.labels(features.view())?;
+            predict_s.push(start.elapsed().as_secs_f64());
+        }
+        if let Some(path) = &self.predictions {
+            write_predictions(path, &model.classes, &predicted)?;
+        }
+        let is_correct = |(label, found): &(&KeyValue, &usize)| model.classes[**found] == **label;
+        let n_correct = labels
+            .as_ref()
+            .map(|labels| labels.iter().zip(&predicted).filter(is_correct).count());
+        let n_rows = predicted.len();
+        let applied = Applied {
+            program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")),
+            classifier: model.kind,
+            n_rows,
+            n_measurements: features.ncols(),
+            n_correct,
+            accuracy: n_correct.map(|n| n as f64 / n_rows as f64),
+            predict_s,
+        };
+        if self.json {
+            return say(serde_json::to_string(&applied).expect("numbers have a JSON form"));
+        }
+        say(format_args!(
+            "rows      {n_rows}, {} measurements each",
+            features.ncols()
+        ))?;
+        if let (Some(n_correct), Some(accuracy)) = (n_correct, applied.accuracy) {
+            say(format_args!(
+                "accuracy  {accuracy:.4}: {n_correct} of {n_rows}"
+            ))?;
+        }
+        let predict_s = quantile(&mut applied.predict_s.clone(), 0.5);
+        let each_us = 1e6 * predict_s / n_rows as f64;
+        say(format_args!(
+            "testing   {predict_s:.4} s, {each_us:.1} µs a row"
+        ))
+    }
+
+    fn train_and_test(
+        &self,
+        kind: ClassifierKind,
+        set: &FeatureSet,
+    ) -> Result<(Findings, Array1<usize>, TrainedClassifier)> {
+        let classifier = self.classifier(kind)?;
+        let is_svm = kind.is_kernel_svm();
         let (training, test) = (set.training(self.train_rows)?, set.test()?);
         let groups_of = |rows: &[usize]| Some(set.groups.as_ref()?.select(Axis(0), rows));
         let n_train = training.targets.len();
@@ -242,7 +334,7 @@ impl Args {
             interval_of([n_correct, n_test], tested.as_slice(), CONFIDENCE)?;
         let findings = Findings {
             program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")),
-            classifier: self.classifier,
+            classifier: kind,
             multiclass: is_svm.then_some(classifier.multiclass),
             scaling: self.scaling,
             solver: is_svm.then_some(classifier.solver),
@@ -267,7 +359,7 @@ impl Args {
             predict_s,
             svm: svm_findings(&trained),
         };
-        Ok((findings, predicted))
+        Ok((findings, predicted, trained))
     }
 
     /// Returns the cross-validation folds for the choice of parameters; a fold never divides a group.
@@ -284,7 +376,7 @@ impl Args {
     }
 
     /// Returns an error if options for an unused parameter choice, or hyper-parameters that the classifier does not use, are given.
-    fn check_parameters(&self) -> Result<()> {
+    fn check_parameters(&self, kind: ClassifierKind) -> Result<()> {
         let chooses = !self.c_grid.is_empty();
         let chooses_gamma = !self.gamma_grid.is_empty();
         check_used("--gamma-grid", chooses_gamma, chooses, "--c-grid")?;
@@ -302,15 +394,13 @@ impl Args {
             let is_given = given.contains(&(key, true)) || self.parameters.has(key);
             let user = format!("--classifier {}", parameters::users(key));
             let option = format!("--{}", key.replace('_', "-"));
-            check_used(&option, is_given, self.classifier.uses(key), &user)?;
+            check_used(&option, is_given, kind.uses(key), &user)?;
         }
         Ok(())
     }
 
-    fn classifier(&self) -> Result<Classifier> {
-        let usual = self
-            .parameters
-            .applied_to(Classifier::new(self.classifier))?;
+    fn classifier(&self, kind: ClassifierKind) -> Result<Classifier> {
+        let usual = self.parameters.applied_to(Classifier::new(kind))?;
         Ok(Classifier {
             scaling: self.scaling,
             multiclass: self.multiclass.unwrap_or(usual.multiclass),

@@ -2,7 +2,7 @@
 //!
 //! | argument | file | content |
 //! |---|---|---|
-//! | 1 | `train.npz` | `features` (n × m, float64), `labels` (n, int64), `seed` (1, int64) |
+//! | 1 | `train.npz` | `features` (n × m, float64), `labels` (n, int64), `seed` (1, int64); `groups` (n, int64) if the split keeps groups |
 //! | 2 | `test.npz` | `features` (n × m, float64) |
 //! | 3 | `labels.npy` | written by the program: one label for each test row |
 
@@ -41,6 +41,7 @@ struct CommandModel {
     classifier: CommandClassifier,
     features: Array2<f64>,
     labels: Array1<usize>,
+    groups: Option<Array1<usize>>,
     seed: u32,
 }
 
@@ -63,16 +64,31 @@ impl ForeignClassifier for CommandClassifier {
     }
 
     fn fit(&self, rows: &Dataset, seed: u32) -> Result<Box<dyn ForeignModel>> {
-        Ok(Box::new(CommandModel {
-            classifier: self.clone(),
-            features: rows.records.clone(),
-            labels: rows.targets.clone(),
-            seed,
-        }))
+        Ok(Box::new(self.model(rows, None, seed)))
+    }
+
+    fn fit_groups(
+        &self,
+        rows: &Dataset,
+        groups: &[usize],
+        seed: u32,
+    ) -> Result<Box<dyn ForeignModel>> {
+        let groups = Some(Array1::from(groups.to_vec()));
+        Ok(Box::new(self.model(rows, groups, seed)))
     }
 }
 
 impl CommandClassifier {
+    fn model(&self, rows: &Dataset, groups: Option<Array1<usize>>, seed: u32) -> CommandModel {
+        CommandModel {
+            classifier: self.clone(),
+            features: rows.records.clone(),
+            labels: rows.targets.clone(),
+            groups,
+            seed,
+        }
+    }
+
     fn error(&self, given: impl ToString) -> Error {
         let allowed = "exit code 0 and a file of one known label for each test row";
         Error::input(
@@ -152,6 +168,9 @@ impl ForeignModel for CommandModel {
             let mut file = NpzWriter::new(File::create(&train)?);
             file.add_array("features", &self.features)?;
             file.add_array("labels", &self.labels.mapv(|label| label as i64))?;
+            if let Some(groups) = &self.groups {
+                file.add_array("groups", &groups.mapv(|group| group as i64))?;
+            }
             file.add_array("seed", &Array1::from_elem(1, i64::from(self.seed)))?;
             file.finish()?;
             let mut file = NpzWriter::new(File::create(&test)?);

@@ -120,7 +120,11 @@ impl<R: Columns> File<R> {
         is_there.then(|| self.read(folder)).transpose()
     }
 
-    fn parse(&self, columns: Vec<Column>, path: &Path, csv: Vec<u8>) -> Result<Table> {
+    /// Creates the table of the content of its CSV file; `path` is only used in errors.
+    ///
+    /// # Errors
+    /// If the file has other columns or invalid values.
+    pub fn parse(&self, columns: Vec<Column>, path: &Path, csv: Vec<u8>) -> Result<Table> {
         let read = Table::from_csv((self.name, self.title), columns, path, csv)?;
         Ok(Table {
             note: self.note.to_owned(),

@@ -2,12 +2,15 @@
 
 use crate::command::Case;
 use bubbletouch::random::Seed;
-use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::Classifier;
 use bubbletouch::recognition::data::dataset::dataset;
+use bubbletouch::recognition::data::scaling::Scaling;
 use bubbletouch::recognition::statistics::grouped::{
     GroupedTest, count_groups, interval_of_groups,
 };
+use bubbletouch::recognition::svm::{Multiclass, Solver};
+use bubbletouch::recognition::{ClassifierKind, ModelFile};
+use bubbletouch::study::{KeyValue, write_texts};
 use ndarray::{Array1, Array2, Axis, array};
 use ndarray_npy::{read_npy, write_npy};
 use serde_json::Value;
@@ -491,4 +494,154 @@ fn options_out_of_range_are_refused() {
         let first: &[&str] = if named { &[] } else { &LINEAR };
         refused(&case, &[first, &[option, value]].concat(), &[word]);
     }
+}
+
+/// Law of all kinds that can be saved: a classifier that was written and read has the scores and labels of the classifier itself, in all bits.
+#[test]
+fn a_saved_classifier_predicts_what_it_predicted_before() {
+    let case = Case::new();
+    let rows = |n: usize, phase: f64| {
+        let values = Array2::from_shape_fn((n, 5), |(i, j)| {
+            ((i % 4) * (j + 1) % 4) as f64 + 1.5 * ((i * 5 + j) as f64 * 1.7 + phase).sin()
+        });
+        let labels = (0..n).map(|row| [1, 3, 4, 7][row % 4]).collect();
+        dataset(values, labels).unwrap()
+    };
+    let (training, tested) = (rows(120, 0.0), rows(700, 0.4));
+    let classes: Vec<KeyValue> = (0..8).map(KeyValue::Integer).collect();
+    let kinds = [
+        "linear_svm",
+        "rbf_svm",
+        "laplacian_svm",
+        "polynomial_svm",
+        "nearest_centroid",
+        "naive_bayes",
+        "logistic_regression",
+        "k_nearest",
+        "random_forest",
+    ];
+    let mut classifiers: Vec<Classifier> = kinds
+        .iter()
+        .map(|&kind| Classifier::new(toml::Value::from(kind).try_into().unwrap()))
+        .collect();
+    for kind in [ClassifierKind::LinearSvm, ClassifierKind::RbfSvm] {
+        classifiers.push(Classifier {
+            multiclass: Multiclass::OneVsRest,
+            scaling: Scaling::Overall,
+            ..Classifier::new(kind)
+        });
+        classifiers.push(Classifier {
+            tolerance: 1e-9,
+            ..Classifier::new(kind)
+        });
+    }
+    classifiers.push(Classifier {
+        multiclass: Multiclass::OneVsRest,
+        solver: Solver::CoordinateDescent,
+        ..Classifier::new(ClassifierKind::LinearSvm)
+    });
+    for settings in classifiers {
+        let classifier = settings.train(&training, &Seed::new(3)).unwrap();
+        let kind = settings.kind;
+        let path = case.path("model.json");
+        let written = ModelFile {
+            kind,
+            classes: classes.clone(),
+            classifier,
+        };
+        written.write(&path).unwrap();
+        let read = ModelFile::read(&path).unwrap();
+        assert_eq!((read.kind, &read.classes), (kind, &written.classes));
+        let bits = |of: &ModelFile| {
+            let features = tested.records.view();
+            let scores = of.classifier.scores(features).unwrap();
+            (
+                scores.mapv(f64::to_bits),
+                of.classifier.labels(features).unwrap(),
+            )
+        };
+        assert_eq!(bits(&read), bits(&written), "{settings:?}");
+        let few = tested.records.slice(ndarray::s![..3, ..]);
+        let labels = |of: &ModelFile| of.classifier.labels(few).unwrap();
+        assert_eq!(labels(&read), labels(&written), "{settings:?}");
+    }
+}
+
+#[test]
+fn a_saved_classifier_is_applied_to_new_touches() {
+    let case = folder();
+    let names: Vec<String> = labels()
+        .iter()
+        .map(|label| format!("class {label}"))
+        .collect();
+    write_texts(&case.path("labels.npy"), &names).unwrap();
+    let save = [
+        "--classifier",
+        "rbf_svm",
+        "--save",
+        "model.json",
+        "--predictions",
+        "a.npy",
+    ];
+    let trained = json(&case, &save);
+    let applied = json(&case, &["--model", "model.json", "--predictions", "b.npy"]);
+    assert_eq!(applied["n_correct"], trained["n_correct"]);
+    assert_eq!(applied["n_rows"], trained["n_test"]);
+    let bytes = |name: &str| std::fs::read(case.path(name)).unwrap();
+    assert_eq!(bytes("a.npy"), bytes("b.npy"));
+    // Touches without labels and without a split.
+    let new = Case::new();
+    let rows: Vec<usize> = test().iter().map(|&row| row as usize).collect();
+    write_npy(new.path("features.npy"), &features().select(Axis(0), &rows)).unwrap();
+    let model = case.path("model.json");
+    let model = model.to_str().unwrap();
+    let applied = json(&new, &["--model", model, "--predictions", "c.npy"]);
+    assert!(applied["accuracy"].is_null());
+    assert_eq!(bytes("a.npy"), std::fs::read(new.path("c.npy")).unwrap());
+}
+
+#[test]
+fn another_or_a_damaged_file_of_a_classifier_is_refused() {
+    let case = folder();
+    json(
+        &case,
+        &["--classifier", "nearest_centroid", "--save", "model.json"],
+    );
+    let text = std::fs::read_to_string(case.path("model.json")).unwrap();
+    let refused = |text: &str, wanted: &str| {
+        case.file("other.json", text);
+        let output = case.run(&["classify", ".", "--model", "other.json"]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(
+            said.contains("other.json: ") && said.contains(wanted),
+            "{said}"
+        );
+        assert_eq!(said.trim().lines().count(), 1, "{said}");
+    };
+    refused("", "another format");
+    refused("{}", "another format");
+    refused(&text[..text.len() / 2], "another format");
+    refused(&text.replace("\"version\":1", "\"version\":2"), "version 2");
+    let at = text.find("\"offset\":[[5],\"").unwrap() + 16;
+    let digit = if &text[at..=at] == "0" { "1" } else { "0" };
+    let changed = format!("{}{digit}{}", &text[..at], &text[at + 1..]);
+    refused(&changed, "was changed");
+    refused(
+        &text.replacen("\"classes\":[0,1", "\"classes\":[1,0", 1),
+        "was changed",
+    );
+    let output = case.run(&[
+        "classify",
+        ".",
+        "--classifier",
+        "linfa_svm",
+        "--save",
+        "m.json",
+    ]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("cannot be saved"), "{said}");
+    let both = ["classify", ".", "--model", "model.json", "--n-trees", "3"];
+    assert_eq!(case.run(&both).status.code(), Some(2));
 }

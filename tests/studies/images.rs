@@ -99,6 +99,26 @@ fn what_is_learned_for_images_does_not_know_test_touches() {
 }
 
 #[test]
+fn estimators_of_images_are_fitted_to_the_touches_that_train() {
+    let sensed = "ensemble = \"gaussian\"\nmeasurements = 8";
+    let text = STUDY.replace("ensemble = \"identity\"", sensed);
+    let text = text.replace("per_object = 40", "per_object = 8");
+    let reduced = |keys: &str| text.replace("classifier =", &format!("{keys}\nclassifier ="));
+    let image = |keys: &str, configuration| features(&reduced(keys), configuration, 0).data.records;
+    let (few, many) = ("train_touches = [2, 6]", "train_touches = [6, 2]");
+    // Features "raw" come first.
+    assert_eq!(image(few, 0), image(few, 1));
+    assert_ne!(image(few, 2), image(few, 3));
+    assert_eq!(image(few, 2), image(many, 3));
+    assert_eq!(image(few, 3), image("train_touches = 6", 1));
+    let imbalanced = "class_imbalance = [1.0, 6.0]";
+    assert_ne!(image(imbalanced, 2), image(imbalanced, 3));
+    // Estimators use no labels.
+    let mislabelled = "mislabelled_fraction = [0.0, 0.5]";
+    assert_eq!(image(mislabelled, 2), image(mislabelled, 3));
+}
+
+#[test]
 fn a_depth_changes_no_feature_of_what_is_behind_the_foremost_point() {
     let at = |depth: &str| {
         let text = STUDY

@@ -29,6 +29,7 @@ mod layouts;
 mod memory;
 mod next_touch;
 mod pose_splits;
+mod predictions;
 mod public_sets;
 mod quickstart;
 mod readings;

@@ -1,9 +1,11 @@
 //! Solved binary problems of a multi-class SVM.
 
+use serde::{Deserialize, Serialize};
+
 use crate::dual::DualSolution;
 
 /// Binary problem of a multi-class SVM (one class against another or against all others), with its solution.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BinaryProblem {
     /// Position of the positive class, whose rows have the label +1.
     pub positive: usize,

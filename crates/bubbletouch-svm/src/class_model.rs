@@ -6,12 +6,18 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 
 use crate::Result;
 use crate::predict::voting::first_maximum;
+use crate::saved::SavedModel;
 
 /// Trained classifier that computes one score per class.
 ///
 /// Scores are additive: the sum of the scores of k touches of one object is the score of all k touches together. A probabilistic model therefore returns `ln
 /// p(x | class)` up to a constant per row x. The log-prior `ln p(class)` is separate and is added once for all summed touches.
 pub trait ClassModel: Debug + Send + Sync {
+    /// Returns the model as data; `None` for a kind that cannot be saved.
+    fn saved(&self) -> Option<SavedModel> {
+        None
+    }
+
     /// Returns the class labels of the training rows, ascending. Every predicted label is one of them.
     fn classes(&self) -> &[usize];
 
@@ -27,6 +33,11 @@ pub trait ClassModel: Debug + Send + Sync {
         None
     }
 
+    /// Returns whether the sum of score and log-prior is the log-probability of the class given the row, up to a constant per row.
+    fn is_probabilistic(&self) -> bool {
+        self.log_prior().is_some()
+    }
+
     /// Returns the number of optimisation problems in training that stopped at the maximum number of iterations before reaching the tolerance.
     fn n_capped(&self) -> usize {
         0
@@ -39,16 +50,19 @@ pub trait ClassModel: Debug + Send + Sync {
 
     /// Returns for each row of scores the label with the largest sum of score and log-prior; if several are equal, the lowest label.
     fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
-        let prior = self
-            .log_prior()
-            .map_or_else(|| Array1::zeros(self.classes().len()), |p| p.to_owned());
-        scores
-            .rows()
-            .into_iter()
-            .map(|row| {
-                self.classes()[first_maximum((&row + &prior).as_slice().unwrap_or_default())]
-            })
-            .collect()
+        let scores = self.class_scores(scores);
+        let label = |row: ArrayView1<f64>| {
+            self.classes()[first_maximum(row.as_slice().unwrap_or_default())]
+        };
+        scores.rows().into_iter().map(label).collect()
+    }
+
+    /// Returns the sum of score and log-prior of each class (n_rows × n_classes).
+    fn class_scores(&self, scores: ArrayView2<f64>) -> Array2<f64> {
+        match self.log_prior() {
+            Some(prior) => &scores + &prior,
+            None => scores.as_standard_layout().into_owned(),
+        }
     }
 
     /// Returns the predicted label of each row of features (n_rows × m).

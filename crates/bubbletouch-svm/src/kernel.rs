@@ -163,7 +163,7 @@ fn squares_about(mean: f64, values: &[f64]) -> f64 {
 }
 
 /// Kernel function whose parameters all have numeric values.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum KernelFunction {
     Linear,
     Rbf { gamma: f64 },

@@ -105,6 +105,7 @@ mod multiclass;
 pub mod precision;
 pub mod predict;
 pub(crate) mod row_statistics;
+pub mod saved;
 pub mod scaling;
 pub(crate) mod screening;
 pub(crate) mod smo;

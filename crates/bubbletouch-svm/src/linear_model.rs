@@ -1,16 +1,19 @@
 //! Linear model for several classes: one weight vector and one bias per class. One matrix product computes all scores.
 
 use ndarray::{Array1, Array2, ArrayView2};
+use serde::{Deserialize, Serialize};
 
 use crate::Result;
 use crate::dataset::check_width;
 
 /// Linear model, which computes the score `w_k·x + b_k` of each class k from the features x.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LinearModel {
     /// Weights of the features per class, shape n_classes × m, in inverse feature units.
+    #[serde(with = "crate::saved")]
     pub weights: Array2<f64>,
     /// Constant part of the score of each class, shape (n_classes,), dimensionless.
+    #[serde(with = "crate::saved")]
     pub bias: Array1<f64>,
 }
 

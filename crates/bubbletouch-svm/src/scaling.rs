@@ -22,11 +22,13 @@ pub enum Scaling {
 }
 
 /// Scaling of features that is fitted to training rows: subtracts the offset of each feature, then divides by its scale.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FittedScaling {
     /// Offset that is subtracted from each feature (m values), in feature units.
+    #[serde(with = "crate::saved")]
     pub offset: Array1<f64>,
     /// Divisor of each feature (m values), in feature units; 1 if the feature is constant.
+    #[serde(with = "crate::saved")]
     pub scale: Array1<f64>,
 }
 

@@ -142,11 +142,22 @@ def _fresh(estimator: Any, seed: int) -> Any:
     return fresh.set_params(**unset) if unset else fresh
 
 
-def _fit(estimator: Any, rows: Rows, labels: NDArray[np.int64], seed: int) -> Any:
+def _fit(estimator: Any, rows: Rows, labels: NDArray[np.int64], seed: int, groups: NDArray[np.int64] | None = None) -> Any:
     with _LOCK, _seeded(seed):
         fresh = _fresh(estimator, seed)
-        fresh.fit(rows, labels)
+        fresh.fit(rows, labels, **({} if groups is None or not _takes_groups(fresh) else {"groups": groups}))
     return fresh, seed, np.unique(labels)
+
+
+def _takes_groups(estimator: Any) -> bool:
+    """Returns whether `fit` has the argument `groups`, or is a search of scikit-learn, which passes it to its splitter."""
+    if "groups" in inspect.signature(estimator.fit).parameters:
+        return True
+    try:
+        from sklearn.model_selection._search import BaseSearchCV
+    except ImportError:
+        return False
+    return isinstance(estimator, BaseSearchCV)
 
 
 def _predict(model: Any, rows: Rows) -> NDArray[np.int64]:
@@ -227,8 +238,8 @@ class Trainer:
     def __init__(self, host: Host, estimator: Any) -> None:
         self._host, self._estimator = host, estimator
 
-    def fit(self, rows: Rows, labels: NDArray[np.int64], seed: int) -> Any:
-        return self._host.call(_fit, self._estimator, rows, labels, seed)
+    def fit(self, rows: Rows, labels: NDArray[np.int64], seed: int, groups: NDArray[np.int64] | None = None) -> Any:
+        return self._host.call(_fit, self._estimator, rows, labels, seed, groups)
 
     def predict(self, model: Any, rows: Rows) -> NDArray[np.int64]:
         labels: NDArray[np.int64] = self._host.call(_predict, model, rows)

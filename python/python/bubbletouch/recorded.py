@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bubbletouch._arrays import Array, as_array, as_keys, as_numbers, check_frames, padded
 from bubbletouch._core import Patch
@@ -33,6 +34,8 @@ class Recorded:
     order: letters of the axes of the frames as in `recorded.order`, or a dict by the names of the sensors; None for the default order.
     lengths: number of frames of each touch, shape (n,), or a dict by the names of the sensors; None if all touches have the same number.
     touches: names of the touches, texts, shape (n,), in the order of `frames`; None if the touches have no names.
+    splits: split of each trial, a pair (train, test) of arrays of touch numbers, as scikit-learn's `list(cv.split(X, y, groups))`; None for the splits of
+    the study. The key `trials` of the study is at most their number.
     keys: further keys of `[recorded]`, such as {"full_scale": 255.0}. Of several sensors, each has its keys under its name. The key `layout` may be a
     Patch, or an array of positions, metres, shape (n_taxels, 3), or of positions and axes, shape (n_taxels, 6).
     """
@@ -46,6 +49,7 @@ class Recorded:
         lengths: Array | Mapping[str, Array] | None = None,
         keys: Mapping[str, Any] | None = None,
         touches: Array | None = None,
+        splits: Iterable[tuple[ArrayLike, ArrayLike]] | None = None,
     ) -> None:
         self.frames = frames
         self.labels = labels
@@ -53,6 +57,7 @@ class Recorded:
         self.order = order
         self.lengths = lengths
         self.touches = touches
+        self.splits = None if splits is None else list(splits)
         self.keys = keys or {}
 
     def __len__(self) -> int:
@@ -66,7 +71,7 @@ class Recorded:
 
     def table(self) -> dict[str, Any]:
         """Returns the table `[recorded]` of a study, with arrays in place of files."""
-        shared = {"labels": self.labels, "groups": self.groups}
+        shared = {"labels": self.labels, "groups": self.groups, "splits": self.splits}
         if not isinstance(self.frames, Mapping):
             own = {"frames": self.frames, "order": self.order, "lengths": self.lengths, **shared, **self.keys}
             return {name: value for name, value in own.items() if value is not None}
@@ -103,6 +108,9 @@ def with_files(table: Mapping[str, Any], folder: Path, files: dict[str, str], pl
                 stored(key.replace("frames", "lengths"), lengths)
         elif key in _ARRAYS and value is not None and not isinstance(value, str | PathLike) and (key != "zero" or np.ndim(value) > 0):
             stored(key, as_array(f"{place}.{key}", value))
+        elif key == "splits" and value is not None and not isinstance(value, str | PathLike):
+            written[key] = _splits(folder, f"{place}.{key}", value)
+            files[written[key]] = f"{place}.{key}"
         elif key == "layout" and value is not None and not isinstance(value, str | PathLike):
             written[key] = _layout(folder, value)
             files[written[key]] = f"{place}.layout"
@@ -141,6 +149,18 @@ def _layout(folder: Path, value: Any) -> str:
     content = io.BytesIO()
     np.savez(content, positions=taxels[:, :3].astype(np.float64), normals=axes.astype(np.float64))
     return _written(folder, "layout", ".npz", content.getvalue())
+
+
+def _splits(folder: Path, key: str, value: Iterable[tuple[ArrayLike, ArrayLike]]) -> str:
+    """Writes the arrays `train_t` and `test_t` of each split t, and returns the path of the file."""
+    arrays = {}
+    for number, pair in enumerate(value):
+        if len(pair) != 2:
+            raise ValueError(f"{key}: {len(pair)} arrays in split {number}; a pair (train, test) of arrays of touch numbers")
+        arrays |= {f"{name}_{number}": np.asarray(rows) for name, rows in zip(("train", "test"), pair, strict=True)}
+    content = io.BytesIO()
+    np.savez(content, **arrays)
+    return _written(folder, "splits", ".npz", content.getvalue())
 
 
 def named(error: ValueError, files: Mapping[str, str]) -> ValueError:

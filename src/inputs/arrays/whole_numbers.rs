@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::inputs::arrays::csv_table::TableContent;
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
@@ -10,7 +11,8 @@ use std::path::Path;
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// Value in a file that identifies the class or the group of a touch.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(untagged)]
 pub enum KeyValue {
     /// Integer that identifies a class or group.
     Integer(i64),

@@ -40,6 +40,19 @@ impl ConfusionMatrix {
         Ok(Self { counts })
     }
 
+    /// Creates the confusion matrix of the given counts: (true class, predicted class, number of test rows).
+    pub fn of_counts(counts: &[(usize, usize, usize)]) -> Self {
+        let labels = counts
+            .iter()
+            .flat_map(|&(truth, predicted, _)| [truth, predicted]);
+        let n_classes = labels.max().map_or(0, |last| last + 1);
+        let mut matrix = Array2::zeros((n_classes, n_classes));
+        for &(truth, predicted, count) in counts {
+            matrix[[truth, predicted]] += count;
+        }
+        Self { counts: matrix }
+    }
+
     /// Returns the total number of test rows.
     pub fn n_rows(&self) -> usize {
         self.counts.sum()
@@ -63,6 +76,13 @@ impl ConfusionMatrix {
     /// Returns the recall of each class: correct predictions of the class divided by all rows of the class, or 0 without rows.
     pub fn recall(&self) -> Array1<f64> {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(1)))
+    }
+
+    /// Returns the mean recall over all classes that have rows (scikit-learn's `balanced_accuracy_score`).
+    pub fn balanced_accuracy(&self) -> f64 {
+        let rows = self.counts.sum_axis(Axis(1));
+        let n_classes = rows.iter().filter(|&&n| n > 0).count();
+        self.recall().sum() / n_classes as f64
     }
 
     /// Returns the F1 score (harmonic mean of precision and recall) of each class: `2 · correct / (true + predicted)`. The score is 0 if the class does not
@@ -109,6 +129,11 @@ mod tests {
         let recall = array![two_thirds, two_thirds, 0.5, 0.0, 0.0, 0.0];
         assert_eq!(confusion.recall(), recall);
         assert!((confusion.macro_f1() - 0.5).abs() < 1e-15);
+        let balanced = (2.0 * two_thirds + 0.5) / 3.0;
+        assert!((confusion.balanced_accuracy() - balanced).abs() < 1e-15);
+        let counts = confusion.counts.indexed_iter();
+        let counts: Vec<_> = counts.map(|((i, j), &n)| (i, j, n)).collect();
+        assert_eq!(ConfusionMatrix::of_counts(&counts), confusion);
     }
 
     #[test]

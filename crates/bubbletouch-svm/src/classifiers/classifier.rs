@@ -61,6 +61,8 @@ pub struct Classifier {
     pub tolerance: f64,
     /// Maximum size of the kernel values that an SVM's solver keeps in memory, bytes.
     pub memory_bytes: usize,
+    /// Group of each training row, for a foreign classifier that uses groups; `None` without groups.
+    pub groups: Option<Vec<usize>>,
 }
 
 impl Classifier {
@@ -76,6 +78,7 @@ impl Classifier {
             parameters: Parameters::new(kind),
             tolerance: 1e-3,
             memory_bytes: DEFAULT_MEMORY_BYTES,
+            groups: None,
         }
     }
 

@@ -31,6 +31,20 @@ pub trait ForeignClassifier: Send + Sync {
     /// If the classifier cannot be trained.
     fn fit(&self, rows: &Dataset, seed: u32) -> Result<Box<dyn ForeignModel>>;
 
+    /// Trains a model as [`fit`](Self::fit) does; `groups` contains the group of each row. By default, groups are not used.
+    ///
+    /// # Errors
+    /// If the classifier cannot be trained.
+    fn fit_groups(
+        &self,
+        rows: &Dataset,
+        groups: &[usize],
+        seed: u32,
+    ) -> Result<Box<dyn ForeignModel>> {
+        let _ = groups;
+        self.fit(rows, seed)
+    }
+
     /// Checks whether the classifier can be trained, before any row is known.
     ///
     /// # Errors
@@ -122,7 +136,9 @@ impl Foreign {
             version: version.to_owned(),
             about: ClassifierAbout::new(words, |classifier, scaled, _, seed| {
                 match classifier.kind {
-                    ClassifierKind::Foreign(foreign) => foreign.train(scaled, seed),
+                    ClassifierKind::Foreign(foreign) => {
+                        foreign.train(scaled, classifier.groups.as_deref(), seed)
+                    }
                     _ => unreachable!("this descriptor belongs to foreign classifiers"),
                 }
             }),
@@ -209,11 +225,19 @@ impl Foreign {
         format!("classifier {}", self.name())
     }
 
-    fn train(self, scaled: &Dataset, seed: &dyn Streams) -> Result<Arc<dyn ClassModel>> {
+    fn train(
+        self,
+        scaled: &Dataset,
+        groups: Option<&[usize]>,
+        seed: &dyn Streams,
+    ) -> Result<Arc<dyn ClassModel>> {
         let classes = checked_classes(scaled)?;
         // Seeds of NumPy and scikit-learn have 32 bits.
         let seed = seed.named("foreign").rng().next_u32();
-        let model = self.code()?.fit(scaled, seed)?;
+        let model = match groups {
+            Some(groups) => self.code()?.fit_groups(scaled, groups, seed)?,
+            None => self.code()?.fit(scaled, seed)?,
+        };
         let first = scaled.records.slice(s![..1, ..]);
         let has_probabilities = model.log_probabilities(first)?.is_some();
         Ok(Arc::new(ForeignClassModel {

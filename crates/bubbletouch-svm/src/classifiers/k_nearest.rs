@@ -15,11 +15,13 @@
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::classifiers::parameters::{DefaultValue, MAX_COUNT, Parameter};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut1, Axis};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use crate::class_model::{ClassModel, log_vote_shares};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::linalg::products::multiply;
+use crate::saved::SavedModel;
 use crate::{Error, Result};
 
 /// Number of rows whose distances to all training rows are computed together. With a larger value, the distances need more memory, 2 KiB per training row
@@ -28,15 +30,40 @@ use crate::{Error, Result};
 const BLOCK_ROWS: usize = 512;
 
 /// Trained k-nearest-neighbours classifier: the training rows and their labels. Scores are the logarithms of smoothed vote fractions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(from = "SavedNeighbours")]
 pub struct KNearest {
     n_neighbours: usize,
     classes: Vec<usize>,
     /// Training rows, n_rows × m.
+    #[serde(with = "crate::saved")]
     rows: Array2<f64>,
     /// Class of each training row, as an index in `classes`.
     label: Vec<usize>,
+    #[serde(skip)]
     screen: Screen,
+}
+
+/// Fields of [`KNearest`] from which the others are computed.
+#[derive(Deserialize)]
+struct SavedNeighbours {
+    n_neighbours: usize,
+    classes: Vec<usize>,
+    #[serde(with = "crate::saved")]
+    rows: Array2<f64>,
+    label: Vec<usize>,
+}
+
+impl From<SavedNeighbours> for KNearest {
+    fn from(saved: SavedNeighbours) -> Self {
+        Self {
+            n_neighbours: saved.n_neighbours,
+            classes: saved.classes,
+            screen: Screen::new(saved.rows.view()),
+            rows: saved.rows,
+            label: saved.label,
+        }
+    }
 }
 
 /// Training rows in f32, moved and scaled, for the selection of candidates.
@@ -222,8 +249,16 @@ fn within(
 }
 
 impl ClassModel for KNearest {
+    fn saved(&self) -> Option<SavedModel> {
+        Some(SavedModel::KNearest(self.clone()))
+    }
+
     fn classes(&self) -> &[usize] {
         &self.classes
+    }
+
+    fn is_probabilistic(&self) -> bool {
+        true
     }
 
     fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {

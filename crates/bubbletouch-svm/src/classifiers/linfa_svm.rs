@@ -82,6 +82,10 @@ impl ClassModel for LinfaSvm {
         self.models.iter().filter(is_capped).count()
     }
 
+    fn is_probabilistic(&self) -> bool {
+        true
+    }
+
     fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         check_width(&features, self.n_features)?;
         let mut scores = Array2::zeros((features.nrows(), self.classes.len()));

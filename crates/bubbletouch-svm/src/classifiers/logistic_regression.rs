@@ -9,6 +9,7 @@
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use crate::class_model::{ClassModel, log_priors};
@@ -17,6 +18,7 @@ use crate::classifiers::logistic_loss::{LogisticLoss, parts};
 use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
 use crate::predict::voting::first_maximum;
+use crate::saved::SavedModel;
 use crate::{Error, Result};
 
 /// Default maximum number of L-BFGS iterations, which is ten times the default of scikit-learn.
@@ -46,10 +48,11 @@ impl Default for LogisticParams {
 }
 
 /// Trained logistic regression. The score of class k for features x is `ln p(k | x) − ln p(k)`, where p(k) is the fraction of training rows of class k.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Logistic {
     classes: Vec<usize>,
     model: LinearModel,
+    #[serde(with = "crate::saved")]
     log_prior: Array1<f64>,
     n_iterations: usize,
     is_capped: bool,
@@ -117,6 +120,10 @@ impl Logistic {
 }
 
 impl ClassModel for Logistic {
+    fn saved(&self) -> Option<SavedModel> {
+        Some(SavedModel::LogisticRegression(self.clone()))
+    }
+
     fn classes(&self) -> &[usize] {
         &self.classes
     }

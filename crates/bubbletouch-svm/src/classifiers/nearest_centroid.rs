@@ -8,14 +8,17 @@ use crate::Result;
 use crate::class_model::ClassModel;
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::dataset::{Dataset, check_width, checked_classes};
+use crate::saved::SavedModel;
 use ndarray::{Array2, ArrayView2, Axis};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Trained nearest-centroid classifier, which predicts the class whose mean is nearest to the features.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NearestCentroid {
     classes: Vec<usize>,
     /// Mean of the training rows of each class, n_classes × m.
+    #[serde(with = "crate::saved")]
     centroids: Array2<f64>,
 }
 
@@ -48,6 +51,10 @@ impl NearestCentroid {
 }
 
 impl ClassModel for NearestCentroid {
+    fn saved(&self) -> Option<SavedModel> {
+        Some(SavedModel::NearestCentroid(self.clone()))
+    }
+
     fn classes(&self) -> &[usize] {
         &self.classes
     }

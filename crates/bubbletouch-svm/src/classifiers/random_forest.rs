@@ -9,17 +9,19 @@ use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::classifiers::parameters::{DefaultValue, MAX_COUNT, Parameter};
 use ndarray::{Array2, ArrayView2};
 use rand::Rng;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use crate::class_model::{ClassModel, log_vote_shares};
 use crate::classifiers::ranked::Ranked;
 use crate::classifiers::tree::{Growth, Tree, check_depth};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
+use crate::saved::SavedModel;
 use crate::streams::Streams;
 use crate::{Error, Result};
 
 /// Trained random forest. The score of a class is the logarithm of its smoothed fraction of the trees' votes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RandomForest {
     classes: Vec<usize>,
     trees: Vec<Tree>,
@@ -75,8 +77,16 @@ impl RandomForest {
 }
 
 impl ClassModel for RandomForest {
+    fn saved(&self) -> Option<SavedModel> {
+        Some(SavedModel::RandomForest(self.clone()))
+    }
+
     fn classes(&self) -> &[usize] {
         &self.classes
+    }
+
+    fn is_probabilistic(&self) -> bool {
+        true
     }
 
     fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {

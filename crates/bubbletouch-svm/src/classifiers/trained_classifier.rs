@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
+use serde::{Deserialize, Serialize};
 
 use crate::Result;
 use crate::class_model::ClassModel;
@@ -11,12 +12,13 @@ use crate::cross_validation::choice::Chosen;
 use crate::predict::svm_model::SvmModel;
 use crate::scaling::FittedScaling;
 
-/// Trained classifier: a fitted scaling and a model.
-#[derive(Clone, Debug)]
+/// Trained classifier: a fitted scaling and a model. The data of serde (see [`saved`](crate::saved)) do not contain how C was chosen.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TrainedClassifier {
     scaling: FittedScaling,
     model: Model,
     c: Option<f64>,
+    #[serde(skip)]
     chosen: Option<Chosen>,
 }
 
@@ -96,6 +98,45 @@ impl TrainedClassifier {
         match &self.model {
             Model::Svm(model) => model.labels_of_values(scores),
             Model::Classes(model) => model.labels_of_scores(scores),
+        }
+    }
+
+    /// Returns the labels of the training rows, ascending.
+    pub fn classes(&self) -> &[usize] {
+        match &self.model {
+            Model::Svm(model) => model.classes(),
+            Model::Classes(model) => model.classes(),
+        }
+    }
+
+    /// Converts scores, or sums of scores, to one value per class (n_rows × n_classes), in ascending order of the labels. Larger values favour the class.
+    ///
+    /// | classifier | value |
+    /// |---|---|
+    /// | one-vs-one SVM | votes + s / (3 (\|s\| + 1)), where s is the sum of the class's decision values (scikit-learn's `decision_function_shape="ovr"`) |
+    /// | one-vs-rest SVM, nearest centroid, votes of a foreign classifier | score of the class |
+    /// | others | natural logarithm of the probability of the class |
+    pub fn class_scores(&self, scores: ArrayView2<f64>) -> Array2<f64> {
+        let model = match &self.model {
+            Model::Svm(model) => return model.class_scores(scores),
+            Model::Classes(model) => model,
+        };
+        let mut values = model.class_scores(scores);
+        if model.is_probabilistic() {
+            for mut row in values.outer_iter_mut() {
+                let most = row.fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+                let sum: f64 = row.iter().map(|value| (value - most).exp()).sum();
+                row -= most + sum.ln();
+            }
+        }
+        values
+    }
+
+    /// Returns whether [`class_scores`](Self::class_scores) are logarithms of probabilities.
+    pub fn is_probabilistic(&self) -> bool {
+        match &self.model {
+            Model::Svm(_) => false,
+            Model::Classes(model) => model.is_probabilistic(),
         }
     }
 

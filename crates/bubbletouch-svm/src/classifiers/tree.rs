@@ -14,6 +14,7 @@ use crate::{Error, Result};
 use ndarray::ArrayView1;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 
 /// Returns an error if the maximum depth is 0.
 pub(crate) fn check_depth(max_depth: Option<usize>) -> Result<()> {
@@ -24,12 +25,12 @@ pub(crate) fn check_depth(max_depth: Option<usize>) -> Result<()> {
 }
 
 /// Binary decision tree, stored as a list of nodes with the root first.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Tree {
     nodes: Vec<Node>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 enum Node {
     Split {
         feature: usize,

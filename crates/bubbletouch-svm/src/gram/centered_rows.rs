@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
+use serde::{Deserialize, Serialize};
 
 use crate::kernel::KernelFunction;
 use crate::linalg::centered_row::{CenteredRow, center_row};
@@ -14,11 +15,14 @@ use crate::linalg::scalar::Scalar;
 ///
 /// For some kernels, the centre is arbitrary. A constant added to all features does not change RBF distances. In a linear decision function it changes only
 /// ρ, because the coefficients sum to zero. About the mean, products are small and lose fewer digits.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "T: Scalar")]
 pub(crate) struct CenteredRows<T> {
     /// Centred feature values, n × m.
+    #[serde(with = "crate::saved")]
     values: Array2<T>,
     /// Squared norm of each centred row.
+    #[serde(with = "crate::saved")]
     norms: Array1<T>,
 }
 

@@ -1,6 +1,7 @@
 //! Linear SVMs, trained by coordinate descent to separate each class from all others.
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
+use serde::{Deserialize, Serialize};
 
 use crate::Result;
 use crate::class_model::ClassModel;
@@ -8,10 +9,11 @@ use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
 use crate::linear_svm::coordinate_descent::{self, Rows};
 use crate::linear_svm::params::LinearSvmParams;
+use crate::saved::SavedModel;
 use crate::streams::Streams;
 
 /// Result of the solver on one binary problem: objectives, number of passes, and whether it stopped early.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Convergence {
     /// Value of the primal objective, computed from the weights: an upper bound of the optimum.
     pub primal: f64,
@@ -24,7 +26,7 @@ pub struct Convergence {
 }
 
 /// Trained linear SVM, whose scores are the decision values of the classes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LinearSvm {
     classes: Vec<usize>,
     model: LinearModel,
@@ -111,6 +113,10 @@ impl LinearSvm {
 }
 
 impl ClassModel for LinearSvm {
+    fn saved(&self) -> Option<SavedModel> {
+        Some(SavedModel::LinearSvm(self.clone()))
+    }
+
     fn classes(&self) -> &[usize] {
         &self.classes
     }

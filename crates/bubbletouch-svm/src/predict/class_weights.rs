@@ -3,19 +3,22 @@
 use std::ops::Range;
 
 use ndarray::{Array2, ArrayView2, s};
+use serde::{Deserialize, Serialize};
 
 use crate::binary_problem::BinaryProblem;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
 
 /// Coefficients of the support vectors of one class in all binary problems that contain the class.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "T: Scalar")]
 pub(crate) struct ClassWeights<T> {
     /// Range of the support vectors of the class among all support vectors.
     pub vectors: Range<usize>,
     /// Numbers of the binary problems that contain the class, ascending; for one-vs-one, in the order of the other classes.
     pub problems: Vec<usize>,
     /// Coefficients (label times multiplier) of the support vectors in each binary problem, shape (number of problems, number of vectors).
+    #[serde(with = "crate::saved")]
     pub coefficients: Array2<T>,
 }
 

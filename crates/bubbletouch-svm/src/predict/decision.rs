@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
+use serde::{Deserialize, Serialize};
 
 use super::condorcet_winner::{Pairs, condorcet_winners_by_hyperplanes};
 use crate::binary_problem::BinaryProblem;
@@ -20,32 +21,70 @@ use crate::predict::voting::VoteCounter;
 const BLOCK_ROWS: usize = 512;
 
 /// Decision functions `Σ y_i a_i K(x_i, x) − ρ` of all binary problems.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "T: Scalar", from = "SavedFunctions<T>")]
 pub(crate) struct DecisionFunctions<T> {
     /// Centre that is subtracted from support vectors and from all rows to be classified (m values).
+    #[serde(with = "crate::saved")]
     centre: Array1<f64>,
     /// Offset ρ of each decision function; for a linear kernel, the offset is valid for rows minus the centre.
+    #[serde(with = "crate::saved")]
     rho: Array1<f64>,
     sums: Sums<T>,
 }
 
 /// Data from which the sums of kernel values in all decision functions are computed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "T: Scalar")]
 enum Sums<T> {
     /// Normals of the hyperplanes of a linear kernel, n_problems × m.
-    Hyperplanes(Array2<T>),
+    Hyperplanes(#[serde(with = "crate::saved")] Array2<T>),
     /// Support vectors and their coefficients.
     Support(Support<T>),
 }
 
 /// Support vectors, sorted by class.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "T: Scalar")]
 struct Support<T> {
     kernel: KernelFunction,
     vectors: CenteredRows<T>,
     weights: Vec<ClassWeights<T>>,
     /// Decision functions of single pairs of classes, for one-vs-one.
+    #[serde(skip)]
     pairs: Option<Pairs<T>>,
+}
+
+/// Fields of [`DecisionFunctions`] from which the others are computed.
+#[derive(Deserialize)]
+#[serde(bound = "T: Scalar")]
+struct SavedFunctions<T> {
+    #[serde(with = "crate::saved")]
+    centre: Array1<f64>,
+    #[serde(with = "crate::saved")]
+    rho: Array1<f64>,
+    sums: Sums<T>,
+}
+
+impl<T: Scalar> From<SavedFunctions<T>> for DecisionFunctions<T> {
+    fn from(saved: SavedFunctions<T>) -> Self {
+        let SavedFunctions {
+            centre,
+            rho,
+            mut sums,
+        } = saved;
+        if let Sums::Support(support) = &mut sums {
+            support.pairs = pairs_of(&support.weights, &rho);
+        }
+        Self { centre, rho, sums }
+    }
+}
+
+/// Returns the decision functions of single pairs of classes; `None` unless each problem is a pair.
+fn pairs_of<T: Scalar>(weights: &[ClassWeights<T>], rho: &Array1<f64>) -> Option<Pairs<T>> {
+    let n = weights.len();
+    (rho.len() == n * (n - 1) / 2 && weights.iter().all(|class| class.problems.len() == n - 1))
+        .then(|| Pairs::new(weights, rho))
 }
 
 impl<T: Scalar> DecisionFunctions<T> {
@@ -80,8 +119,7 @@ impl<T: Scalar> DecisionFunctions<T> {
                 });
                 let weights: Vec<_> = weights.collect();
                 let rho = problems.iter().map(|p| p.solution.rho).collect();
-                let are_pairs = problems.iter().all(|p| p.negative.is_some());
-                let pairs = are_pairs.then(|| Pairs::new(&weights, &rho));
+                let pairs = pairs_of(&weights, &rho);
                 let vectors = match rows {
                     Cow::Borrowed(sorted) => sorted.points().select(&support),
                     Cow::Owned(sorted) => sorted.into_points().keep(&support),

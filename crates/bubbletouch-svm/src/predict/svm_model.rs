@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
+use serde::{Deserialize, Serialize};
 
 use crate::Result;
 use crate::binary_problem::BinaryProblem;
@@ -21,7 +22,7 @@ use crate::predict::voting::Voting;
 use crate::training::Trained;
 
 /// Trained SVM for two or more classes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SvmModel {
     voting: Voting,
     problems: Vec<BinaryProblem>,
@@ -30,7 +31,7 @@ pub struct SvmModel {
 }
 
 /// Decision functions of all binary problems, in the precision in which they were trained.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) enum Decision {
     Single(DecisionFunctions<f32>),
     Double(DecisionFunctions<f64>),
@@ -114,6 +115,11 @@ impl SvmModel {
     /// Returns the predicted label for each row of decision values (n_rows × n_problems). A row may be the sum over several touches of one object.
     pub fn labels_of_values(&self, values: ArrayView2<f64>) -> Array1<usize> {
         self.voting.labels(values)
+    }
+
+    /// Returns one value per class (n_rows × n_classes) for decision values, or sums of them (n_rows × n_problems).
+    pub(crate) fn class_scores(&self, values: ArrayView2<f64>) -> Array2<f64> {
+        self.voting.class_scores(values)
     }
 }
 

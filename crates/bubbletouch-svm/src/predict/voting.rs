@@ -1,13 +1,14 @@
 //! Combination of the decision values of all binary problems into one predicted class.
 
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
+use serde::{Deserialize, Serialize};
 
 use crate::linalg::scalar::Scalar;
 use crate::multiclass::Multiclass;
 
 /// Rule that converts decision values into a class. One-vs-one has one value per pair of class positions (0, 1), (0, 2), …, (1, 2), …; the first class of a
 /// pair is positive. One-vs-rest has one value per class.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Voting {
     classes: Vec<usize>,
     multiclass: Multiclass,
@@ -41,6 +42,29 @@ impl Voting {
             .into_iter()
             .map(|row| self.label(row.as_slice().unwrap_or_default(), &mut votes))
             .collect()
+    }
+
+    /// Returns one value per class for each row of decision values: the value of the class for one-vs-rest, otherwise its votes and a part below 1/3 that orders
+    /// classes of equal votes.
+    pub fn class_scores(&self, values: ArrayView2<f64>) -> Array2<f64> {
+        if self.multiclass == Multiclass::OneVsRest {
+            return values.to_owned();
+        }
+        let n = self.classes.len();
+        let (mut scores, mut sums) = (Array2::zeros((values.nrows(), n)), vec![0.0; n]);
+        for (row, mut scores) in values.outer_iter().zip(scores.outer_iter_mut()) {
+            sums.fill(0.0);
+            for ((first, second), &value) in self.multiclass.problems(n).into_iter().zip(row) {
+                let second = second.expect("a pair of classes");
+                scores[if value > 0.0 { first } else { second }] += 1.0;
+                sums[first] += value;
+                sums[second] -= value;
+            }
+            for (score, sum) in scores.iter_mut().zip(&sums) {
+                *score += sum / (3.0 * (sum.abs() + 1.0));
+            }
+        }
+        scores
     }
 
     /// Returns the predicted label for one row of decision values, using `votes` as temporary memory.
@@ -171,6 +195,22 @@ pub fn first_maximum<V: PartialOrd>(values: &[V]) -> usize {
 mod tests {
     use super::*;
     use ndarray::array;
+
+    #[test]
+    fn values_of_classes_are_those_of_scikit_learn() {
+        // sklearn.utils.multiclass._ovr_decision_function of scikit-learn 1.9.1, whose pairs have the opposite sign: predictions (v < 0), confidences -v.
+        let values = array![[0.5, -1.0, 2.0], [-0.25, -0.5, 0.0]];
+        let expected = array![
+            [1.0 - 0.5 / 4.5, 1.0 + 1.5 / 7.5, 1.0 - 1.0 / 6.0],
+            [0.0 - 0.75 / 5.25, 1.0 + 0.25 / 3.75, 2.0 + 0.5 / 4.5]
+        ];
+        let found = Voting::new(&[0, 1, 2], Multiclass::OneVsOne).class_scores(values.view());
+        assert!(
+            (found - expected)
+                .iter()
+                .all(|difference: &f64| difference.abs() < 1e-15)
+        );
+    }
 
     #[test]
     fn ties_go_to_the_lowest_class() {

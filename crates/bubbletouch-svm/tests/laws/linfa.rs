@@ -2,12 +2,14 @@
 
 use bubbletouch_svm::classifiers::ClassifierKind;
 use bubbletouch_svm::classifiers::classifier::{Classifier, Cost};
+use bubbletouch_svm::classifiers::naive_bayes::{NaiveBayes, VARIANCE_SMOOTHING};
 use bubbletouch_svm::dataset::Dataset;
 use bubbletouch_svm::kernel::{Gamma, Kernel};
 use bubbletouch_svm::scaling::Scaling;
 use linfa::composing::MultiClassModel;
 use linfa::dataset::Pr;
 use linfa::traits::{Fit, Predict};
+use linfa_bayes::{GaussianNb, NaiveBayes as _};
 use linfa_svm::Svm;
 use ndarray::{Array1, Array2};
 
@@ -99,4 +101,17 @@ fn gamma_belongs_to_the_gaussian_kernel_and_its_grid_to_our_solvers() {
         .unwrap_err()
         .to_string();
     assert!(error.contains("linfa_rbf_svm"), "{error}");
+}
+
+#[test]
+fn naive_bayes_has_the_joint_log_likelihoods_of_linfa_bayes() {
+    let (training, test) = (overlapping(97, 0.0), overlapping(60, 0.5));
+    let ours = NaiveBayes::train(&training).unwrap();
+    let ours = ours.joint_log_likelihoods(test.records.view()).unwrap();
+    let params = GaussianNb::params().var_smoothing(VARIANCE_SMOOTHING);
+    let theirs = params.fit(&training).unwrap();
+    let theirs = theirs.joint_log_likelihood(test.records.view());
+    for (place, class) in [1, 3, 5, 7].iter().enumerate() {
+        assert_eq!(ours.column(place), theirs[class]);
+    }
 }

@@ -455,6 +455,8 @@ mod tests {
                 bootstrap_low: None,
                 bootstrap_high: None,
                 macro_f1: accuracy,
+                balanced_accuracy: None,
+                log_loss: None,
                 n_capped: 0,
             };
             (configuration, score)

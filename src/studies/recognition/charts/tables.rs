@@ -1,6 +1,6 @@
 //! Tables of a recognition study, and a combined table of all results of each configuration.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::learning::classifiers::ClassifierKind;
 use crate::report::csv_tables::LIMITS_FILE;
 use crate::statistics::bootstrap::coverage_of_95;
@@ -9,8 +9,8 @@ use crate::statistics::p_status::CONFIDENCE;
 use crate::studies::recognition::charts::robustness::{ObjectCounts, ROBUSTNESS, robustness};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
-    Comparison, ConfigurationScore, Confused, Confusion, Limit, Pareto, Published, SelectedTaxel,
-    StageTime, Tables, TrialScore, TrialTime, Variance,
+    Comparison, ConfigurationScore, Confused, Confusion, Limit, Pareto, Prediction, Predictions,
+    Published, Recall, SelectedTaxel, StageTime, Tables, TrialScore, TrialTime, Variance,
 };
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::studies::study::AnyFile;
@@ -73,6 +73,12 @@ const SELECTED: File<(Configuration, SelectedTaxel)> = File::new(
     "Taxels are selected on training touches alone. If configurations have equal measurements, only the first one is listed.",
 )
 .summary();
+const RECALL: File<Recall> = File::new("recall.csv", "Recall of each object", "").summary();
+const PREDICTIONS: File<Prediction> = File::new(
+    "predictions.csv",
+    "Every decision",
+    "One column score_CLASS for each class follows. Classifiers with probabilities have their natural logarithms, others the value that decides.",
+);
 const LIMITS: File<Limit> = File::new(LIMITS_FILE, "How often limits were reached", "").summary();
 
 /// Table files that every recognition study writes. Tables of configurations also have the columns of the axes in `[axes]`.
@@ -89,8 +95,9 @@ pub const TABLES: &[&dyn AnyFile] = &[
     &LIMITS,
 ];
 
-/// Table files of studies that have several projections per split, sweep a condition, or select taxels.
-pub const TABLES_OF_PARTS: &[&dyn AnyFile] = &[&VARIANCE, &ROBUSTNESS, &SELECTED];
+/// Table files of studies that have several projections per split, sweep a condition, select taxels, or ask for recall or predictions.
+pub const TABLES_OF_PARTS: &[&dyn AnyFile] =
+    &[&VARIANCE, &ROBUSTNESS, &SELECTED, &RECALL, &PREDICTIONS];
 
 /// Returns all tables of a run in the order of their files, followed by [`CONFIGURATIONS`].
 ///
@@ -152,6 +159,25 @@ impl From<'_> {
         if has(SELECTED_TAXELS, |tables| !tables.selected.is_empty()) {
             tables.push(self.table(&SELECTED, |tables| &tables.selected, &axes)?);
         }
+        if has(RECALL.name(), |tables| !tables.recall.is_empty()) {
+            tables.push(self.table(&RECALL, |tables| &tables.recall, &[])?);
+        }
+        if has(PREDICTIONS.name(), |tables| {
+            !tables.predictions.rows.is_empty()
+        }) {
+            tables.push(match self {
+                Self::Rows(tables) => {
+                    predictions(Path::new(PREDICTIONS.name()), csv_of(&tables.predictions)?)?
+                }
+                Self::Folder(folder) => {
+                    let path = folder.join(PREDICTIONS.name());
+                    let csv = crate::files::read(&path).map_err(|e| {
+                        Error::unreadable(&path, "a table that bubbletouch run wrote", e)
+                    })?;
+                    predictions(&path, csv)?
+                }
+            });
+        }
         tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
         tables.iter_mut().for_each(say);
         for table in &mut tables {
@@ -198,6 +224,52 @@ impl From<'_> {
             Self::Folder(folder) => file.read_columns(columns, folder),
         }
     }
+}
+
+/// Start of the names of the columns of scores, before the name of the class.
+const SCORE: &str = "score_";
+
+/// Returns the content of `predictions.csv`.
+fn csv_of(predictions: &Predictions) -> Result<Vec<u8>> {
+    let write = || -> std::result::Result<Vec<u8>, csv::Error> {
+        let mut writer = csv::WriterBuilder::new()
+            .has_headers(false)
+            .from_writer(Vec::new());
+        let columns = Prediction::columns()
+            .into_iter()
+            .map(|column| column.name.to_string());
+        let scores = predictions
+            .classes
+            .iter()
+            .map(|class| format!("{SCORE}{class}"));
+        writer.write_record(columns.chain(scores))?;
+        for (row, scores) in &predictions.rows {
+            let scores: Vec<Option<f64>> = scores
+                .iter()
+                .map(|&s| Some(s).filter(|s| !s.is_nan()))
+                .collect();
+            writer.serialize((row, scores))?;
+        }
+        writer
+            .into_inner()
+            .map_err(|error| error.into_error().into())
+    };
+    write().map_err(|e| Error::io(PREDICTIONS.name(), "write", std::io::Error::other(e)))
+}
+
+/// Returns the table of predictions for the content of its file. The header names the classes.
+fn predictions(path: &Path, csv: Vec<u8>) -> Result<Table> {
+    let mut columns = Prediction::columns();
+    let mut reader = csv::Reader::from_reader(&csv[..]);
+    let header = reader.headers().cloned().unwrap_or_default();
+    let scores = header
+        .iter()
+        .filter_map(|name| Some((name, name.strip_prefix(SCORE)?)));
+    columns.extend(scores.map(|(name, class)| {
+        let words = format!("score of {class}");
+        Column::new(name.to_owned(), Role::Note, words, "", Scale::Linear)
+    }));
+    PREDICTIONS.parse(columns, path, csv)
 }
 
 /// Sets the unit of the noise column and the meaning of an empty C, which depend on the rows of the table.

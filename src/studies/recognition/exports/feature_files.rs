@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `features.npy` | n × m, f64: the measurements of every touch, before scaling; with several readings, the first reading of every touch, then the second, … |
 //! | `labels.npy` | n, i64: the object's number (another object's for mislabelled training touches) |
-//! | `train.npy` | i64: training rows of the trial, in drawing order; a prefix is a smaller training set |
+//! | `train.npy` | i64: training rows of the trial, in drawing order; a prefix is a smaller training set (measurements that are fitted use all of them) |
 //! | `test.npy` | i64: test rows of the trial, ascending |
 //! | `groups.npy` | n, i64: the group of every row, if the split does not divide groups |
 //! | `objects.csv` | one row per object: number, name |
@@ -14,22 +14,24 @@
 use crate::engine::progress::{Progress, Silent};
 use crate::error::{Error, Result};
 use crate::files::{CsvFile, DataFolder, write_bytes};
-use crate::inputs::arrays::read_matrix;
 use crate::inputs::arrays::whole_numbers::{
     KeyValue, read_class_labels, read_group_keys, read_rows,
 };
+use crate::inputs::arrays::{is_member, read_matrix};
 use crate::inputs::npy::{write_integers, write_npy};
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::{Measurements, measure_group};
+use crate::studies::recognition::measurements::measurement_inputs::MeasuredTrial;
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::spec::study::RecognitionSpec;
 use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
+use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::recognition::training::trial::learned_rows;
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
 use bubbletouch_svm::split::Split;
-use ndarray::{Array1, Axis};
+use ndarray::{Array1, Array2, Axis};
 use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -90,15 +92,15 @@ impl StudyPart {
         let (group, configuration) = find(sweep, configuration)?;
         let inputs = sweep.trial(plan, trial)?;
         let family = FamilyInputs::new(plan, sweep, std::slice::from_ref(configuration));
-        let split = inputs.split(&family)?;
+        let (split, labels) = inputs.training(&family.training_rows)?;
         // As in a run, nested measurements are the first m of the largest set.
         let n_projected = match group.ensemble.is_prefix_nested() {
             true => group.projected()[0],
             false => configuration.measurements,
         };
-        let of = (group, n_projected);
+        let fitted = group.inputs(plan).fitted_rows(plan, group, configuration);
+        let of = (group, fitted, n_projected);
         let measured = self.measured(of, trial, ("touch", progress))?;
-        let labels = inputs.learned_labels(&family, &split)?;
         let (trained, trained_labels) =
             learned_rows(&measured, &family.rows, &split.train, &labels);
         // All readings of all touches, followed by copies of the training touches.
@@ -144,7 +146,7 @@ impl StudyPart {
     /// Simulates the touches of a group of configurations, and computes their measurements in one trial.
     pub(crate) fn measured(
         &self,
-        (group, n_measurements): (&MeasurementGroup, usize),
+        (group, rows, n_measurements): (&MeasurementGroup, TrainingRows, usize),
         trial: usize,
         (stage, progress): (&str, &dyn Progress),
     ) -> Result<Measurements> {
@@ -157,19 +159,26 @@ impl StudyPart {
             self.tested.simulate((array, group.frames), &Silent)
         });
         let tested = tested.as_ref().unwrap_or(&frames);
-        self.measure(group, [&frames, tested], (trial, n_measurements))
+        self.measure((group, rows), [&frames, tested], (trial, n_measurements))
     }
 
     /// Computes the measurements of the training and test touches of a group of configurations in one trial. Runs and exports share this function. Projections
-    /// and image estimators are fitted to the training touches of the whole split, even if a configuration trains on fewer.
+    /// and image estimators are fitted to the training touches that `rows` leaves.
     pub(crate) fn measure(
         &self,
-        group: &MeasurementGroup,
+        (group, rows): (&MeasurementGroup, TrainingRows),
         [frames, tested]: [&Frames; 2],
         (trial, n_measurements): (usize, usize),
     ) -> Result<Measurements> {
         let inputs = group.inputs(&self.plan);
-        let trial = inputs.trial(&self.sweep, trial);
+        let fitted = match inputs.is_fitted() {
+            true => Some(self.sweep.trial(&self.plan, trial)?.training(&rows)?),
+            false => None,
+        };
+        let trial = MeasuredTrial {
+            fitted: fitted.as_ref(),
+            ..inputs.trial(&self.sweep, trial)
+        };
         let touches = (self.touched.as_ref() as _, frames);
         let tested = (self.tested.as_ref() as _, tested);
         measure_group(&inputs, touches, tested, (trial, n_measurements))
@@ -243,6 +252,41 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
         groups: None,
         classes: labels.classes,
     })
+}
+
+/// Rows to which a trained classifier is applied.
+#[derive(Clone, Debug)]
+pub struct NewRows {
+    /// Features, shape (n, m).
+    pub features: Array2<f64>,
+    /// Label of each row, as in the label file; `None` without labels.
+    pub labels: Option<Vec<KeyValue>>,
+}
+
+/// Reads the rows of a feature folder to which a trained classifier is applied: its test rows, or all rows if the folder has no `test`.
+///
+/// # Errors
+/// If a file cannot be read, or labels or test rows do not fit the features.
+pub fn read_new_rows(folder: &Path) -> Result<NewRows> {
+    let file = |name: &str| array_file(folder, name);
+    let has = |name: &str| {
+        let path = file(name);
+        path.exists() && (path.file_stem() == Some(name.as_ref()) || is_member(&path, name))
+    };
+    let features = read_matrix(&file("features"), "features")?;
+    let n_rows = features.nrows();
+    let rows = match has("test") {
+        true => read_rows(&file("test"), "test", n_rows)?,
+        false => (0..n_rows).collect(),
+    };
+    let mut labels = None;
+    if has("labels") {
+        let read = read_class_labels(&file("labels"), "labels", n_rows)?;
+        let label = |row: &usize| read.classes[read.labels[*row]].clone();
+        labels = Some(rows.iter().map(label).collect());
+    }
+    let features = features.select(Axis(0), &rows);
+    Ok(NewRows { features, labels })
 }
 
 /// Returns the path of the file that contains an array of a feature folder. If several files exist, the order is `.npy`, `.npz`, `.csv`, and the archive

@@ -38,6 +38,7 @@ use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec};
 use crate::studies::recognition::spec::scene::SkinSpec;
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::sweep::configurations::StudyPart;
+use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use crate::studies::recognition::touches::drawn_touches::touch_stream;
 use crate::world::{ArrayLayout, RestPose, Touch, TouchSource};
 use ndarray::Array2;
@@ -112,7 +113,8 @@ impl ReadFrames {
             selection: None,
             ..group.clone()
         };
-        let of = (&identity, part.plan.arrays[group.array].n_values());
+        let n_values = part.plan.arrays[group.array].n_values();
+        let of = (&identity, TrainingRows::default(), n_values);
         let read = part.measured(of, trial, ("read", progress))?;
         Ok(Self {
             array: group.array,

@@ -8,8 +8,9 @@ use crate::engine::progress::Progress;
 use crate::error::{Error, Result};
 use crate::inputs::arrays::TableContent;
 use crate::inputs::arrays::file_array::FileArray;
+use crate::inputs::arrays::is_member;
 use crate::inputs::arrays::whole_numbers::{
-    ClassLabels, KeyValue, group_keys, read_class_values, read_group_values,
+    ClassLabels, KeyValue, group_keys, read_class_values, read_group_values, read_rows,
 };
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
@@ -68,8 +69,8 @@ pub struct RecordedFrames {
     n_taxels: usize,
     /// Group of each touch, in the order of the field `order`; `None` if the recording defines no groups.
     groups: Option<Array1<usize>>,
-    /// Side (training or test) of each touch; `None` if the data do not define the split.
-    sides: Option<Vec<Side>>,
+    /// Side (training or test) of each touch: in all trials for a test set, or in each split; empty if the data do not define splits.
+    sides: Vec<Vec<Side>>,
     /// Press depth of each touch, metres; `None` if unknown.
     depths: Option<Vec<f64>>,
 }
@@ -99,10 +100,11 @@ impl RecordedFrames {
             true => Side::Train,
             false => Side::Test,
         };
-        let sides = spec.has_test_set();
-        let sides = sides.then(|| order.iter().map(side).collect::<Vec<_>>());
-        if let Some(sides) = &sides {
-            spec.check_test_set(&names, &order, sides, &labels)?;
+        let groups: Option<Array1<usize>> = groups;
+        let mut sides = spec.read_splits((&order, groups.as_ref()))?;
+        if spec.has_test_set() {
+            sides.push(order.iter().map(side).collect());
+            spec.check_test_set(&names, &order, &sides[0], &labels)?;
         }
         let depths = spec.read_depths(n_train + n_test)?;
         let depths = depths.map(|depths| order.iter().map(|&touch| depths[touch]).collect());
@@ -359,6 +361,57 @@ impl RecordedSpec {
         Ok(())
     }
 
+    /// Returns the side of each touch in each split of the file `splits`; the touches are in the order `order`. The list is empty without the file.
+    fn read_splits(
+        &self,
+        (order, groups): (&[usize], Option<&Array1<usize>>),
+    ) -> Result<Vec<Vec<Side>>> {
+        let mut splits = Vec::new();
+        let Some(path) = &self.splits else {
+            return Ok(splits);
+        };
+        let refused = |given: String, allowed: &str| {
+            Err(Error::input(
+                format!("{} (key recorded.splits)", path.display()),
+                given,
+                allowed,
+            ))
+        };
+        while is_member(path, &format!("train_{}", splits.len())) {
+            let number = splits.len();
+            let mut of_touch = vec![Side::LeftOut; order.len()];
+            for (name, side) in [("train", Side::Train), ("test", Side::Test)] {
+                for touch in read_rows(path, &format!("{name}_{number}"), order.len())? {
+                    if std::mem::replace(&mut of_touch[touch], side) != Side::LeftOut {
+                        let given =
+                            format!("touch {touch} twice in train_{number} and test_{number}");
+                        return refused(given, "each touch once, or not at all");
+                    }
+                }
+            }
+            let sides: Vec<Side> = order.iter().map(|&touch| of_touch[touch]).collect();
+            if let Some(groups) = groups {
+                let of = |wanted: Side| {
+                    let sides = groups.iter().zip(&sides);
+                    sides.filter_map(move |(group, side)| (*side == wanted).then_some(*group))
+                };
+                let trained: HashSet<usize> = of(Side::Train).collect();
+                if let Some(both) = of(Side::Test).find(|group| trained.contains(group)) {
+                    let given = format!("group {both} in train_{number} and test_{number}");
+                    return refused(given, "groups of recorded.groups that either train or test");
+                }
+            }
+            splits.push(sides);
+        }
+        match splits.is_empty() {
+            true => refused(
+                "no array train_0".to_owned(),
+                "an archive .npz of train_0, test_0, train_1, test_1, …",
+            ),
+            false => Ok(splits),
+        }
+    }
+
     fn read_depths(&self, n: usize) -> Result<Option<Vec<f64>>> {
         let Some(path) = &self.depths else {
             return Ok(None);
@@ -393,12 +446,26 @@ impl TouchSet for RecordedFrames {
         names.zip(self.counts.iter().copied()).collect()
     }
 
+    fn touch_names(&self) -> Vec<String> {
+        self.order.iter().map(usize::to_string).collect()
+    }
+
     fn own_groups(&self) -> Option<Array1<usize>> {
         self.groups.clone()
     }
 
-    fn given_sides(&self) -> Option<&[Side]> {
-        self.sides.as_deref()
+    fn given_sides(&self, split: usize) -> Result<Option<&[Side]>> {
+        let place = if self.spec.splits.is_some() { split } else { 0 };
+        match self.sides.get(place) {
+            None if !self.sides.is_empty() => {
+                let allowed = format!(
+                    "at most {}, the splits of recorded.splits",
+                    self.sides.len()
+                );
+                Err(Error::input("key trials", split + 1, allowed))
+            }
+            sides => Ok(sides.map(Vec::as_slice)),
+        }
     }
 
     fn recorded_content(&self) -> Option<&RecordedContent> {

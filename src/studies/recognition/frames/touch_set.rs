@@ -35,6 +35,12 @@ pub trait TouchSet: Sync {
         self.classes().into_iter().map(|(name, _)| name).collect()
     }
 
+    /// Returns the name of every touch: its number, or its position in the recording, without spaces.
+    fn touch_names(&self) -> Vec<String> {
+        let numbers = 0..self.labels().len();
+        numbers.map(|number| number.to_string()).collect()
+    }
+
     /// Returns the class label of every touch.
     fn labels(&self) -> Array1<usize> {
         touch_labels(&self.classes())
@@ -58,9 +64,12 @@ pub trait TouchSet: Sync {
         None
     }
 
-    /// Returns the side (training or test) of every touch if the data define a test set, otherwise `None`; the sides are equal in all trials.
-    fn given_sides(&self) -> Option<&[Side]> {
-        None
+    /// Returns the side (training or test) of every touch in a split if the data define a test set or splits, otherwise `None`.
+    ///
+    /// # Errors
+    /// If the data define fewer splits.
+    fn given_sides(&self, _split: usize) -> Result<Option<&[Side]>> {
+        Ok(None)
     }
 
     /// Returns the contents of the files of a recording; `None` for simulated touches.

@@ -18,7 +18,7 @@ use crate::studies::recognition::plan::trials::projection_of;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
-use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
+use ndarray::{Array1, Array2, ArrayViewMut2, Axis, s};
 
 /// Measurements of all touches of a group of configurations. If touches are read several times, the first readings of all touches come first, followed by the
 /// second readings. Reading r of a touch has the number r · n_touches + touch.
@@ -187,8 +187,7 @@ pub fn measure_group(
         skins: &skins,
         projection: &whole,
     };
-    let labels = touched.labels();
-    let sensed = sensed_by(inputs, (reading, &touches), &labels, trial, n_measurements)?;
+    let sensed = sensed_by(inputs, (reading, &touches), trial, n_measurements)?;
     let reading = Reading {
         projection: &sensed.projection,
         ..reading
@@ -198,8 +197,8 @@ pub fn measure_group(
     let of_images = match &sensed.images {
         None => Vec::new(),
         Some(images) => {
-            let train = (&trial.split().train[..], touched.classes().len());
-            copies = tilted_copies(inputs, train, skins[0].chains[0].full_scale(), trial.number);
+            let full_scale = skins[0].chains[0].full_scale();
+            copies = tilted_copies(inputs, (trial, touched.classes().len()), full_scale);
             let mut wanted = inputs.of_images.clone();
             wanted.retain(|one| images.has_estimate(one.measurements));
             let made = images.features((values.view(), n_frames), &wanted, copies.as_ref());
@@ -226,16 +225,16 @@ pub fn measure_group(
 /// Draws the random tilts of copies of the training touches of n classes.
 fn tilted_copies(
     inputs: &MeasurementInputs,
-    train: (&[usize], usize),
+    (trial, n_classes): (MeasuredTrial, usize),
     full_scale: f64,
-    trial: usize,
 ) -> Option<TiltedCopies> {
     let copies = inputs.copies?;
     let array = inputs.array;
     let steepest = copies.tilt.tan();
     let a_pixel = steepest * array.pixel() / array.taxel().stroke * full_scale;
     let seed = Seed::new(inputs.seed).named("tilted copies");
-    let seed = seed.numbered(trial as u64);
+    let seed = seed.numbered(trial.number as u64);
+    let train = (&trial.split().train[..], n_classes);
     Some(TiltedCopies::new(copies, train, a_pixel, &seed))
 }
 
@@ -243,7 +242,6 @@ fn tilted_copies(
 fn sensed_by(
     inputs: &MeasurementInputs,
     (whole, touches): (Reading, &[TouchToRead]),
-    labels: &Array1<usize>,
     trial: MeasuredTrial,
     n_measurements: usize,
 ) -> Result<SensedBy> {
@@ -251,18 +249,13 @@ fn sensed_by(
     let images = array.measured_images(inputs.ensemble);
     let drawn = projection_of(inputs.projections_per_split, trial.number) as u64;
     let drawn = Seed::new(inputs.seed).named("projection").numbered(drawn);
-    if !inputs.learns() {
-        let no_frames = ArrayView2::from_shape((0, 0), &[]).expect("the frame is empty");
-        let (ensemble, m) = (inputs.ensemble, n_measurements);
-        let projection = Projection::of_images(ensemble, images, m, (no_frames, &drawn))?;
-        return Ok(SensedBy {
-            projection,
-            images: None,
-        });
-    }
+    let (train, touch_labels) = match trial.fitted {
+        Some((split, labels)) => (&split.train[..], labels.as_slice()),
+        None => (&[][..], None),
+    };
+    let touch_labels = touch_labels.unwrap_or_default();
     // The number of whole touches that give enough frames; the split alternates between objects.
     let n_touches = learned_touches(whole.skins[0].frames.facts.n_frames);
-    let train = &trial.split().train;
     let train = &train[..n_touches.min(train.len())];
     let learned: Vec<TouchToRead> = train.iter().map(|&touch| touches[touch]).collect();
     let (training, _) = measure(whole, &learned)?;
@@ -276,7 +269,7 @@ fn sensed_by(
     };
     let frames = TrainingFrames {
         frames: training.view(),
-        labels: &of_frames(&|touch| labels[touch]),
+        labels: &of_frames(&|touch| touch_labels[touch]),
         groups: &of_frames(&|touch| trial.group_keys.map_or(touch, |keys| keys[touch])),
         selection: inputs.selection.unwrap_or_default(),
     };

@@ -16,8 +16,10 @@ use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::sweep::configurations::Sweep;
+use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
+use std::collections::BTreeSet;
 
 /// All inputs that determine the measurements of a group of configurations.
 #[derive(Clone, Debug)]
@@ -71,6 +73,8 @@ pub struct MeasuredTrial<'a> {
     pub split: Option<&'a Hashed<Split>>,
     /// Group of each touch; `None` if each touch is its own group, or the measurements do not depend on groups. The selection of taxels depends on them.
     pub group_keys: Option<&'a Hashed<Array1<usize>>>,
+    /// Training touches to which a projection or an image estimator is fitted, as a split, and the label of each touch; `None` if nothing is fitted.
+    pub fitted: Option<&'a (Split, Array1<usize>)>,
 }
 
 /// Inputs of the signal chain. Signal steps without effect are omitted.
@@ -103,7 +107,7 @@ impl MeasurementInputs<'_> {
 
     /// Returns the number and the split of a trial for the computation of measurements.
     pub fn trial<'s>(&self, sweep: &'s Sweep, number: usize) -> MeasuredTrial<'s> {
-        let depends = self.learns() || self.has_own_test();
+        let depends = self.is_fitted() || self.has_own_test() || self.copies.is_some();
         let split = depends.then(|| &sweep.splits[number]);
         let group_keys = sweep
             .group_keys
@@ -113,12 +117,38 @@ impl MeasurementInputs<'_> {
             number,
             split,
             group_keys,
+            fitted: None,
         }
     }
 
-    /// Returns whether a projection or an estimator is fitted to training touches before measuring.
-    pub fn learns(&self) -> bool {
-        self.ensemble.is_learned() || !self.of_images.is_empty()
+    /// Returns whether a projection or an image estimator is fitted to training touches.
+    pub fn is_fitted(&self) -> bool {
+        is_fitted((self.ensemble, self.selection), !self.of_images.is_empty())
+    }
+
+    /// Returns the training rows to which the measurements of a configuration of the group are fitted. Configurations with equal rows share their measurements.
+    /// If nothing is fitted for the configuration alone, it shares the measurements of the group's first training rows.
+    pub fn fitted_rows(
+        &self,
+        plan: &Plan,
+        group: &MeasurementGroup,
+        configuration: &Configuration,
+    ) -> TrainingRows {
+        if !self.is_fitted() {
+            return TrainingRows::default();
+        }
+        let has_images = configuration.of_images().is_some();
+        let of = match is_fitted((self.ensemble, self.selection), has_images) {
+            true => configuration,
+            false => &group.configurations[0],
+        };
+        let rows = TrainingRows::new(plan, of);
+        // Only greedy selection uses labels.
+        let uses_labels = self.selection == Some(Selection::Greedy);
+        TrainingRows {
+            mislabelled_fraction: rows.mislabelled_fraction.filter(|_| uses_labels),
+            ..rows
+        }
     }
 
     /// Returns whether test touches are read by another skin or signal chain than training touches.
@@ -128,7 +158,8 @@ impl MeasurementInputs<'_> {
 
     /// Returns the distinct numbers of measurements from which images of frames are estimated, ascending.
     pub fn counts_of_images(&self) -> Vec<usize> {
-        counts(&self.of_images)
+        let counts = self.of_images.iter().map(|one| one.measurements);
+        counts.collect::<BTreeSet<_>>().into_iter().collect()
     }
 }
 
@@ -142,11 +173,10 @@ impl MeasuredTrial<'_> {
     }
 }
 
-fn counts(of_images: &[FeaturesOfImages]) -> Vec<usize> {
-    let mut counts: Vec<usize> = of_images.iter().map(|one| one.measurements).collect();
-    counts.sort_unstable();
-    counts.dedup();
-    counts
+/// Returns whether measurements depend on a fit to training touches. Images of ensembles that give whole frames are the frames themselves.
+fn is_fitted((ensemble, selection): (Ensemble, Option<Selection>), has_images: bool) -> bool {
+    let is_learned = ensemble.is_learned() && selection != Some(Selection::Random);
+    is_learned || (has_images && !ensemble.gives_frames())
 }
 
 impl SignalInputs {
@@ -239,20 +269,6 @@ impl MeasurementGroup {
             of_images: self.features_of_images(),
             copies: self.copies(plan),
         }
-    }
-
-    /// Returns whether a projection or an estimator is fitted to training touches before measuring.
-    pub fn learns(&self) -> bool {
-        self.ensemble.is_learned()
-            || self
-                .configurations
-                .iter()
-                .any(|configuration| configuration.of_images().is_some())
-    }
-
-    /// Returns the distinct numbers of measurements from which images of frames are estimated, ascending.
-    pub fn counts_of_images(&self) -> Vec<usize> {
-        counts(&self.features_of_images())
     }
 
     /// Returns the inputs of the tilted copies, whose number is the largest that any configuration of the group uses.

@@ -92,28 +92,18 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the key `sensing.selection`: an ensemble must select taxels, and the labels that a method uses must be correct.
-    pub fn selection(&self, spec: &StudySpec) -> Result<()> {
-        let (sensing, recognition) = (&spec.sensing, &spec.recognition);
+    /// Checks the key `sensing.selection`: an ensemble must select taxels.
+    pub fn selection(&self, sensing: &SensingSpec) -> Result<()> {
         let ensembles = sensing.ensemble.values();
-        let methods = ensembles
+        let mut methods = ensembles
             .iter()
             .flat_map(|&ensemble| sensing.selections(ensemble));
-        let methods: Vec<Selection> = methods.flatten().collect();
         let mut selections = sensing.selection.iter().flat_map(Axis::values);
-        if selections.any(|selection| selection != Selection::default()) && methods.is_empty() {
+        if selections.any(|selection| selection != Selection::default())
+            && !methods.any(|method| method.is_some())
+        {
             let given = "given, but no ensemble of the study selects taxels";
             let allowed = "\"selected\" among sensing.ensemble, or no such key";
-            return Err(self.error("sensing.selection", given, allowed));
-        }
-        let mislabelled = recognition
-            .mislabelled_fraction
-            .iter()
-            .flat_map(Axis::values);
-        let has_wrong_labels = mislabelled.into_iter().any(|fraction| fraction > 0.0);
-        if has_wrong_labels && methods.contains(&Selection::Greedy) {
-            let given = "greedy, which uses the labels of training touches, beside recognition.mislabelled_fraction";
-            let allowed = "\"pivoted_qr\" or \"random\" among wrong labels";
             return Err(self.error("sensing.selection", given, allowed));
         }
         Ok(())

@@ -79,7 +79,14 @@ impl Check<'_> {
         self.of_time(recorded, spec)?;
         let place = |error: Error| error.under(format!("{}, ", self.place));
         recorded.check_files().map_err(place)?;
-        if recorded.has_test_set() {
+        let given_split = match recorded.has_test_set() {
+            true => Some("recorded.frames_test is the test set"),
+            false => recorded
+                .splits
+                .as_ref()
+                .map(|_| "recorded.splits has the split of each trial"),
+        };
+        if let Some(given_split) = given_split {
             let recognition = &spec.recognition;
             let given = [
                 ("recognition.folds", recognition.folds.is_some()),
@@ -87,9 +94,13 @@ impl Check<'_> {
                     "recognition.test_fraction",
                     recognition.test_fraction.is_some(),
                 ),
+                (
+                    "recorded.splits",
+                    recorded.has_test_set() && recorded.splits.is_some(),
+                ),
             ];
             if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-                let allowed = "no such key: recorded.frames_test is the test set";
+                let allowed = format!("no such key: {given_split}");
                 return Err(self.error(key, "given", allowed));
             }
         }

@@ -100,7 +100,7 @@ impl Plan {
         check.steps(&spec.signal)?;
         check.check_test_sensor(&spec.signal)?;
         check.sensing(&spec.sensing, &arrays)?;
-        check.selection(&spec)?;
+        check.selection(&spec.sensing)?;
         let frames = match (&spec.human_touch, &spec.recorded) {
             (Some(human), _) => vec![human.n_frames()],
             (_, Some(_)) => touches.frames.values(),

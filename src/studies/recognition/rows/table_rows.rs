@@ -44,6 +44,13 @@ pub struct TrialScore {
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
     /// F1 score (harmonic mean of precision and recall), averaged over all objects, 0 to 1.
     macro_f1: f64 => Value(More) "macro F1": Share;
+    /// Fraction of the object's test rows that are recognised correctly, averaged over all objects, 0 to 1. The column is present only if `report.metrics` has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    balanced_accuracy: Option<f64> => Value(More): Share, optional;
+    /// Negative natural logarithm of the probability of the touched object (at least 2.2e-16), averaged over all test rows. Empty for classifiers without
+    /// probabilities. Votes are counted with one more vote for each class. The column is present only if `report.metrics` has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    log_loss: Option<Option<f64>> => Value(Less) "log-loss": Linear, optional;
     /// Penalty C that the classifier used: given, or chosen by cross-validation within the training rows. Empty if the classifier has no C.
     c_used: Option<f64> => Note "C used": Log;
     /// Kernel parameter γ that the classifier used: given in the study, scaled or selected by cross-validation. Empty if the classifier has no γ.
@@ -102,6 +109,13 @@ pub struct ConfigurationScore {
     bootstrap_high: Option<f64> => Note "mean over trials, upper end": Share;
     /// F1 score (harmonic mean of precision and recall), averaged over all objects and trials, 0 to 1.
     macro_f1: f64 => Value(More) "macro F1": Share;
+    /// Fraction of the object's test rows that are recognised correctly, averaged over all objects and trials, 0 to 1. The column is present only if
+    /// `report.metrics` has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    balanced_accuracy: Option<f64> => Value(More): Share, optional;
+    /// Log-loss of a trial, averaged over trials; see `accuracy.csv`. The column is present only if `report.metrics` has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    log_loss: Option<Option<f64>> => Value(Less) "log-loss": Linear, optional;
     /// Number of optimisation problems, over all trials, that stopped at the solver's maximum number of iterations.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
@@ -284,6 +298,48 @@ pub struct SelectedTaxel {
     y_mm: Option<f64> => Value(Neither) "y" in "mm": Linear;
 } }
 
+row! {
+/// Decision of a configuration on test touches: a row of `predictions.csv`. One column `score_<class>` for each class follows.
+pub struct Prediction {
+    /// Number of the configuration, as in `summary.csv`.
+    configuration: usize => Subject: Linear;
+    /// Number of the trial, from 0.
+    trial: usize => Subject: Linear;
+    /// Test touches of the decision, separated by spaces: the position of each touch in its recording from 0 (touches of a separate test set follow), or its
+    /// number in drawing order.
+    touch: String => Subject;
+    /// Held-out groups of the touches, separated by spaces; empty if no groups are held out.
+    group: String => Note;
+    /// Name of the object that is touched.
+    truth: String => Subject "touched object";
+    /// Name of the recognised object.
+    answer: String => Subject "recognised as";
+} }
+
+row! {
+/// Fraction of the decisions on one object that are correct, over all trials of a configuration: a row of `recall.csv`.
+pub struct Recall {
+    /// Number of the configuration, as in `summary.csv`.
+    configuration: usize => Subject: Linear;
+    /// Name of the object that is touched.
+    object: String => Subject;
+    /// Number of test rows of the object, summed over all trials.
+    n_test: usize => Note "test rows": Linear;
+    /// Number of test rows of the object that are recognised correctly, summed over all trials.
+    n_correct: usize => Note "correct test rows": Linear;
+    /// `n_correct / n_test`, 0 to 1.
+    recall: f64 => Value(More): Share;
+} }
+
+/// Rows of `predictions.csv`, with the scores of their classes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Predictions {
+    /// Names of all classes, in the order of their columns.
+    pub classes: Vec<String>,
+    /// Decisions, ordered by configuration and trial, each with a score for each class. Scores are NaN for classes that the configuration does not have.
+    pub rows: Vec<(Prediction, Vec<f64>)>,
+}
+
 /// All result tables of a recognition study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tables {
@@ -311,6 +367,10 @@ pub struct Tables {
     pub selected: Vec<(Configuration, SelectedTaxel)>,
     /// Rows of `limits.csv`: number of times that each limit of the simulation and of the solver was reached.
     pub limits: Vec<Limit>,
+    /// Rows of `predictions.csv`. Empty unless the study keeps predictions.
+    pub predictions: Predictions,
+    /// Rows of `recall.csv`: one per configuration and object. Empty unless the study has this metric.
+    pub recall: Vec<Recall>,
     /// Whether the trials are the folds of a k-fold split.
     pub has_folds: bool,
 }

@@ -101,6 +101,7 @@ const KEYS: &[KeyAbout] = keys! {
     "recorded.shear": Axes, Condition, Unchecked;
     "recorded.labels": Axes, Condition, Unchecked;
     "recorded.groups": Axes, Condition, Unchecked;
+    "recorded.splits": Axes, Condition, Unchecked;
     "recorded.order": Axes, Condition, Unchecked;
     "recorded.columns": Axes, Choice, Unchecked;
     "recorded.grid": Axes, Condition, Unchecked;
@@ -168,6 +169,8 @@ const KEYS: &[KeyAbout] = keys! {
     "report.samples": Never, Note, Any;
     "report.pareto": Never, Note, Any;
     "report.confusion": Never, Note, Any;
+    "report.predictions": Never, Note, Any;
+    "report.metrics": Never, Note, Any;
     "report.published": Never, Note, Unchecked;
 };
 

@@ -45,6 +45,14 @@ sensor_spec! {
         /// File with the group of every touch, such as its grasp or day, shape (n,). A split never divides a group.
         #[serde(default, deserialize_with = "optional_file_path")]
         pub groups: Option<PathBuf>,
+        /// Archive `.npz` with the split of each trial t: arrays `train_t` and `test_t` of touch numbers from 0, or of a bool for each touch. Touches in neither
+        /// array are not used. Replaces `test_fraction` and `folds`.
+        #[serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "optional_file_path"
+        )]
+        pub splits: Option<PathBuf>,
         /// Number F of frames to which each touch is resampled, at least 1. Frames are interpolated linearly at F instants, evenly spaced from the first to
         /// the last frame. If F is 1, the last frame is used. Default: all frames.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -164,6 +172,7 @@ impl RecordedSpec {
                 Some(&mut self.labels).filter(|path| !is_empty(path)),
             ),
             ("groups", self.groups.as_mut()),
+            ("splits", self.splits.as_mut()),
             ("shear", self.shear.as_mut()),
             ("labels_test", self.labels_test.as_mut()),
             ("groups_test", self.groups_test.as_mut()),

@@ -104,7 +104,7 @@ pub struct SensingSpec {
     pub measurements: Option<Axis<usize>>,
     /// Axis: method by which the ensemble `selected` selects the m taxels to read, from training touches only. Values: `greedy` (default; highest
     /// validation accuracy of a nearest-neighbour classifier), `pivoted_qr` (pivots of m principal components; m is below the number of training frames)
-    /// or `random` (a control). At most 4,096 frames of the training split are used, whatever `recognition.train_touches` is.
+    /// or `random` (a control). At most 4,096 frames of the training touches are used.
     #[schemars(with = "Option<Axis<Names<Selection>>>")]
     pub selection: Option<Axis<Selection>>,
     /// Number of measurements that the skin reads out per second. Adds the column `readout_ms`, the time to read a frame. Default: no such column.
@@ -224,10 +224,29 @@ pub struct ReportSpec {
     /// Configurations whose confusion matrix is written to `confusion.csv`: `all` (default) or `best`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub confusion: ConfusionMatrices,
+    /// Whether `predictions.csv` lists every decision of every configuration and trial, with a score for each class. Default: false.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub predictions: bool,
+    /// Further measures of recognition: columns `balanced_accuracy` and `log_loss` of `accuracy.csv` and `summary.csv`, and the table `recall.csv`. Default:
+    /// none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub metrics: Vec<Metric>,
     /// Published accuracies with which the study is compared. Each published accuracy is compared with the most accurate configuration to which its claim
     /// applies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<PublishedSpec>,
+}
+
+/// Measure of recognition beside accuracy and macro-F1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Metric {
+    /// Mean over objects of the fraction of the object's decisions that are correct.
+    BalancedAccuracy,
+    /// Mean negative natural logarithm of the probability of the touched object; only for classifiers with probabilities.
+    LogLoss,
+    /// Fraction of the decisions on each object that are correct.
+    Recall,
 }
 
 /// Selection of the configurations whose confusion matrices are written to `confusion.csv`.

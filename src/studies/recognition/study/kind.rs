@@ -165,6 +165,7 @@ impl Study for RecognitionStudy {
                 let Family {
                     group,
                     configurations,
+                    ..
                 } = &self.families[number % self.families.len()];
                 for (row, configuration) in rows.iter_mut().zip(configurations.clone()) {
                     row.at = (*group, configuration);
@@ -281,6 +282,9 @@ fn split_words(spec: &StudySpec) -> String {
             }
             if recorded.has_test_set() {
                 return "given test set".to_owned();
+            }
+            if recorded.splits.is_some() {
+                return "given splits".to_owned();
             }
             return match recorded.file_of("groups") {
                 Some(_) => "recorded groups that are never learned".to_owned(),

@@ -7,8 +7,9 @@ use crate::learning::classifiers::ClassifierKind;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::Measurements;
 use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::study::recognition_study::{RecognitionStudy, in_frames};
+use crate::studies::recognition::study::recognition_study::{Family, RecognitionStudy, in_frames};
 use crate::studies::recognition::study::rows::{ConfigurationRow, RecognitionRows, TouchRow};
+use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::recognition::training::trial::Trial;
 use rayon::prelude::*;
@@ -22,6 +23,8 @@ pub(crate) struct Job<'a> {
     group: usize,
     trial: usize,
     n_measurements: usize,
+    /// Training rows to which the measurements are fitted.
+    rows: TrainingRows,
     families: Vec<usize>,
 }
 
@@ -101,7 +104,8 @@ impl RecognitionStudy {
     }
 
     /// Returns the measurements of a set of touches that pending families of configurations need. If smaller sets of measurements are prefixes of larger ones,
-    /// a group is measured once for all its configurations. Otherwise, each number m of measurements is measured separately.
+    /// a group is measured once for all its configurations. Otherwise, each number m of measurements is measured separately. So are training rows to which
+    /// something is fitted.
     fn jobs(&self, left: &PendingItems<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
@@ -120,16 +124,22 @@ impl RecognitionStudy {
                         (is_nested || self.family(family).1[0].measurements == n_measurements)
                             && left.has(self.family_item(trial, family))
                     };
-                    let families: Vec<usize> = families.iter().copied().filter(is_served).collect();
-                    if !families.is_empty() {
-                        jobs.push(Job {
-                            study: self,
-                            group,
-                            trial,
-                            n_measurements,
-                            families,
-                        });
+                    let mut by_rows: Vec<(TrainingRows, Vec<usize>)> = Vec::new();
+                    for family in families.iter().copied().filter(is_served) {
+                        let rows = self.families[family].rows;
+                        match by_rows.iter_mut().find(|(known, _)| *known == rows) {
+                            Some((_, families)) => families.push(family),
+                            None => by_rows.push((rows, vec![family])),
+                        }
                     }
+                    jobs.extend(by_rows.into_iter().map(|(rows, families)| Job {
+                        study: self,
+                        group,
+                        trial,
+                        n_measurements,
+                        rows,
+                        families,
+                    }));
                 }
             }
         }
@@ -249,16 +259,23 @@ impl Job<'_> {
 
     fn measure(&self, frames: [&Frames; 2]) -> Result<Measurements> {
         let (part, group) = self.study.group(self.group);
-        part.measure(group, frames, (self.trial, self.n_measurements))
+        part.measure(
+            (group, self.rows),
+            frames,
+            (self.trial, self.n_measurements),
+        )
     }
 
     /// Returns whether a family of configurations is the first of the study that uses the measurements of this job.
     fn is_first(&self, family: usize) -> bool {
         let m = |family: usize| self.study.family(family).1[0].measurements;
-        let earlier = self.study.families[..family].iter().enumerate();
-        let mut same =
-            earlier.filter(|(_, one)| self.study.groups[one.group].measured_as == self.group);
-        !same.any(|(earlier, _)| m(earlier) == m(family))
+        let is_same = |earlier: usize| {
+            let Family { group, rows, .. } = self.study.families[earlier];
+            self.study.groups[group].measured_as == self.group
+                && rows == self.rows
+                && m(earlier) == m(family)
+        };
+        !(0..family).any(is_same)
     }
 
     fn evaluate(

@@ -14,13 +14,15 @@ use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::table_rows::{StageTime, Tables};
+use crate::studies::recognition::rows::table_rows::{Prediction, Predictions, StageTime, Tables};
 use crate::studies::recognition::spec::study::ConfusionMatrices;
 use crate::studies::recognition::study::rows::{RecognitionRows, TouchRow};
 use crate::studies::recognition::study::touch_inputs::TouchInputs;
 use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
+use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use crate::studies::recognition::tables::published::{check_published, compare_with_published};
 use crate::studies::recognition::tables::tabulate::tabulate;
+use crate::studies::recognition::training::trial::Evaluation;
 use crate::studies::study::run_whole;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
@@ -73,6 +75,8 @@ pub(crate) struct PlacedGroup {
 pub(crate) struct Family {
     pub group: usize,
     pub configurations: Range<usize>,
+    /// Training rows to which the measurements of the family are fitted.
+    pub rows: TrainingRows,
 }
 
 impl RecognitionStudy {
@@ -185,6 +189,7 @@ impl RecognitionStudy {
                     Family {
                         group: number,
                         configurations,
+                        rows: inputs.fitted_rows(plan, group, &family[0]),
                     }
                 }));
             }
@@ -306,6 +311,7 @@ impl RecognitionStudy {
         let Family {
             group,
             configurations,
+            ..
         } = &self.families[family];
         let (part, group) = self.group(*group);
         (part, &group.configurations[configurations.clone()])
@@ -431,6 +437,8 @@ impl RecognitionStudy {
             let configuration = &self.group(row.at.0).1.configurations[row.at.1];
             (configuration.clone(), row.evaluation)
         });
+        let mut scored: Vec<(Configuration, Evaluation)> = scored.collect();
+        tables.predictions = self.predictions(&mut scored);
         let names: Vec<Vec<&str>> = self.parts.iter().map(|p| p.touched.class_names()).collect();
         let name = |configuration: &Configuration, label: usize| {
             names[configuration.variant.number][label].to_owned()
@@ -440,19 +448,54 @@ impl RecognitionStudy {
             spec.recognition.folds.unwrap_or(1)
         };
         let report = &self.first().plan.spec.report;
-        tabulate(
-            &mut tables,
-            scored.collect(),
-            name,
-            place,
-            n_folds,
-            report.confusion,
-        )?;
+        tabulate(&mut tables, scored, name, place, n_folds, report)?;
         tables.published = compare_with_published(&report.published, &tables.summary)?;
         tables.has_folds = self.first().plan.spec.recognition.folds.is_some();
         tables.stages = self.stages(&touches);
         tables.limits = self.limits(&tables.accuracy, &touches);
         Ok(tables)
+    }
+
+    /// Moves the decisions out of the evaluations and returns them as rows, ordered by configuration and trial.
+    fn predictions(&self, scored: &mut [(Configuration, Evaluation)]) -> Predictions {
+        let mut made = Predictions::default();
+        if !self.first().plan.spec.report.predictions {
+            return made;
+        }
+        let classes: Vec<Vec<&str>> = self.parts.iter().map(|p| p.touched.class_names()).collect();
+        let touches: Vec<Vec<String>> = self.parts.iter().map(|p| p.tested.touch_names()).collect();
+        let mut places: HashMap<&str, usize> = HashMap::new();
+        for &class in classes.iter().flatten() {
+            places.entry(class).or_insert_with(|| {
+                made.classes.push(class.to_owned());
+                made.classes.len() - 1
+            });
+        }
+        scored.sort_by_key(|(configuration, evaluation)| {
+            (configuration.configuration, evaluation.score.trial)
+        });
+        for (configuration, evaluation) in scored {
+            let part = configuration.variant.number;
+            let (classes, touches) = (&classes[part], &touches[part]);
+            for one in evaluation.decided.drain(..) {
+                let mut scores = vec![f64::NAN; made.classes.len()];
+                for (class, score) in classes.iter().zip(&one.scores) {
+                    scores[places[class]] = score.unwrap_or(f64::NAN);
+                }
+                let names = one.touches.iter().map(|&touch| &touches[touch][..]);
+                let groups: Vec<String> = one.groups.iter().map(usize::to_string).collect();
+                let row = Prediction {
+                    configuration: configuration.configuration,
+                    trial: evaluation.score.trial,
+                    touch: names.collect::<Vec<_>>().join(" "),
+                    group: groups.join(" "),
+                    truth: classes[one.truth].to_owned(),
+                    answer: classes[one.answer].to_owned(),
+                };
+                made.rows.push((row, scores));
+            }
+        }
+        made
     }
 
     /// Returns the sample touches for pictures, from the first combination of the values in `[axes]`.

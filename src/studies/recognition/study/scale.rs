@@ -3,6 +3,7 @@
 use crate::engine::work_items::scale::Scale;
 use crate::sensing::N_COMPONENTS;
 use crate::studies::recognition::measurements::measurement::UNTOUCHED;
+use crate::studies::recognition::measurements::measurement_inputs::MeasurementInputs;
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::configuration::Configuration;
@@ -39,7 +40,8 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         let of_images = on.1.features_of_images().into_iter();
         let shapes = on.0.plan.arrays[on.1.array].image_shapes();
         let numbers: usize = of_images.map(|one| join_values(one.join, &shapes)).sum();
-        let learned = learned_bytes(on.1, n_values(on) as f64) + 8.0 * n_read(on) * numbers as f64;
+        let learned = learned_bytes(&on.1.inputs(&on.0.plan), n_values(on) as f64)
+            + 8.0 * n_read(on) * numbers as f64;
         8.0 * n_read(on) * m(on) + matrix(m(on), n_values(on) as f64) + learned
     };
     let groups = || {
@@ -79,10 +81,10 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
 }
 
 /// Returns the memory of learned ensembles and image estimators, bytes: the frames for fitting (n values each), and the fitted results.
-fn learned_bytes(group: &MeasurementGroup, n: f64) -> f64 {
+fn learned_bytes(inputs: &MeasurementInputs, n: f64) -> f64 {
     let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
-    let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
-    match group.learns() {
+    let estimates: f64 = inputs.counts_of_images().iter().map(|&m| m as f64).sum();
+    match inputs.is_fitted() {
         true => 8.0 * n * (frames + estimates + 3.0 * N_COMPONENTS as f64),
         false => 0.0,
     }

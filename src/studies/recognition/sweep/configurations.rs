@@ -25,6 +25,7 @@ use crate::studies::recognition::plan::taxel_array::skin;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
 use crate::studies::recognition::sweep::splits::{draw_split, first_equal, train_touches};
+use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use crate::studies::recognition::touches::scaled_poses::scaled_poses;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
@@ -110,8 +111,8 @@ impl Sweep {
         let keys = together.map(|together| touched.group_keys(together));
         let keys = keys.transpose()?.or_else(|| touched.own_groups());
         let split = |trial| {
-            let of = (&poses[..], keys.as_ref(), touched.given_sides());
-            draw_split(plan, &labels, of, trial)
+            let sides = touched.given_sides(plan.spec.split_of(trial))?;
+            draw_split(plan, &labels, (&poses[..], keys.as_ref(), sides), trial)
         };
         let splits = (0..plan.spec.trials).map(split);
         let splits = splits.collect::<Result<Vec<_>>>()?;
@@ -177,33 +178,43 @@ impl Sweep {
     fn check_learned(&self, plan: &Plan, group: &MeasurementGroup) -> Result<()> {
         // The numbers of principal components are bounded; any number of taxels can be selected otherwise.
         let is_of_components = matches!(group.selection, None | Some(Selection::PivotedQr));
-        if !group.ensemble.is_learned() || !is_of_components {
+        let counts = group.configurations.iter().map(|c| c.measurements);
+        let Some(m) = counts.max() else {
+            return Ok(());
+        };
+        if !group.ensemble.is_learned() || group.ensemble.gives_frames() || !is_of_components {
             return Ok(());
         }
-        let n_train = self.splits.iter().map(|split| split.train.len());
-        let n_touches = n_train
-            .min()
-            .unwrap_or(0)
-            .min(learned_touches(group.frames));
-        let n_frames = n_touches * group.frames;
-        let counts = plan.measurement_counts(&plan.arrays[group.array], group.ensemble);
-        match counts.into_iter().max() {
-            Some(m) if m >= n_frames => {
+        let mut checked: Vec<TrainingRows> = Vec::new();
+        for configuration in &group.configurations {
+            let rows = TrainingRows::new(plan, configuration);
+            if checked.contains(&rows) {
+                continue;
+            }
+            checked.push(rows);
+            let n_train = |trial| Ok(self.trial(plan, trial)?.training(&rows)?.0.train.len());
+            let n_train = (0..self.splits.len()).map(n_train);
+            let n_train = n_train.collect::<Result<Vec<usize>>>()?.into_iter().min();
+            let n_touches = n_train.unwrap_or(0).min(learned_touches(group.frames));
+            let n_frames = n_touches * group.frames;
+            if m >= n_frames {
                 let key = match plan.spec.sensing.measurements {
                     Some(_) => "key sensing.measurements",
                     None => "key sensing.ratio",
                 };
                 let given = format!("{m} {}", group.ensemble.about().words);
-                let most = n_frames.saturating_sub(1);
-                let mut allowed =
-                    format!("at most {most}, one fewer than the frames of the training touches");
+                let mut allowed = format!(
+                    "at most {}, one fewer than the frames of the {n_touches} training touches of configuration {}",
+                    n_frames.saturating_sub(1),
+                    configuration.configuration
+                );
                 if group.selection.is_some() {
                     allowed += "; or sensing.selection = \"greedy\" or \"random\"";
                 }
-                Err(Error::input(key, given, allowed))
+                return Err(Error::input(key, given, allowed));
             }
-            _ => Ok(()),
         }
+        Ok(())
     }
 
     fn add_group(
@@ -213,7 +224,6 @@ impl Sweep {
         train_touches: &[usize],
     ) -> Result<()> {
         let array = &plan.arrays[group.array];
-        self.check_learned(plan, &group)?;
         let (n_rows, n_columns) = array.shape();
         if !array.is_plain() {
             // A step that the layout does not support is detected before the run.
@@ -267,6 +277,7 @@ impl Sweep {
         }
         // With many small groups, unused capacity would take most of the memory.
         group.configurations.shrink_to_fit();
+        self.check_learned(plan, &group)?;
         self.groups.push(group);
         Ok(())
     }

@@ -3,3 +3,4 @@
 pub mod configurations;
 pub(crate) mod learned_frames;
 pub mod splits;
+pub mod training_rows;

@@ -31,7 +31,7 @@ pub fn draw_split(
     let n_folds = recognition.folds.unwrap_or(1);
     let seed = Seed::new(plan.spec.seed).named("split");
     if let Some(sides) = given_sides {
-        // A given split is equal in all trials; subsets of the training touches are drawn anew in each trial.
+        // Given sides may be equal in all trials; subsets of the training touches are drawn anew in each trial.
         let drawn = recognition.train_touches.as_ref().map_or(0, |_| trial);
         return Ok(given_hold_out(labels, sides, &seed.numbered(drawn as u64))?);
     }

@@ -104,8 +104,21 @@ fn score(
         bootstrap_low: of_mean.map(|interval| interval.low),
         bootstrap_high: of_mean.map(|interval| interval.high),
         macro_f1: mean(|t| t.macro_f1),
+        balanced_accuracy: mean_of_all(trials, |t| t.balanced_accuracy),
+        log_loss: trials[0]
+            .log_loss
+            .map(|_| mean_of_all(trials, |t| t.log_loss.flatten())),
         n_capped: trials.iter().map(|t| t.n_capped).sum(),
     })
+}
+
+/// Returns the mean of a value over trials; `None` if a trial does not have it.
+fn mean_of_all(trials: &[&TrialScore], value: fn(&TrialScore) -> Option<f64>) -> Option<f64> {
+    let sum = trials
+        .iter()
+        .map(|trial| value(trial))
+        .sum::<Option<f64>>()?;
+    Some(sum / trials.len() as f64)
 }
 
 fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {

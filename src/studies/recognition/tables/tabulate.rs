@@ -1,10 +1,13 @@
 //! Assembly of the result tables from finished configurations, ordered by configuration and trial.
 
 use crate::error::Result;
+use crate::learning::evaluation::metrics::ConfusionMatrix;
 use crate::studies::recognition::rows::conditions::most_accurate;
 use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::table_rows::{Confusion, SelectedTaxel, Tables, TrialScore};
-use crate::studies::recognition::spec::study::ConfusionMatrices;
+use crate::studies::recognition::rows::table_rows::{
+    Confusion, Recall, SelectedTaxel, Tables, TrialScore,
+};
+use crate::studies::recognition::spec::study::{ConfusionMatrices, Metric, ReportSpec};
 use crate::studies::recognition::tables::summary::{
     compare_with_best, most_confused, pareto, summarise,
 };
@@ -22,8 +25,9 @@ pub fn tabulate(
     name: impl Fn(&Configuration, usize) -> String,
     place: impl Fn(&Configuration, usize) -> Option<[f64; 2]>,
     n_folds: impl Fn(&Configuration) -> usize,
-    matrices: ConfusionMatrices,
+    report: &ReportSpec,
 ) -> Result<()> {
+    let has = |metric| report.metrics.contains(&metric);
     scored.sort_by_key(|(configuration, evaluation)| {
         (configuration.configuration, evaluation.score.trial)
     });
@@ -35,7 +39,12 @@ pub fn tabulate(
     );
     let mut groups = Vec::new();
     let mut confusions = BTreeMap::new();
-    for (configuration, evaluation) in scored {
+    for (configuration, mut evaluation) in scored {
+        if has(Metric::BalancedAccuracy) {
+            let matrix = ConfusionMatrix::of_counts(&evaluation.confusion);
+            evaluation.score.balanced_accuracy = Some(matrix.balanced_accuracy());
+        }
+        evaluation.score.log_loss = has(Metric::LogLoss).then_some(evaluation.log_loss);
         for &(object, predicted, count) in &evaluation.confusion {
             let known = confusions.entry((configuration.configuration, object, predicted));
             let row = known.or_insert_with(|| Confusion {
@@ -63,6 +72,9 @@ pub fn tabulate(
         tables.timing.push((configuration, evaluation.time));
     }
     tables.confusion = confusions.into_values().collect();
+    if has(Metric::Recall) {
+        tables.recall = recall(&tables.confusion);
+    }
     tables.summary = summarise(&tables.accuracy, &groups, n_folds)?;
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
@@ -84,7 +96,7 @@ pub fn tabulate(
     if let Some(best) = most_accurate(accuracies) {
         let fused = max_touches_per_decision(configurations(), best);
         tables.confused = most_confused(&tables.confusion, best, fused)?;
-        if matrices == ConfusionMatrices::Best {
+        if report.confusion == ConfusionMatrices::Best {
             let all = tables.summary.iter();
             let charted = most_accurate(
                 all.map(|(configuration, score)| (configuration.configuration, score.accuracy)),
@@ -101,6 +113,25 @@ pub fn tabulate(
     }
     tables.pareto = pareto(&tables.accuracy, &tables.timing)?;
     Ok(())
+}
+
+/// Returns the recall of each object in each configuration. The rows of an object are adjacent.
+fn recall(confusion: &[Confusion]) -> Vec<Recall> {
+    let is_same =
+        |a: &Confusion, b: &Confusion| (a.configuration, &a.object) == (b.configuration, &b.object);
+    let of_object = |rows: &[Confusion]| {
+        let correct = rows.iter().filter(|row| row.predicted == row.object);
+        let n_correct = correct.map(|row| row.count).sum();
+        let n_test = rows.iter().map(|row| row.count).sum();
+        Recall {
+            configuration: rows[0].configuration,
+            object: rows[0].object.clone(),
+            n_test,
+            n_correct,
+            recall: n_correct as f64 / n_test as f64,
+        }
+    };
+    confusion.chunk_by(is_same).map(of_object).collect()
 }
 
 /// Adds optional columns to all rows if at least one row has them. If a combination of axis values holds out no groups, each test row counts as a group. If a

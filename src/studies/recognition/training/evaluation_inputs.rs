@@ -8,18 +8,18 @@ use crate::inputs::content_hash::{Hashed, short_hash};
 use crate::inputs::memory::GIB;
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::data::spoiled::{mislabelled, with_imbalance};
 use crate::learning::evaluation::next_touch::{NextTouch, Poses};
 use crate::random::Seed;
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
-use crate::studies::recognition::spec::study::RecognitionSpec;
+use crate::studies::recognition::spec::study::{Metric, RecognitionSpec};
 use crate::studies::recognition::sweep::configurations::Sweep;
+use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 use bubbletouch_svm::split::Split;
-use ndarray::{Array1, Axis};
+use ndarray::Array1;
 
 /// Number of hexadecimal digits of the hash that a work item's name contains. With fewer digits, the names of two work items may collide.
 const DIGITS: usize = 24;
@@ -50,18 +50,18 @@ pub struct TrialInputs<'a> {
 pub struct FamilyInputs<'a> {
     /// Inputs that determine how feature rows are computed from measurements.
     pub rows: RowInputs,
-    /// Maximum number of training touches per object; `None` for all training touches of the split.
-    pub train_touches: Option<usize>,
-    /// Fraction of the training touches that are labelled as another object, 0 to 1; `None` if all labels are correct.
-    pub mislabelled_fraction: Option<f64>,
-    /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1; `None` without imbalance.
-    pub class_imbalance: Option<f64>,
+    /// Settings that reduce or relabel the training touches of a split.
+    pub training_rows: TrainingRows,
     /// Classifier, and the candidate values from which its C and γ are selected.
     pub training: TrainingInputs,
     /// Settings of a decision for each configuration of the family, in the order of the configurations. Configurations with equal C are adjacent.
     pub decisions: Vec<Decision>,
     /// Pose of each touch; `None` if no configuration selects touches by their poses.
     pub poses: Option<&'a Hashed<Poses>>,
+    /// Whether the result contains each decision with its scores.
+    pub keeps_predictions: bool,
+    /// Whether the result contains the log-loss.
+    pub keeps_log_loss: bool,
 }
 
 /// Inputs that determine how a classifier is trained. Parameters that the classifier does not use have their default values.
@@ -103,39 +103,6 @@ impl TrialInputs<'_> {
         seed.numbered(self.number as u64)
     }
 
-    /// Returns the split into training and test touches for a family. The training touches are reduced to the family's number per object and class imbalance.
-    ///
-    /// # Errors
-    /// If an object has no training touches after the reduction.
-    pub fn split(&self, family: &FamilyInputs) -> Result<Split> {
-        let labels = self.labels.view();
-        let split = match family.train_touches {
-            None => (**self.split).clone(),
-            Some(n) => self.split.at_most(labels, n)?,
-        };
-        match family.class_imbalance {
-            None => Ok(split),
-            Some(ratio) => with_imbalance(&split, labels, ratio, &self.stream("training rows")),
-        }
-    }
-
-    /// Returns the label of each touch that is used in training; labels may differ from the true object if mislabelled touches are studied. A fraction of the
-    /// training touches is labelled as another object.
-    ///
-    /// # Errors
-    /// If the fraction is not between 0 and 1.
-    pub fn learned_labels(&self, family: &FamilyInputs, split: &Split) -> Result<Array1<usize>> {
-        let mut labels = (**self.labels).clone();
-        if let Some(fraction) = family.mislabelled_fraction {
-            let right = labels.select(Axis(0), &split.train);
-            let wrong = mislabelled(right.view(), fraction, &self.stream("training rows"))?;
-            for (&row, label) in split.train.iter().zip(wrong) {
-                labels[row] = label;
-            }
-        }
-        Ok(labels)
-    }
-
     /// Returns the group of each test touch; `None` if the split does not hold out whole groups.
     pub fn test_groups(&self, test: &[usize]) -> Option<Vec<usize>> {
         match (self.tested_block, self.group_keys) {
@@ -163,13 +130,10 @@ impl<'a> FamilyInputs<'a> {
         let decisions: Vec<Decision> = decisions.collect();
         let has = |wanted: fn(&Decision) -> bool| decisions.iter().any(wanted);
         let configuration = &family[0];
-        let train_touches = recognition.train_touches.as_ref();
         let poses = sweep.poses.as_ref();
         Self {
             rows: configuration.rows(),
-            train_touches: train_touches.map(|_| configuration.train_touches),
-            mislabelled_fraction: configuration.mislabelled_fraction,
-            class_imbalance: configuration.class_imbalance,
+            training_rows: TrainingRows::new(plan, configuration),
             training: TrainingInputs::new(
                 recognition,
                 configuration.classifier,
@@ -177,6 +141,8 @@ impl<'a> FamilyInputs<'a> {
             ),
             poses: poses.filter(|_| has(|decision| decision.next_touch != NextTouch::Random)),
             decisions,
+            keeps_predictions: plan.spec.report.predictions,
+            keeps_log_loss: plan.spec.report.metrics.contains(&Metric::LogLoss),
         }
     }
 

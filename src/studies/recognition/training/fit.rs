@@ -89,6 +89,8 @@ impl Training<'_> {
             let gamma = number(classifier.gamma()).filter(|_| kind.has_gamma());
             (trained.swap_remove(0), gamma)
         } else {
+            let all: Vec<usize> = (0..self.data.targets.len()).collect();
+            let classifier = self.with_groups(classifier, &all);
             (classifier.train(&self.data, &self.seed)?, None)
         };
         Ok(Fitted {
@@ -141,14 +143,27 @@ impl Training<'_> {
             // Further readings and copies repeat the order of the first readings.
             let starts = (0..self.data.targets.len()).step_by(n_first);
             let learned = starts.flat_map(|start| fold.train.iter().map(move |row| start + row));
-            let learned = rows(&self.data, &learned.collect::<Vec<_>>())?;
-            let trained = classifier.train(&learned, &self.seed)?;
+            let places: Vec<usize> = learned.collect();
+            let learned = rows(&self.data, &places)?;
+            let trained = self.with_groups(&classifier, &places);
+            let trained = trained.train(&learned, &self.seed)?;
             let held_out = self.data.records.select(Axis(0), &fold.test);
             for (&row, label) in fold.test.iter().zip(trained.labels(held_out.view())?) {
                 answers[row] = label;
             }
         }
         Ok(answers)
+    }
+
+    /// Returns the classifier with the groups of the given training rows.
+    fn with_groups(&self, classifier: &Classifier, rows: &[usize]) -> Classifier {
+        // Further readings and copies repeat the order of the first readings.
+        let keys = self.group_keys.as_ref();
+        let groups = keys.map(|keys| rows.iter().map(|row| keys[row % self.n_first]).collect());
+        Classifier {
+            groups,
+            ..classifier.clone()
+        }
     }
 
     /// Returns the kernel parameter γ, given or computed from the training rows; `None` if the classifier has no γ.

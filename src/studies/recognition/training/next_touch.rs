@@ -11,7 +11,7 @@ use crate::studies::recognition::training::evaluation_inputs::{
 use crate::studies::recognition::training::fit::{Fitted, Training};
 use bubbletouch_svm::dataset::Dataset;
 use bubbletouch_svm::split::Split;
-use ndarray::Array1;
+use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 
 /// Fits a model that predicts a classifier's decision on a touch from its pose. The decisions come from training touches, with classifiers that were trained
@@ -87,6 +87,8 @@ pub(super) struct AnsweredTouches<'a> {
     /// Group of each test touch; `None` if the split does not hold out whole groups.
     pub(super) groups: Option<&'a [usize]>,
     pub(super) decide: Decide<'a>,
+    /// Additive scores of each test touch; `None` if neither predictions nor the log-loss are kept.
+    pub(super) scores: Option<Array2<f64>>,
     pub(super) answer_s: f64,
     pub(super) n_train: usize,
     /// Model that predicts the classifier's decision from the pose of a touch; `None` if no configuration uses the model.

@@ -17,10 +17,13 @@ use crate::studies::recognition::training::next_touch::Decide;
 use crate::studies::recognition::training::next_touch::{answer_model, choose_touches};
 use bubbletouch_svm::dataset::{Dataset, dataset};
 use bubbletouch_svm::split::Split;
-use ndarray::{Array1, Axis};
+use ndarray::{Array1, Array2, Axis};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::time::Instant;
+
+/// Smallest probability that the log-loss uses, as in scikit-learn. With a smaller value, single certain errors dominate the mean.
+const LEAST_PROBABILITY: f64 = f64::EPSILON;
 
 /// Result of one configuration in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,10 +37,33 @@ pub struct Evaluation {
     /// Decision counts of each group of test touches; empty if no groups are held out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub groups: Vec<GroupCount>,
+    /// Mean negative logarithm of the probability of the true class over all decisions; `None` if it is not kept, or the classifier has no probabilities.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub log_loss: Option<f64>,
+    /// Decisions in the order of the test touches; empty unless the study keeps them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub decided: Vec<Decided>,
     /// Indices of the selected taxels, in the order of their selection. Only the first family of configurations with these measurements has them, in the first
     /// trial.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub selected: Vec<usize>,
+}
+
+/// One decision on test touches of one object.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Decided {
+    /// Numbers of the touches.
+    pub touches: Vec<usize>,
+    /// Distinct groups of the touches; empty if no groups are held out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub groups: Vec<usize>,
+    /// Label of the touched object.
+    pub truth: usize,
+    /// Predicted label.
+    pub answer: usize,
+    /// Score of each label from 0, as [`TrainedClassifier::class_scores`](bubbletouch_svm::classifiers::trained_classifier::TrainedClassifier::class_scores)
+    /// gives it; `None` for a label without training touches.
+    pub scores: Vec<Option<f64>>,
 }
 
 /// Data of a trial that the evaluations of all families in a group share.
@@ -77,8 +103,8 @@ impl Trial<'_> {
     /// # Errors
     /// If rows of the family cannot be computed, or the training fails.
     pub fn evaluate(&self, family: &FamilyInputs) -> Result<Vec<Evaluation>> {
-        let split = self.inputs.split(family)?;
-        let training = self.training(family, &split)?;
+        let (split, learned_labels) = self.inputs.training(&family.training_rows)?;
+        let training = self.training(family, (&split, &learned_labels))?;
         let labels = self.inputs.labels.select(Axis(0), &split.test);
         let test = dataset(
             self.measurements.features(&family.rows, &split.test)?,
@@ -100,6 +126,10 @@ impl Trial<'_> {
                 groups: groups.as_deref(),
                 decide: decider(fitted, &test, configurations)?,
                 answer_s: start.elapsed().as_secs_f64(),
+                scores: match family.keeps_predictions || family.keeps_log_loss {
+                    true => Some(fitted.classifier.scores(test.records.view())?),
+                    false => None,
+                },
                 n_train: split.train.len(),
                 touches: &split.test,
                 model: None,
@@ -136,11 +166,48 @@ impl Trial<'_> {
         let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), n_objects)?;
         let counts = matrix.counts.indexed_iter();
         let counts = counts.filter(|(_, count)| **count > 0);
-        let groups = answered.groups.map_or_else(Vec::new, |groups| {
+        let groups_of = |touches: &[usize]| -> BTreeSet<usize> {
+            let groups = answered.groups.unwrap_or_default();
+            let groups = touches.iter().filter_map(|&touch| groups.get(touch));
+            groups.copied().collect()
+        };
+        let classifier = &answered.fitted.classifier;
+        let scores = answered.scores.as_ref();
+        let scores = scores
+            .map(|scores| classifier.class_scores(fuse_scores(scores.view(), &rows.groups).view()));
+        let place = |label: usize| classifier.classes().binary_search(&label).ok();
+        let log_loss = scores.as_ref().filter(|_| family.keeps_log_loss);
+        let log_loss = log_loss.filter(|_| classifier.is_probabilistic());
+        let log_loss = log_loss.map(|scores| {
+            let losses = scores.outer_iter().zip(&truth);
+            let losses = losses.map(|(row, &label)| {
+                let log = place(label).map_or(f64::NEG_INFINITY, |place| row[place]);
+                -log.max(LEAST_PROBABILITY.ln())
+            });
+            losses.sum::<f64>() / truth.len() as f64
+        });
+        let decided = |scores: &Array2<f64>| -> Vec<Decided> {
+            let decisions = rows.groups.iter().zip(scores.outer_iter()).enumerate();
+            let decided = decisions.map(|(row, (touches, scores))| Decided {
+                touches: touches.iter().map(|&t| answered.touches[t]).collect(),
+                groups: groups_of(touches).into_iter().collect(),
+                truth: truth[row],
+                answer: predicted[row],
+                scores: (0..n_objects)
+                    .map(|label| Some(scores[place(label)?]))
+                    .collect(),
+            });
+            decided.collect()
+        };
+        let decided = scores
+            .as_ref()
+            .filter(|_| family.keeps_predictions)
+            .map(decided);
+        let groups = answered.groups.map_or_else(Vec::new, |_| {
             let decisions = rows.groups.iter().enumerate();
             // A decision on touches of several groups counts as a row of each of these groups.
             count_groups(decisions.flat_map(|(row, touches)| {
-                let of: BTreeSet<usize> = touches.iter().map(|&touch| groups[touch]).collect();
+                let of = groups_of(touches);
                 let is_correct = predicted[row] == truth[row];
                 of.into_iter().map(move |group| (group, is_correct))
             }))
@@ -167,6 +234,8 @@ impl Trial<'_> {
                 accuracy_high: interval.high,
                 n_groups,
                 macro_f1: matrix.macro_f1(),
+                balanced_accuracy: None,
+                log_loss: None,
                 c_used: answered.fitted.c,
                 gamma_used: answered.fitted.gamma,
                 n_capped: answered.fitted.classifier.n_capped(),
@@ -191,14 +260,19 @@ impl Trial<'_> {
                 .map(|((object, predicted), &count)| (object, predicted, count))
                 .collect(),
             groups,
+            log_loss,
+            decided: decided.unwrap_or_default(),
             selected: Vec::new(),
         })
     }
 
-    fn training<'f>(&self, family: &'f FamilyInputs, split: &Split) -> Result<Training<'f>> {
+    fn training<'f>(
+        &self,
+        family: &'f FamilyInputs,
+        (split, labels): (&Split, &Array1<usize>),
+    ) -> Result<Training<'f>> {
         let keys = self.inputs.group_keys;
-        let labels = self.inputs.learned_labels(family, split)?;
-        let (rows, labels) = learned_rows(self.measurements, &family.rows, &split.train, &labels);
+        let (rows, labels) = learned_rows(self.measurements, &family.rows, &split.train, labels);
         Ok(Training {
             inputs: &family.training,
             data: dataset(self.measurements.features(&family.rows, &rows)?, labels)?,

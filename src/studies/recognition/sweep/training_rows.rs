@@ -1,0 +1,58 @@
+//! Touches on which a configuration trains, and to which its ensemble and its image estimators are fitted.
+
+use crate::error::Result;
+use crate::learning::data::spoiled::{mislabelled, with_imbalance};
+use crate::studies::recognition::plan::study_plan::Plan;
+use crate::studies::recognition::rows::configuration::Configuration;
+use crate::studies::recognition::training::evaluation_inputs::TrialInputs;
+use bubbletouch_svm::split::Split;
+use ndarray::{Array1, Axis};
+
+/// Settings that reduce or relabel the training touches of a split.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TrainingRows {
+    /// Maximum number of training touches per object; `None` for all training touches of the split.
+    pub train_touches: Option<usize>,
+    /// Fraction of the training touches that are labelled as another object, 0 to 1; `None` if all labels are correct.
+    pub mislabelled_fraction: Option<f64>,
+    /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1; `None` without imbalance.
+    pub class_imbalance: Option<f64>,
+}
+
+impl TrainingRows {
+    /// Returns the settings of a configuration.
+    pub fn new(plan: &Plan, configuration: &Configuration) -> Self {
+        let train_touches = plan.spec.recognition.train_touches.as_ref();
+        Self {
+            train_touches: train_touches.map(|_| configuration.train_touches),
+            mislabelled_fraction: configuration.mislabelled_fraction,
+            class_imbalance: configuration.class_imbalance,
+        }
+    }
+}
+
+impl TrialInputs<'_> {
+    /// Returns the split of the trial with the training touches that remain, and the label of every touch with which a classifier trains.
+    ///
+    /// # Errors
+    /// If an object has no training touches after the reduction, or the fraction of wrong labels is not between 0 and 1.
+    pub fn training(&self, rows: &TrainingRows) -> Result<(Split, Array1<usize>)> {
+        let mut labels = (**self.labels).clone();
+        let mut split = match rows.train_touches {
+            None => (**self.split).clone(),
+            Some(n) => self.split.at_most(labels.view(), n)?,
+        };
+        let seed = self.stream("training rows");
+        if let Some(ratio) = rows.class_imbalance {
+            split = with_imbalance(&split, labels.view(), ratio, &seed)?;
+        }
+        if let Some(fraction) = rows.mislabelled_fraction {
+            let right = labels.select(Axis(0), &split.train);
+            let wrong = mislabelled(right.view(), fraction, &seed)?;
+            for (&row, label) in split.train.iter().zip(wrong) {
+                labels[row] = label;
+            }
+        }
+        Ok((split, labels))
+    }
+}

@@ -1,0 +1,305 @@
+//! Tables of single decisions, of recall, and the further measures of recognition.
+
+use crate::command::Case;
+use crate::recorded_sensors::{SKIN, planned};
+use crate::study::Study;
+use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::{write_integers, write_npy};
+use bubbletouch::table::Table;
+use ndarray::{Array1, Array2, Array3, Axis};
+use ndarray_npy::{NpzWriter, read_npy};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+
+const STUDY: &str = r#"
+question = "Which touches are recognised as what?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "bowl"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 24
+offset_x_mm = { uniform = [-10.0, 10.0] }
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = 0.3
+
+[sensing]
+measurements = 6
+
+[recognition]
+classifier = ["linear_svm", "rbf_svm", "nearest_centroid", "naive_bayes", "logistic_regression", "k_nearest", "random_forest"]
+class_imbalance = 3.0
+touches_per_decision = [1, 3]
+"#;
+
+const REPORT: &str = r#"
+[report]
+predictions = true
+metrics = ["balanced_accuracy", "log_loss", "recall"]
+"#;
+
+fn tables(text: &str) -> BTreeMap<&'static str, Table> {
+    let tables = tables_of(&Study::new(text).run()).unwrap();
+    tables
+        .into_iter()
+        .map(|table| (table.file, table))
+        .collect()
+}
+
+#[test]
+fn predictions_give_the_counts_and_measures_of_the_other_tables() {
+    let found = tables(&format!("{STUDY}{REPORT}"));
+    let (accuracy, predictions) = (&found["accuracy.csv"], &found["predictions.csv"]);
+    let recall = &found["recall.csv"];
+    let classes: Vec<&str> = predictions
+        .columns
+        .iter()
+        .filter_map(|column| column.name.strip_prefix("score_"))
+        .collect();
+    assert_eq!(classes.len(), 4);
+    let mut n_probabilistic = 0;
+    for row in 0..accuracy.n_rows {
+        let at = |table: &Table, other: usize| {
+            ["configuration", "trial"]
+                .iter()
+                .all(|name| table.number(name, other) == accuracy.number(name, row))
+        };
+        let own: Vec<usize> = (0..predictions.n_rows)
+            .filter(|&r| at(predictions, r))
+            .collect();
+        assert_eq!(own.len() as f64, accuracy.number("n_test", row));
+        let k = accuracy.number("touches_per_decision", row) as usize;
+        let mut touches = BTreeSet::new();
+        let (mut n_correct, mut losses) = (0, Vec::new());
+        let mut of_class: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
+        for &one in &own {
+            let named: Vec<&str> = predictions.word("touch", one).split(' ').collect();
+            assert_eq!(named.len(), k);
+            assert!(named.into_iter().all(|touch| touches.insert(touch)));
+            let (truth, answer) = (
+                predictions.word("truth", one),
+                predictions.word("answer", one),
+            );
+            let score = |class: &str| predictions.number(&format!("score_{class}"), one);
+            let most = classes
+                .iter()
+                .map(|class| score(class))
+                .fold(f64::MIN, f64::max);
+            let is_one_vs_one = accuracy.word("classifier", row).ends_with("_svm");
+            // Classes of equal votes differ by less than 2 / 3.
+            assert!(score(answer) >= most - if is_one_vs_one { 0.7 } else { 0.0 });
+            let is_correct = truth == answer;
+            n_correct += usize::from(is_correct);
+            let counts = of_class.entry(truth).or_default();
+            counts[0] += f64::from(u8::from(is_correct));
+            counts[1] += 1.0;
+            losses.push(-score(truth));
+            let sum: f64 = classes.iter().map(|class| score(class).exp()).sum();
+            if accuracy.number("log_loss", row).is_finite() {
+                assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+            }
+        }
+        assert_eq!(n_correct as f64, accuracy.number("n_correct", row));
+        let balanced = of_class.values().map(|[part, all]| part / all).sum::<f64>() / 4.0;
+        let difference = balanced - accuracy.number("balanced_accuracy", row);
+        assert!(difference.abs() < 1e-12, "{difference}");
+        let log_loss = accuracy.number("log_loss", row);
+        let classifier = accuracy.word("classifier", row);
+        assert_eq!(
+            log_loss.is_nan(),
+            classifier.ends_with("_svm") || classifier == "nearest_centroid"
+        );
+        if !log_loss.is_nan() {
+            n_probabilistic += 1;
+            let mean = losses.iter().map(|loss: &f64| loss.min(-f64::EPSILON.ln()));
+            let mean = mean.sum::<f64>() / losses.len() as f64;
+            assert!((log_loss - mean).abs() < 1e-12, "{log_loss} {mean}");
+        }
+    }
+    assert_eq!(n_probabilistic, 4 * 2 * 2);
+    for row in 0..recall.n_rows {
+        let is_own = |other: &usize| {
+            predictions.number("configuration", *other) == recall.number("configuration", row)
+                && predictions.word("truth", *other) == recall.word("object", row)
+        };
+        let own: Vec<usize> = (0..predictions.n_rows).filter(is_own).collect();
+        let correct = own
+            .iter()
+            .filter(|&&one| predictions.word("truth", one) == predictions.word("answer", one));
+        let expected = correct.count() as f64 / own.len() as f64;
+        assert_eq!(recall.number("recall", row), expected);
+    }
+    assert_eq!(recall.n_rows, 7 * 2 * 4);
+}
+
+#[test]
+fn a_study_that_asks_for_nothing_has_the_rows_of_one_that_asks_and_no_more_columns() {
+    let (usual, asked) = (tables(STUDY), tables(&format!("{STUDY}{REPORT}")));
+    assert!(!usual.contains_key("predictions.csv") && !usual.contains_key("recall.csv"));
+    for file in ["accuracy.csv", "summary.csv", "confusion.csv"] {
+        let (usual, asked) = (&usual[file], &asked[file]);
+        assert!(usual.place("log_loss").is_none() && usual.place("balanced_accuracy").is_none());
+        for (column, data) in usual.columns.iter().zip(&usual.data) {
+            let other = asked.column(&column.name).unwrap().1;
+            for row in 0..usual.n_rows {
+                assert_eq!(data.value(row), other.value(row), "{file}, {}", column.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_folder_gives_the_predictions_that_were_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = tables(&format!("{STUDY}{REPORT}"));
+    std::fs::write(folder.path().join("study.toml"), format!("{STUDY}{REPORT}")).unwrap();
+    for table in made.values().filter(|table| !table.csv.is_empty()) {
+        std::fs::write(folder.path().join(table.file), &table.csv).unwrap();
+    }
+    let read = read_tables(folder.path()).unwrap();
+    for file in ["predictions.csv", "recall.csv", "summary.csv"] {
+        let read = read.iter().find(|table| table.file == file).unwrap();
+        assert_eq!((&read.csv, &read.data), (&made[file].csv, &made[file].data));
+    }
+}
+
+/// Writes touches in mixed order of their classes and groups; returns `[recorded]` without the frames' labels.
+fn mixed() -> (Case, String) {
+    let case = Case::new();
+    let label = |touch: usize| (touch * 7 + touch / 5) % 3;
+    let frames = Array3::from_shape_fn((60, 6, 6), |(touch, row, column)| {
+        let at = ((touch * 36 + row * 6 + column) * 7919 % 997) as f64 / 997.0;
+        at + if column == label(touch) { 0.7 } else { 0.0 }
+    });
+    write_npy(&case.path("frames.npy"), &frames).unwrap();
+    write_integers(&case.path("labels.npy"), (0..60).map(label)).unwrap();
+    write_integers(&case.path("groups.npy"), (0..60).map(|touch| touch / 10)).unwrap();
+    let recorded = "frames = \"FOLDER/frames.npy\"\nlabels = \"FOLDER/labels.npy\"\ngroups = \"FOLDER/groups.npy\"\n";
+    (case, recorded.to_owned())
+}
+
+/// Writes the splits of `splits.npz`, each with its training and test touches.
+fn write_splits(case: &Case, splits: &[[Vec<i64>; 2]]) {
+    let mut file = NpzWriter::new(File::create(case.path("splits.npz")).unwrap());
+    for (number, [train, test]) in splits.iter().enumerate() {
+        file.add_array(format!("train_{number}"), &Array1::from(train.clone()))
+            .unwrap();
+        file.add_array(format!("test_{number}"), &Array1::from(test.clone()))
+            .unwrap();
+    }
+    file.finish().unwrap();
+}
+
+const REST: &str = "[sensing]\nensemble = \"identity\"\n[recognition]\nclassifier = \"nearest_centroid\"\n[report]\npredictions = true\n";
+
+#[test]
+fn predictions_of_own_splits_name_the_touches_of_the_file() {
+    let (case, recorded) = mixed();
+    // Two groups are held out in each trial; touches 0 to 9 are left out of the second.
+    let splits = [
+        [(20..60).collect(), (0..20).rev().collect()],
+        [(10..40).collect(), (40..60).collect()],
+    ];
+    write_splits(&case, &splits);
+    let recorded = format!("{recorded}splits = \"FOLDER/splits.npz\"\n");
+    let study = planned(&case, &recorded, &format!("{SKIN}{REST}")).unwrap();
+    let tables = tables_of(&study.run(&Silent).unwrap()).unwrap();
+    let predictions = tables
+        .iter()
+        .find(|table| table.file == "predictions.csv")
+        .unwrap();
+    let labels: Array1<i64> = read_npy(case.path("labels.npy")).unwrap();
+    let frames: Array3<f64> = read_npy(case.path("frames.npy")).unwrap();
+    for (trial, [train, test]) in splits.iter().enumerate() {
+        let own =
+            (0..predictions.n_rows).filter(|&row| predictions.number("trial", row) == trial as f64);
+        let own: Vec<usize> = own.collect();
+        let touch = |row: usize| -> i64 { predictions.word("touch", row).parse().unwrap() };
+        let mut touches: Vec<i64> = own.iter().map(|&row| touch(row)).collect();
+        touches.sort_unstable();
+        let mut expected = test.clone();
+        expected.sort_unstable();
+        assert_eq!(touches, expected);
+        // The answers are those of a nearest centroid on the standardised touches of the file.
+        let rows = |rows: &[i64]| -> Array2<f64> {
+            let list = frames.to_shape((60, 36)).unwrap();
+            list.select(
+                Axis(0),
+                &rows.iter().map(|&row| row as usize).collect::<Vec<_>>(),
+            )
+        };
+        let trained = rows(train);
+        let (mean, std) = (
+            trained.mean_axis(Axis(0)).unwrap(),
+            trained.std_axis(Axis(0), 0.0),
+        );
+        let centroids = [0, 1, 2].map(|class| {
+            let own = train
+                .iter()
+                .copied()
+                .filter(|&touch| labels[touch as usize] == class);
+            let own = (&rows(&own.collect::<Vec<_>>()) - &mean) / &std;
+            own.mean_axis(Axis(0)).unwrap()
+        });
+        for row in own {
+            let number = touch(row);
+            assert_eq!(
+                predictions.word("truth", row),
+                format!("class {}", labels[number as usize])
+            );
+            assert_eq!(predictions.word("group", row), (number / 10).to_string());
+            let scaled = (&rows(&[number]).row(0) - &mean) / &std;
+            let distance = |class: &usize| (&scaled - &centroids[*class]).mapv(|d| d * d).sum();
+            let nearest = (0..3)
+                .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+                .unwrap();
+            assert_eq!(predictions.word("answer", row), format!("class {nearest}"));
+            let score = predictions.number(&format!("score_class {nearest}"), row);
+            assert!((score + 0.5 * distance(&nearest)).abs() < 1e-4 * distance(&nearest));
+        }
+    }
+}
+
+#[test]
+fn splits_that_do_not_fit_are_refused() {
+    let (case, recorded) = mixed();
+    let recorded = format!("{recorded}splits = \"FOLDER/splits.npz\"\n");
+    let rest = format!("{SKIN}{REST}");
+    let whole = || [(20..60).collect::<Vec<i64>>(), (0..20).collect()];
+    let refused = |splits: &[[Vec<i64>; 2]], wanted: &str| {
+        write_splits(&case, splits);
+        let said = planned(&case, &recorded, &rest)
+            .err()
+            .expect(wanted)
+            .to_string();
+        assert!(said.contains(wanted), "{said}");
+    };
+    refused(&[whole()], "key trials: 2; at most 1");
+    refused(&[[vec![60], vec![0]]], "train_0");
+    refused(&[[vec![20, 20], vec![0]]], "touch 20 twice");
+    refused(&[[vec![20, 0], vec![0]]], "touch 0 twice");
+    refused(
+        &[[(15..60).collect(), (0..15).collect()]],
+        "group 1 in train_0 and test_0",
+    );
+    refused(&[], "no array train_0");
+    write_splits(&case, &[whole(), whole()]);
+    let said = planned(
+        &case,
+        &recorded,
+        &format!("{rest}\n").replace("classifier", "folds = 2\nclassifier"),
+    );
+    assert!(said.err().unwrap().to_string().contains("recorded.splits"));
+}
