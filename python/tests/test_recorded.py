@@ -443,3 +443,42 @@ def test_dates_are_groups():
     dates[3] = np.datetime64("NaT")
     with pytest.raises(ValueError, match="^recorded.groups, position 3: NaT; integers or texts$"):
         bt.run(study, recorded={"frames": frames, "labels": labels, "groups": dates})
+
+
+def test_splits_of_scikit_learn_are_the_trials(arrays):
+    model_selection = pytest.importorskip("sklearn.model_selection")
+    frames, labels, groups = arrays
+    splits = list(model_selection.StratifiedGroupKFold(3, shuffle=True, random_state=0).split(frames, labels, groups))
+    study = {**STUDY, "trials": 3, "report": {"predictions": True}}
+    found = bt.run(study, recorded=bt.Recorded(frames, labels, groups, splits=splits))["predictions"].columns
+    rows = list(zip(*(found[name] for name in ("trial", "touch", "group", "truth")), strict=True))
+    for trial, (_, test) in enumerate(splits):
+        own = sorted((int(touch), int(group), str(truth)) for number, touch, group, truth in rows if number == trial)
+        assert own == sorted((touch, groups[touch], labels[touch]) for touch in test)
+    with pytest.raises(ValueError, match="at most 3"):
+        bt.run({**study, "trials": 4}, recorded=bt.Recorded(frames, labels, groups, splits=splits))
+
+
+class Grouped:
+    """Classifier that needs the groups of its rows."""
+
+    def fit(self, rows, labels, groups):
+        assert len(groups) == len(rows)
+        # Each group of the recording has one class.
+        self.class_of = {group: label for group, label in zip(groups, labels, strict=True)}
+        assert all(self.class_of[group] == label for group, label in zip(groups, labels, strict=True))
+        self.label = labels[0]
+
+    def predict(self, rows):
+        return np.full(len(rows), self.label)
+
+
+def test_groups_are_passed_to_estimators_that_accept_them(arrays):
+    svm, model_selection = pytest.importorskip("sklearn.svm"), pytest.importorskip("sklearn.model_selection")
+    frames, labels, _ = arrays
+    groups = np.arange(N) // 2
+    search = model_selection.GridSearchCV(svm.SVC(), {"C": [1.0, 10.0]}, cv=model_selection.GroupKFold(3))
+    recorded = bt.Recorded(frames, labels, groups)
+    accuracies = bt.run(STUDY, recorded=recorded, classifiers={"grouped": Grouped(), "search": search})["accuracy"].columns
+    # Without groups, both raise an exception.
+    assert {"grouped", "search"} <= set(accuracies["classifier"])

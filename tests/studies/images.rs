@@ -103,6 +103,7 @@ fn estimators_of_images_are_fitted_to_the_touches_that_train() {
     let sensed = "ensemble = \"gaussian\"\nmeasurements = 8";
     let text = STUDY.replace("ensemble = \"identity\"", sensed);
     let text = text.replace("per_object = 40", "per_object = 8");
+    let text = text.replace("size_mm = 96.0", "size_mm = 48.0");
     let reduced = |keys: &str| text.replace("classifier =", &format!("{keys}\nclassifier ="));
     let image = |keys: &str, configuration| features(&reduced(keys), configuration, 0).data.records;
     let (few, many) = ("train_touches = [2, 6]", "train_touches = [6, 2]");

@@ -115,6 +115,8 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
         let text = STUDY
             .replace("ensemble = \"selected\"", learned)
             .replace("measurements = [8, 24]", "measurements = 5")
+            .replace("size_mm = 96.0", "size_mm = 40.0")
+            .replace("per_object = 30", "per_object = 18")
             .replace("classifier =", &format!("{reduced}\nclassifier ="));
         let study = laid_out(&text).unwrap();
         let configurations: Vec<_> = study.all_cells().cloned().collect();
@@ -134,7 +136,7 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
             };
             let ensemble = configurations[number].ensemble;
             let seed = Seed::new(2018).named("projection").numbered(1);
-            let projection = Projection::learned(ensemble, (24, 24), 5, (training, &seed));
+            let projection = Projection::learned(ensemble, (10, 10), 5, (training, &seed));
             let expected = projection.unwrap().measure(frames.data.records.view());
             assert_eq!(
                 found.data.records, expected,
