@@ -52,8 +52,8 @@ pub struct ReconstructionSpec {
     /// Duality gap at which the ℓ1 solver stops, relative to the minimised objective, positive. Default: 0.01.
     #[serde(default = "default_tolerance")]
     pub tolerance: f64,
-    /// Maximum number of steps of the ℓ1 solver per frame, at least 1. `n_capped` counts the frames that need more, as frames without noise often do. Default:
-    /// 500.
+    /// Maximum number of steps of the ℓ1 solver per frame, at least 1. `n_capped` counts the frames that need more, as frames without noise may do. Default:
+    /// 2000.
     #[serde(default = "default_most_steps")]
     pub most_steps: usize,
     /// Fraction of the touches that are held out for testing, between 0 and 1. Default: 0.25.
