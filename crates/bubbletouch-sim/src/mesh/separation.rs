@@ -10,21 +10,53 @@ impl Triangle {
     /// Returns whether a plane certainly separates two triangles. The test uses their normals and the 9 products of their edges (separating axes). Returns
     /// false for triangles that touch or lie in one plane.
     pub fn is_apart(&self, other: &Self) -> bool {
-        let origin = self.0[0];
-        let [a, b] = [self, other].map(|triangle| triangle.0.map(|corner| corner - origin));
-        let sizes = a.iter().chain(&b).map(|corner| corner.abs().max_element());
-        let size = sizes.fold(0.0, f64::max) + ROUNDING * origin.abs().max_element();
-        let between = |axis: DVec3| {
-            let [(low_a, high_a), (low_b, high_b)] = [range(&a, axis), range(&b, axis)];
-            (low_a - high_b).max(low_b - high_a) > ROUNDING * size * axis.length()
-        };
-        let [edges_a, edges_b] = [edges(&a), edges(&b)];
-        if between(edges_a[0].cross(edges_a[1])) || between(edges_b[0].cross(edges_b[1])) {
-            return true;
-        }
-        edges_a
+        let pair = Pair::new(self, other);
+        let [one, two] = &pair.edges;
+        pair.is_separated_along(one[0].cross(one[1]))
+            || pair.is_separated_along(two[0].cross(two[1]))
+            || one
+                .iter()
+                .any(|a| two.iter().any(|b| pair.is_separated_along(a.cross(*b))))
+    }
+
+    /// Returns whether a plane through an edge of either triangle, perpendicular to this triangle, certainly separates the triangles. For triangles in one
+    /// plane the test is complete.
+    pub fn is_beside(&self, other: &Self) -> bool {
+        let pair = Pair::new(self, other);
+        let normal = pair.edges[0][0].cross(pair.edges[0][1]);
+        let mut edges = pair.edges.iter().flatten();
+        edges.any(|edge| pair.is_separated_along(normal.cross(*edge)))
+    }
+}
+
+/// Two triangles, relative to a corner of the first.
+struct Pair {
+    corners: [[DVec3; 3]; 2],
+    edges: [[DVec3; 3]; 2],
+    /// Gap along a unit axis that may be a rounding error, metres.
+    rounding: f64,
+}
+
+impl Pair {
+    fn new(one: &Triangle, two: &Triangle) -> Self {
+        let origin = one.0[0];
+        let corners = [one, two].map(|triangle| triangle.0.map(|corner| corner - origin));
+        let sizes = corners
             .iter()
-            .any(|a| edges_b.iter().any(|b| between(a.cross(*b))))
+            .flatten()
+            .map(|corner| corner.abs().max_element());
+        let size = sizes.fold(0.0, f64::max) + ROUNDING * origin.abs().max_element();
+        Self {
+            edges: corners.map(|corners| edges(&corners)),
+            corners,
+            rounding: ROUNDING * size,
+        }
+    }
+
+    fn is_separated_along(&self, axis: DVec3) -> bool {
+        let [(low_a, high_a), (low_b, high_b)] =
+            self.corners.each_ref().map(|corners| range(corners, axis));
+        (low_a - high_b).max(low_b - high_a) > self.rounding * axis.length()
     }
 }
 
@@ -71,5 +103,10 @@ mod tests {
         let beside = Triangle(FLAT.0.map(|corner| corner + 1e-6 * DVec3::Z));
         assert!(FLAT.is_apart(&beside));
         assert!(!FLAT.is_apart(&FLAT), "nothing is said of one plane");
+        assert!(!FLAT.is_beside(&FLAT) && !FLAT.is_beside(&moved(DVec3::ZERO)));
+        let across = Triangle(FLAT.0.map(|corner| DVec3::new(1.001, 1.0, 0.0) - corner));
+        assert!(FLAT.is_beside(&across) && across.is_beside(&FLAT));
+        let inside = Triangle(FLAT.0.map(|corner| DVec3::new(0.999, 1.0, 0.0) - corner));
+        assert!(!FLAT.is_beside(&inside) && !inside.is_beside(&FLAT));
     }
 }

@@ -6,6 +6,7 @@
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
 use super::outline::Outline;
+use super::solid_mass::turned;
 use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -37,6 +38,20 @@ impl Lathe {
         Self {
             outline: Outline::new(profile, |a, b| a.x > 0.0 || b.x > 0.0),
         }
+    }
+
+    /// Returns the volume, m³, and the integral of z over the volume, m⁴: the sum over the edges, which is positive where they go up.
+    pub fn volume_and_moment(&self) -> [f64; 2] {
+        let corners = self.outline.vertices();
+        let slices = corners.iter().enumerate().filter_map(|(k, &from)| {
+            let to = corners[(k + 1) % corners.len()];
+            let slope = (to.x - from.x) / (to.y - from.y);
+            let square = |z: f64| (from.x + slope * (z - from.y)).powi(2);
+            (from.y != to.y).then(|| turned(from.y, to.y, square))
+        });
+        slices.fold([0.0; 2], |sum, slice| {
+            [sum[0] + slice[0], sum[1] + slice[1]]
+        })
     }
 
     pub fn distance(&self, point: DVec3) -> f64 {

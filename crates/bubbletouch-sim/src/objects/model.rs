@@ -2,6 +2,7 @@
 
 use super::{MeshModel, SphereUnion};
 use crate::geometry::Aabb;
+use glam::DVec3;
 
 /// Contact model: the shape of an object that taxels can touch, in the frame of the object.
 #[derive(Clone, Debug)]
@@ -38,6 +39,14 @@ impl Model {
     pub fn prepare(&self) {
         if let Self::Spheres(spheres) = self {
             spheres.clusters();
+        }
+    }
+
+    /// Returns the centre of mass of the homogeneous solid, in the object's frame, metres.
+    pub fn center_of_mass(&self) -> DVec3 {
+        match self {
+            Self::Spheres(spheres) => spheres.center_of_mass(),
+            Self::Mesh(mesh) => mesh.mesh().center_of_mass(),
         }
     }
 

@@ -14,7 +14,7 @@
 
 use super::difference::pack_difference;
 use super::fit::{Fit, MAX_SPHERES};
-use super::{Solid, Sphere, SphereUnion};
+use super::{Represented, Solid, Sphere, SphereUnion};
 use crate::error::{Error, Result};
 
 /// Packs a solid with spheres whose union approximates it within `tolerance` (metres, positive).
@@ -58,7 +58,7 @@ pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
                 .filter(|s| !is_buried(s, index, solid, fit)),
         );
     }
-    SphereUnion::new(kept)
+    Ok(SphereUnion::new(kept)?.representing(Represented::Solid(solid.clone())))
 }
 
 impl Solid {
@@ -74,7 +74,9 @@ impl Solid {
 /// Returns spheres that approximate a solid from which shapes are subtracted.
 fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
     match pack_difference(solid, fit) {
-        Some(spheres) => SphereUnion::new(spheres),
+        Some(spheres) => {
+            Ok(SphereUnion::new(spheres)?.representing(Represented::Solid(solid.clone())))
+        }
         None => Err(Error::input(
             "surface error",
             format!(

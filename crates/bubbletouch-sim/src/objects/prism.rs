@@ -22,6 +22,21 @@ impl Prism {
         }
     }
 
+    /// Returns the volume, m³, and the centroid, metres.
+    pub fn volume_and_center(&self) -> (f64, DVec3) {
+        let corners = self.outline.vertices();
+        let apex = corners[0];
+        let (mut area, mut moment) = (0.0, DVec2::ZERO);
+        for pair in corners.windows(2) {
+            let [a, b] = [pair[0] - apex, pair[1] - apex];
+            let triangle = 0.5 * a.perp_dot(b);
+            area += triangle;
+            moment += triangle * (a + b) / 3.0;
+        }
+        let center = apex + moment / area;
+        (2.0 * self.half * area.abs(), center.extend(0.0))
+    }
+
     pub fn distance(&self, point: DVec3) -> f64 {
         let across = self.outline.distance(point.truncate());
         let above = point.z.abs() - self.half;

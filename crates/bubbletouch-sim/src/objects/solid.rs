@@ -37,7 +37,7 @@ const SEAM: f64 = 4e-6;
 
 /// Basic form that represents a shape; five basic forms represent all shapes.
 #[derive(Clone, Debug)]
-enum Kernel {
+pub(super) enum Kernel {
     Block(Block),
     Lathe(Lathe),
     Prism(Prism),
@@ -75,6 +75,25 @@ impl Part {
     /// Returns the shape of the part.
     pub fn shape(&self) -> &Shape {
         &self.shape
+    }
+
+    /// Returns the basic form of the part.
+    pub(super) fn kernel(&self) -> &Kernel {
+        &self.kernel
+    }
+
+    /// Returns the pose of the part in the frame of the object.
+    pub(super) fn pose(&self) -> &Pose {
+        &self.pose
+    }
+
+    /// Returns the part with another shape at the same pose.
+    pub(super) fn reshaped(&self, shape: Shape) -> Self {
+        Self {
+            kernel: kernel(&shape),
+            shape,
+            pose: self.pose,
+        }
     }
 
     /// Returns the signed distance from a point in the object's frame to the part's surface, metres, negative inside.

@@ -2,9 +2,11 @@
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
+use super::solid_mass::turned;
 use super::surface_patch::{SurfacePatch, frame};
 use crate::geometry::Pose;
 use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
 
 /// Sphere swept along a polyline: the union of the convex hulls of consecutive balls.
 #[derive(Clone, Debug)]
@@ -45,6 +47,25 @@ impl Hull {
 
     fn cosine(&self) -> f64 {
         (1.0 - self.slope * self.slope).sqrt()
+    }
+
+    /// Returns the volume, m³, and the centroid, metres: two caps of balls and the frustum of a cone between the circles at which it touches the balls.
+    fn volume_and_center(&self) -> (f64, DVec3) {
+        let (first, last) = (
+            self.first.radius,
+            self.first.radius + self.length * self.slope,
+        );
+        let [low, high] = [-first * self.slope, self.length - last * self.slope];
+        let cap = |radius: f64, center: f64| move |z: f64| radius * radius - (z - center).powi(2);
+        let side = |z: f64| ((first + self.slope * z) / self.cosine()).powi(2);
+        let sections = [
+            turned(-first, low, cap(first, 0.0)),
+            turned(low, high, side),
+            turned(high, self.length + last, cap(last, self.length)),
+        ];
+        let volume: f64 = sections.iter().map(|[volume, _]| volume).sum();
+        let moment: f64 = sections.iter().map(|[_, moment]| moment).sum();
+        (volume, self.first.center + moment / volume * self.along)
     }
 
     /// Returns the signed distance from a point p to the hull, metres. This is the minimum of |p − c(t)| − r(t) over the balls with centre c(t) and radius
@@ -101,6 +122,19 @@ impl SphereSweep {
             .map(|b| (point - b.center).length() - b.radius);
         let to_hulls = self.hulls().map(|hull| hull.distance(point));
         to_balls.chain(to_hulls).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Returns the volume, m³, and the centroid, metres, of a sweep of one or two balls.
+    pub fn volume_and_center(&self) -> (f64, DVec3) {
+        let ball = |ball: &Sphere| (4.0 / 3.0 * PI * ball.radius.powi(3), ball.center);
+        let larger = self
+            .balls
+            .iter()
+            .max_by(|a, b| a.radius.total_cmp(&b.radius));
+        self.hulls().next().map_or_else(
+            || larger.map_or((0.0, DVec3::ZERO), ball),
+            |hull| hull.volume_and_center(),
+        )
     }
 
     /// Returns the support function of the sweep: the largest p·direction over its points p, metres.

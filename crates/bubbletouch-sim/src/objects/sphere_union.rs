@@ -1,8 +1,10 @@
 //! Unions of rigid spheres.
 
-use super::{Sphere, SphereClusters};
+use super::sphere_mass::center_of_spheres;
+use super::{Solid, Sphere, SphereClusters};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
+use crate::mesh::TriangleMesh;
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -19,6 +21,19 @@ struct Data {
     spheres: Vec<Sphere>,
     /// Clusters of the spheres, computed on first use.
     clusters: OnceLock<SphereClusters>,
+    /// Represented that the spheres represent, and its pose in the frame of the object; `None` if the spheres are the body.
+    body: Option<(Arc<Represented>, Pose)>,
+    /// Centre of mass, computed on first use, metres.
+    center_of_mass: OnceLock<DVec3>,
+}
+
+/// Homogeneous body that spheres represent.
+#[derive(Clone, Debug)]
+pub enum Represented {
+    /// Union of shapes.
+    Solid(Solid),
+    /// Solid of a mesh.
+    Mesh(TriangleMesh),
 }
 
 impl PartialEq for SphereUnion {
@@ -57,14 +72,38 @@ impl SphereUnion {
                 ));
             }
         }
-        Ok(Self::from_spheres(spheres))
+        Ok(Self::from_spheres(spheres, None))
     }
 
-    fn from_spheres(spheres: Vec<Sphere>) -> Self {
-        let clusters = OnceLock::new();
+    fn from_spheres(spheres: Vec<Sphere>, body: Option<(Arc<Represented>, Pose)>) -> Self {
         Self {
-            data: Arc::new(Data { spheres, clusters }),
+            data: Arc::new(Data {
+                spheres,
+                clusters: OnceLock::new(),
+                body,
+                center_of_mass: OnceLock::new(),
+            }),
         }
+    }
+
+    /// Returns the union as an approximation of a body in the same frame, whose centre of mass it then has.
+    pub fn representing(&self, body: Represented) -> Self {
+        Self::from_spheres(
+            self.spheres().to_vec(),
+            Some((Arc::new(body), Pose::IDENTITY)),
+        )
+    }
+
+    /// Returns the centre of mass of the homogeneous body that the spheres represent, or of their union as a homogeneous solid, metres; computed on first use.
+    pub fn center_of_mass(&self) -> DVec3 {
+        let data = &self.data;
+        *data.center_of_mass.get_or_init(|| match &data.body {
+            Some((body, pose)) => pose.transform_point(match &**body {
+                Represented::Solid(solid) => solid.center_of_mass(),
+                Represented::Mesh(mesh) => mesh.center_of_mass(),
+            }),
+            None => center_of_spheres(&data.spheres, &self.bounds()),
+        })
     }
 
     /// Returns the spheres of the union in their order of construction.
@@ -106,7 +145,9 @@ impl SphereUnion {
                 radius: s.radius,
             })
             .collect();
-        Self::from_spheres(spheres)
+        let body = self.data.body.as_ref();
+        let moved = body.map(|(body, place)| (body.clone(), pose.compose(place)));
+        Self::from_spheres(spheres, moved)
     }
 }
 

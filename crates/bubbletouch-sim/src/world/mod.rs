@@ -41,7 +41,7 @@ pub use patch::Patch;
 pub(crate) use patch::{EvenGrid, Travelling};
 pub use per_taxel::{PerTaxel, Taxels};
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};
-pub use rest::{RestPose, as_modelled, center_of_mass, stable_poses, stable_poses_about};
+pub use rest::{RestPose, as_modelled, stable_poses, stable_poses_about};
 pub use robot::{
     Coordinate, Dimension, Joint, JointKind, Limits, Link, LinkGeometry, LinkShape, MeshFolders,
     Mimic, Robot, ShapeRole, TactileSensor,

@@ -1,9 +1,10 @@
 //! Basins of the support function: regions of down directions from which descent leads to one minimum.
 //!
 //! 1. On a mesh of directions, each direction flows to its lowest neighbour, which defines basins.
-//! 2. Basins with a low barrier between them are merged, first by the barrier along the mesh. Each minimum is then refined, and the barrier
-//!    is measured along a smooth path between two minima. The smooth path follows the valley of a lying can, which the mesh only
-//!    approximates.
+//! 2. Each minimum is refined, because a corner of the mesh next to a sharp minimum is up to 2 % of the object's size higher. A minimum of the mesh that is
+//!    not one of the function ends in another basin, and its basin is merged with a neighbour over the lowest pass.
+//! 3. Basins with a low barrier between them are merged, first by the barrier along the mesh, then by the barrier along a smooth path between two minima. The
+//!    smooth path follows the valley of a lying can, which the mesh only approximates.
 
 use super::descent::descend;
 use super::support::Support;
@@ -28,9 +29,8 @@ pub(crate) struct Basin {
 pub(crate) fn basins(support: &Support, barrier: f64) -> Vec<Basin> {
     let label = downhill_labels(support);
     let passes = mesh_passes(support, &label);
-    let mut merging = Merging::new(support);
+    let mut merging = Merging::new(support, &label);
     merging.merge(&passes, barrier);
-    merging.descend_minima(support, &label);
     for halvings in [0, VALLEY_HALVINGS] {
         let smooth = merging.smooth_passes(support, &passes, barrier, halvings);
         merging.merge(&smooth, barrier);
@@ -96,15 +96,27 @@ struct Merging {
     parent: Vec<usize>,
     /// Lowest direction and its height, metres, for each basin, stored at the label of the basin's root.
     minimum: Vec<(DVec3, f64)>,
+    /// Whether the minimum of each basin is one of the function, and not only of the mesh, stored at the label of the basin's root.
+    is_real: Vec<bool>,
 }
 
 impl Merging {
-    /// Creates one basin for each direction of the mesh.
-    fn new(support: &Support) -> Self {
+    /// Creates one basin for each label; the minima are refined from the mesh directions to the true local minima.
+    fn new(support: &Support, label: &[usize]) -> Self {
         let pairs = support.directions.iter().zip(&support.heights);
+        let mut minimum: Vec<(DVec3, f64)> = pairs.map(|(&down, &height)| (down, height)).collect();
+        let mut is_real = vec![false; label.len()];
+        for own in (0..label.len()).filter(|&own| label[own] == own) {
+            let down = descend(support, minimum[own].0);
+            is_real[own] = label[support.nearest_direction(down)] == own;
+            if is_real[own] {
+                minimum[own] = (down, support.height(down));
+            }
+        }
         Self {
-            parent: (0..support.directions.len()).collect(),
-            minimum: pairs.map(|(&down, &height)| (down, height)).collect(),
+            parent: (0..label.len()).collect(),
+            minimum,
+            is_real,
         }
     }
 
@@ -117,48 +129,29 @@ impl Merging {
     }
 
     /// Merges basins that a low barrier separates, in order of the barriers' heights. Two basins are merged if the pass between them is less than `barrier`
-    /// (metres) above the higher of their minima.
+    /// (metres) above the higher of their minima, or if one of the minima is not real.
     fn merge(&mut self, passes: &[Pass], barrier: f64) {
         let mut by_height: Vec<&Pass> = passes.iter().collect();
         by_height.sort_by(|a, b| a.height.total_cmp(&b.height));
         for pass in by_height {
             let (a, b) = (self.root(pass.labels.0), self.root(pass.labels.1));
-            if pass.height - self.floor(a, b) < barrier {
+            let are_real = self.is_real[a] && self.is_real[b];
+            if !are_real || pass.height - self.floor(a, b) < barrier {
                 self.join(a, b);
             }
         }
     }
 
-    /// Merges the basins of two labels; the lower minimum is kept.
+    /// Merges the basins of two roots; the lower minimum is kept, or the real one if only one is real.
     fn join(&mut self, a: usize, b: usize) {
-        let (keep, drop) = if self.minimum[a].1 <= self.minimum[b].1 {
-            (a, b)
-        } else {
-            (b, a)
-        };
+        let rank = |root: usize| (!self.is_real[root], self.minimum[root].1);
+        let (keep, drop) = if rank(a) <= rank(b) { (a, b) } else { (b, a) };
         self.parent[drop] = keep;
     }
 
     /// Returns the larger of the minimum heights of two basins, which are given by their roots.
     fn floor(&self, a: usize, b: usize) -> f64 {
         self.minimum[a].1.max(self.minimum[b].1)
-    }
-
-    /// Moves each basin's minimum from its mesh direction to the true local minimum. If a minimum ends among another basin's directions, the height never
-    /// increased on the path to it, and the two basins are merged.
-    fn descend_minima(&mut self, support: &Support, label: &[usize]) {
-        let mut roots: Vec<_> = label.iter().map(|&label| self.root(label)).collect();
-        roots.sort_unstable();
-        roots.dedup();
-        for &root in &roots {
-            let down = descend(support, self.minimum[root].0);
-            self.minimum[root] = (down, support.height(down));
-        }
-        for root in roots {
-            let end = label[support.nearest_direction(self.minimum[root].0)];
-            let (from, to) = (self.root(root), self.root(end));
-            self.join(from, to);
-        }
     }
 
     /// Returns the passes between the remaining basins: paths along the mesh, or smooth paths where these are lower.
@@ -237,4 +230,100 @@ fn highest_between(support: &Support, from: DVec3, to: DVec3) -> f64 {
         .map(|i| DQuat::IDENTITY.slerp(turn, i as f64 / steps) * from)
         .map(|down| support.height(down.normalize()))
         .fold(f64::NEG_INFINITY, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objects::Sphere;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    /// Returns the faces of the convex hull of points around the origin: corners, counter-clockwise from outside, and outward unit normals.
+    fn hull(points: &[DVec3]) -> Vec<([DVec3; 3], DVec3)> {
+        let mut faces = Vec::new();
+        for (i, &a) in points.iter().enumerate() {
+            for (j, &b) in points.iter().enumerate().skip(i + 1) {
+                for &c in &points[j + 1..] {
+                    let normal = (b - a).cross(c - a).normalize();
+                    let side = normal.dot(a).signum();
+                    if points.iter().all(|p| side * normal.dot(*p - a) < 1e-9) {
+                        let corners = if side > 0.0 { [a, b, c] } else { [a, c, b] };
+                        faces.push((corners, side * normal));
+                    }
+                }
+            }
+        }
+        faces
+    }
+
+    #[test]
+    fn no_stable_face_of_a_polyhedron_is_lost() {
+        const BARRIER: f64 = 0.01;
+        let (mut n_stable, mut n_low) = (0, 0);
+        for case in 0..60 {
+            let mut rng = Seed::new(3).named("polyhedra").numbered(case).rng();
+            let points: Vec<DVec3> = (0..14)
+                .map(|_| {
+                    let point = DVec3::from_array([(); 3].map(|()| rng.gen_range(-1.0..1.0)));
+                    point.normalize() * rng.gen_range(0.85..1.15)
+                })
+                .collect();
+            let faces = hull(&points);
+            if faces
+                .iter()
+                .any(|(corners, normal)| normal.dot(corners[0]) < 0.3)
+            {
+                continue;
+            }
+            let corners = points.iter().map(|&center| Sphere {
+                center,
+                radius: 0.0,
+            });
+            let support = Support::about(DVec3::ZERO, &corners.collect::<Vec<_>>());
+            let size = support.radius();
+            let found = basins(&support, BARRIER * size);
+            for (corners, normal) in &faces {
+                let height = normal.dot(corners[0]);
+                // Lowest pass over an edge of the face, and the smallest angle to it.
+                let (mut pass, mut angle) = (f64::INFINITY, f64::INFINITY);
+                for k in 0..3 {
+                    let [from, to] = [corners[k], corners[(k + 1) % 3]];
+                    let along = (to - from).normalize();
+                    let foot = from - from.dot(along) * along;
+                    let is_inside = normal.cross(along).dot(from) < 0.0;
+                    if !is_inside {
+                        pass = f64::NEG_INFINITY;
+                        break;
+                    }
+                    let beyond = faces.iter().find(|(other, n)| {
+                        n != normal && other.contains(&from) && other.contains(&to)
+                    });
+                    let (_, beyond) = beyond.expect("an edge has two faces");
+                    let [over, next] =
+                        [foot.normalize(), *beyond].map(|down| normal.angle_between(down));
+                    pass = pass.min(if over < next {
+                        foot.length()
+                    } else {
+                        beyond.dot(from)
+                    });
+                    angle = angle.min(over.min(next));
+                }
+                let rise = (pass - height) / size;
+                if rise > 1.02 * BARRIER && angle > 0.07 {
+                    n_stable += 1;
+                    n_low += usize::from(rise < 2.0 * BARRIER);
+                    let nearest = found
+                        .iter()
+                        .map(|basin| basin.lowest.angle_between(*normal));
+                    let nearest = nearest.fold(f64::INFINITY, f64::min);
+                    assert!(
+                        nearest < 1e-3,
+                        "{case}: a face with a barrier of {rise} is lost"
+                    );
+                }
+            }
+        }
+        assert!(n_stable > 100 && n_low > 10, "{n_stable} {n_low}");
+    }
 }

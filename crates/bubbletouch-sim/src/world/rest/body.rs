@@ -1,12 +1,8 @@
-//! Geometry of an object for resting poses: bounds, convex hull and centre of mass.
+//! Geometry of an object for resting poses: bounds and convex hull.
 
-use super::mass;
 use crate::geometry::{Aabb, Pose};
 use crate::objects::{Model, Sphere};
-use glam::{DQuat, DVec3};
-
-/// Volume relative to area^(3/2) below which a mesh counts as a surface without volume. A ball has 0.094, a plate of 100 × 100 × 0.1 mm 0.0004.
-const HOLLOW: f64 = 1e-4;
+use glam::DQuat;
 
 impl Model {
     /// Returns the bounding box of the object after a rotation about its origin, metres.
@@ -26,20 +22,6 @@ impl Model {
                 let radius = mesh.rounding();
                 corners.map(|center| Sphere { center, radius }).collect()
             }
-        }
-    }
-
-    /// Returns the centre of mass of the homogeneous solid, in the object's frame, metres. A mesh without volume, such as a single surface, is treated as a
-    /// surface of constant density.
-    pub fn center_of_mass(&self) -> DVec3 {
-        let mesh = match self {
-            Self::Spheres(union) => return mass::center_of_mass(union),
-            Self::Mesh(mesh) => mesh.mesh(),
-        };
-        let (volume, center) = mesh.volume_and_centroid();
-        match volume.abs() > HOLLOW * mesh.area().powf(1.5) {
-            true => center,
-            false => mesh.surface_centroid(),
         }
     }
 }

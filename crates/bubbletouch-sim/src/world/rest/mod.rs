@@ -2,8 +2,7 @@
 //!
 //! | stage | input → output |
 //! |---|---|
-//! | `mass` | a union of spheres → its centre of mass |
-//! | `body` | an object → its bounds, corners and centre of mass |
+//! | `body` | an object → its bounds and corners |
 //! | `support` | an object → the height of its centre of mass for each direction of down |
 //! | `descent` | a direction → the local minimum of the height, reached downhill |
 //! | `basins` | all directions → the minima, with the fraction of directions that lead to each |
@@ -12,9 +11,7 @@
 mod basins;
 mod body;
 mod descent;
-mod mass;
 mod rest_pose;
 mod support;
 
-pub use mass::center_of_mass;
 pub use rest_pose::{RestPose, as_modelled, stable_poses, stable_poses_about};

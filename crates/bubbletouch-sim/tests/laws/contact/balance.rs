@@ -7,7 +7,7 @@ use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels, center_of_mass};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rayon::prelude::*;
@@ -117,7 +117,7 @@ fn the_skin_feels_the_weight_that_rests_on_it() {
     });
     let union = SphereUnion::new(spheres.collect()).unwrap();
     let mass = 0.08;
-    let object = FreeObject::new(&union, mass, center_of_mass(&union)).unwrap();
+    let object = FreeObject::new(&union, mass, union.center_of_mass()).unwrap();
     let rest = equilibrium(
         &object,
         &[placed(&patch, Pose::IDENTITY)],
@@ -363,7 +363,7 @@ fn energy(bed: &Patch, (spheres, mass): (&SphereUnion, f64), pose: &Pose) -> Opt
         .iter()
         .map(|d| d * d)
         .sum::<f64>();
-    let height = pose.transform_point(center_of_mass(spheres)).z;
+    let height = pose.transform_point(spheres.center_of_mass()).z;
     Some(0.5 * bed.taxels().at(0).stiffness * squares + mass * G * height)
 }
 
@@ -425,7 +425,7 @@ fn random_objects_settle_or_leave() {
             let union = SphereUnion::new(spheres.collect()).unwrap();
             let mass = 10f64.powf(random(-3.0, 1.0));
             let patch = bed(32, 10f64.powf(random(1.0, 4.0)));
-            let object = FreeObject::new(&union, mass, center_of_mass(&union)).unwrap();
+            let object = FreeObject::new(&union, mass, union.center_of_mass()).unwrap();
             let turn = DQuat::from_xyzw(
                 random(-1.0, 1.0),
                 random(-1.0, 1.0),

@@ -11,7 +11,7 @@ use bubbletouch_sim::mesh::Surface;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
 use bubbletouch_sim::packing::{Body, pack_mesh};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels, center_of_mass};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rayon::prelude::*;
@@ -39,7 +39,7 @@ struct Free<'a> {
 
 impl<'a> Free<'a> {
     fn new(union: &'a SphereUnion, mass: f64) -> Self {
-        let center = center_of_mass(union);
+        let center = union.center_of_mass();
         Self {
             union,
             mass,

@@ -105,6 +105,29 @@ fn packed(entry: &Entry) -> [(f64, SphereUnion); 2] {
 }
 
 #[test]
+fn sizes_after_the_word_here_are_the_sizes_of_the_object() {
+    let mut n_stated = 0;
+    for entry in Catalogue::builtin().unwrap().entries() {
+        let Some((_, here)) = entry.source.split_once("; here ") else {
+            continue;
+        };
+        let (sizes, _) = here.split_once(" mm").unwrap();
+        let sizes: Vec<f64> = sizes
+            .split(" × ")
+            .map(|size| size.parse().unwrap())
+            .collect();
+        let found = entry.solid.bounds().size() / MM;
+        assert!(
+            (found - DVec3::from_slice(&sizes)).abs().max_element() <= 0.55,
+            "{}: {found}",
+            entry.name
+        );
+        n_stated += 1;
+    }
+    assert_eq!(n_stated, 8);
+}
+
+#[test]
 fn every_object_packs_within_its_surface_error() {
     for entry in Catalogue::builtin().unwrap().entries() {
         for (tolerance, union) in packed(entry) {

@@ -1,6 +1,7 @@
 //! Objects: meshes, solids, catalogues and packings.
 
 mod catalogue;
+mod centre_of_mass;
 mod files;
 mod mesh_files;
 mod mesh_scene_files;

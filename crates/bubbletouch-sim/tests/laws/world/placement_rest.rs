@@ -3,9 +3,7 @@
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::world::{
-    RestPose, as_modelled, center_of_mass, stable_poses, stable_poses_about,
-};
+use bubbletouch_sim::world::{RestPose, as_modelled, stable_poses, stable_poses_about};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::f64::consts::{PI, TAU};
@@ -185,7 +183,7 @@ fn a_cone_rests_on_its_base_or_its_flank() {
     let cone = revolution(0.08, 60, |z| 0.03 - 0.3 * z);
     let poses = stable_poses(&cone.clone().into());
     assert_eq!(poses.len(), 2, "{poses:?}");
-    assert_local_minima(&cone, center_of_mass(&cone), &poses);
+    assert_local_minima(&cone, cone.center_of_mass(), &poses);
 }
 
 #[test]
@@ -208,7 +206,7 @@ fn every_pose_is_a_local_minimum_of_the_height_of_the_centre_of_mass() {
             .map(|_| DVec3::new(random(), random(), random()))
             .collect();
         let spheres = union(points, 0.01);
-        let com = center_of_mass(&spheres);
+        let com = spheres.center_of_mass();
         let poses = stable_poses(&spheres.clone().into());
         assert_local_minima(&spheres, com, &poses);
         assert!((poses.iter().map(|p| p.probability).sum::<f64>() - 1.0).abs() < 1e-12);

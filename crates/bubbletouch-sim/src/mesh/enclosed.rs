@@ -1,0 +1,219 @@
+//! Volume and centroid of the solid of a closed mesh: closed parts that overlap count once.
+//!
+//! Let w be the winding number, and χ = 1 where w > 0, otherwise 0. The boundary of the solid consists of the faces across which χ changes. By the divergence
+//! theorem, the volume is a sum over pieces of faces. A piece counts χ₋ − χ₊ times, where − is its back and + its front. If n faces coincide, w changes by
+//! n = w₋ − w₊, and each of them counts 1/n times. Faces that coincide back to back cancel (n = 0).
+//!
+//! The winding numbers on both sides are constant over faces that no other face meets and that are joined by edges. All other faces are cut where the planes
+//! of other faces meet them.
+
+use super::crossings::winding;
+use super::welded::Joined;
+use super::{Bvh, Triangle, TriangleMesh, Welded};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Distance from a face at which the winding number of its side is computed, relative to the size of the mesh. If smaller, rounding decides beside faces that
+/// nearly coincide; if larger, the number is wrong in clefts and walls that are thinner.
+const LIFT: f64 = 1e-8;
+/// Fraction by which triangles are shrunk before they are tested for contact, so that neighbours with a common edge or corner do not count. If larger,
+/// overlaps of this width are missed; if smaller, rounding makes neighbours meet.
+const SHRINK: f64 = 1e-6;
+/// Number of faces that meet a piece up to which the piece is cut by their planes; a piece that meets more of them is halved first. If larger, the number of
+/// pieces grows quadratically; if smaller, more pieces are halved in vain.
+const MAX_CUTS: usize = 4;
+/// Maximum number of times that a face is halved. Near a corner of many faces, the number of faces does not decrease.
+const MAX_HALVINGS: usize = 16;
+
+/// Sum over pieces of faces: the volume of the tetrahedra from a common apex, m³, and the first moment of this volume about the apex, m⁴.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Enclosed {
+    pub volume: f64,
+    pub moment: DVec3,
+}
+
+impl Enclosed {
+    /// Adds the tetrahedron between the origin and a triangle, `weight` times.
+    pub fn add(&mut self, [a, b, c]: [DVec3; 3], weight: f64) {
+        let part = weight * a.dot(b.cross(c)) / 6.0;
+        self.volume += part;
+        self.moment += part * 0.25 * (a + b + c);
+    }
+
+    /// Returns the sum over the boundary of the solid of a closed mesh, about `apex`. The solid is where the winding number has the sign `sign`; both sums are
+    /// negative if it is −1.
+    pub fn of_solid(mesh: &TriangleMesh, welded: &Welded, apex: DVec3, sign: f64) -> Self {
+        let bvh = Bvh::new(mesh);
+        let faces = Faces {
+            lift: LIFT * bvh.bounds().size().length(),
+            bvh,
+            sign,
+        };
+        let triangles: Vec<Triangle> = (0..mesh.n_triangles()).map(|t| mesh.triangle(t)).collect();
+        let met = triangles
+            .par_iter()
+            .enumerate()
+            .map(|(t, face)| faces.met_by(t, face));
+        let met: Vec<Vec<Triangle>> = met.collect();
+        let mut joined = Joined::new(triangles.len());
+        for sides in welded.edges() {
+            if let [a, b] = sides
+                && a.is_forward != b.is_forward
+                && [a, b]
+                    .iter()
+                    .all(|side| met[side.triangle as usize].is_empty())
+            {
+                joined.join(a.triangle, b.triangle);
+            }
+        }
+        let mut largest: Vec<usize> = (0..triangles.len()).collect();
+        let groups: Vec<usize> = (0..triangles.len() as u32)
+            .map(|t| joined.root(t) as usize)
+            .collect();
+        for (t, &group) in groups.iter().enumerate() {
+            if triangles[t].area() > triangles[largest[group]].area() {
+                largest[group] = t;
+            }
+        }
+        let mut weights: Vec<Option<f64>> = vec![None; triangles.len()];
+        let mut sum = Self::default();
+        for (t, triangle) in triangles.iter().enumerate() {
+            let Some(normal) = triangle.normal() else {
+                continue;
+            };
+            if met[t].is_empty() {
+                let group = groups[t];
+                let weight = *weights[group].get_or_insert_with(|| {
+                    let largest = &triangles[largest[group]];
+                    faces.weight(largest.middle(), largest.normal().unwrap_or(normal))
+                });
+                sum.add(triangle.0.map(|corner| corner - apex), weight);
+            } else {
+                faces.each_piece(*triangle, normal, &met[t], MAX_HALVINGS, &mut |piece| {
+                    let [first, rest @ ..] = piece else { return };
+                    let middle = piece.iter().sum::<DVec3>() / piece.len() as f64;
+                    let weight = faces.weight(middle, normal);
+                    for pair in rest.windows(2) {
+                        sum.add(
+                            [*first, pair[0], pair[1]].map(|corner| corner - apex),
+                            weight,
+                        );
+                    }
+                });
+            }
+        }
+        sum
+    }
+}
+
+/// Faces of a closed mesh whose solid is where the winding number has the sign `sign`.
+struct Faces {
+    bvh: Bvh,
+    /// Distance from a face at which the winding number of its side is computed, metres.
+    lift: f64,
+    sign: f64,
+}
+
+impl Faces {
+    /// Returns the faces that may meet the face with index `number`, other than at common edges and corners.
+    fn met_by(&self, number: usize, face: &Triangle) -> Vec<Triangle> {
+        let shrunk_face = shrunk(face);
+        let mut met = Vec::new();
+        self.bvh.each_in_box(&face.bounds(), |other_number, other| {
+            if other_number != number && !are_apart(&shrunk_face, &shrunk(other)) {
+                met.push(*other);
+            }
+        });
+        met
+    }
+
+    /// Returns how often a piece of a face counts as boundary of the solid; the point is in its interior.
+    fn weight(&self, point: DVec3, normal: DVec3) -> f64 {
+        let [front, back] = [1.0, -1.0]
+            .map(|side| f64::from(winding(&self.bvh, point + side * self.lift * normal)));
+        let [is_front, is_back] = [front, back].map(|w| f64::from(u8::from(self.sign * w > 0.0)));
+        match back - front {
+            0.0 => 0.0,
+            jump => self.sign * (is_back - is_front) / jump,
+        }
+    }
+
+    /// Visits convex pieces of a face that the faces `met` may meet. The winding numbers on both sides are constant over each piece.
+    fn each_piece(
+        &self,
+        face: Triangle,
+        normal: DVec3,
+        met: &[Triangle],
+        n_halvings: usize,
+        visit: &mut impl FnMut(&[DVec3]),
+    ) {
+        if met.len() > MAX_CUTS && n_halvings > 0 {
+            let halves = face.bisected().map(|half| {
+                let shrunk_half = shrunk(&half);
+                let near = met
+                    .iter()
+                    .filter(|other| !are_apart(&shrunk_half, &shrunk(other)));
+                (half, near.copied().collect::<Vec<_>>())
+            });
+            if halves.iter().any(|(_, near)| near.len() < met.len()) {
+                for (half, near) in halves {
+                    self.each_piece(half, normal, &near, n_halvings - 1, visit);
+                }
+                return;
+            }
+        }
+        let mut pieces = vec![face.0.to_vec()];
+        for (point, across) in met
+            .iter()
+            .flat_map(|other| cuts(&face, normal, other, self.lift))
+        {
+            let cut =
+                |piece: Vec<DVec3>| [across, -across].map(|across| beyond(&piece, point, across));
+            pieces = pieces
+                .into_iter()
+                .flat_map(cut)
+                .filter(|piece| piece.len() > 2)
+                .collect();
+        }
+        pieces.iter().for_each(|piece| visit(piece));
+    }
+}
+
+/// Returns planes (point and normal) that divide a face where another face meets it. A face in the same plane cuts with the planes through its edges.
+fn cuts(face: &Triangle, normal: DVec3, other: &Triangle, flat: f64) -> Vec<(DVec3, DVec3)> {
+    let [a, b, c] = other.0;
+    let is_flat = |corner: &DVec3| (*corner - face.0[0]).dot(normal).abs() <= flat;
+    match other.normal() {
+        Some(across) if !other.0.iter().all(is_flat) => vec![(a, across)],
+        _ => [(a, b), (b, c), (c, a)]
+            .map(|(from, to)| (from, (to - from).cross(normal).normalize_or_zero()))
+            .to_vec(),
+    }
+}
+
+/// Returns the part of a convex polygon on the side of a plane to which `across` points; empty if the polygon is not on this side.
+fn beyond(polygon: &[DVec3], point: DVec3, across: DVec3) -> Vec<DVec3> {
+    let height = |corner: DVec3| (corner - point).dot(across);
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (k, &corner) in polygon.iter().enumerate() {
+        let next = polygon[(k + 1) % polygon.len()];
+        let [here, there] = [height(corner), height(next)];
+        if here >= 0.0 {
+            kept.push(corner);
+        }
+        if here * there < 0.0 {
+            kept.push(corner + (next - corner) * (here / (here - there)));
+        }
+    }
+    kept
+}
+
+fn shrunk(triangle: &Triangle) -> Triangle {
+    let middle = triangle.middle();
+    Triangle(triangle.0.map(|corner| corner + SHRINK * (middle - corner)))
+}
+
+/// Returns whether two triangles are apart, also if they lie in one plane.
+fn are_apart(one: &Triangle, other: &Triangle) -> bool {
+    one.is_apart(other) || one.is_beside(other) || other.is_beside(one)
+}
