@@ -143,16 +143,18 @@ impl Reader<'_> {
                 PoseTrajectory::read_csv(&place, file, interpolation)
             }
             None => {
-                let (mut times, mut poses) = (Vec::new(), Vec::new());
-                for point in &motion.way_points {
-                    times.push(point.time_s);
-                    let pose = PoseSpec {
-                        position_mm: point.position_mm,
-                        rotation_deg: point.rotation_deg,
-                    };
-                    poses.push(self.pose(&format!("{key}.way_points"), &pose)?);
-                }
-                PoseTrajectory::new(times, &poses, interpolation)
+                let key = format!("{key}.way_points");
+                let points = motion.way_points.iter();
+                let times = points.clone().map(|point| point.time_s).collect();
+                let rows = points.map(|point| {
+                    let position = self.vector(&key, point.position_mm, MM)?;
+                    Ok([
+                        position,
+                        self.vector(&key, point.rotation_deg, 1f64.to_radians())?,
+                    ])
+                });
+                let rows = rows.collect::<Result<Vec<_>>>()?;
+                PoseTrajectory::from_rpy(times, &rows, interpolation)
             }
         };
         Ok(Motion::WayPoints(self.under(key, trajectory)?))

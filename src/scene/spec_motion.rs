@@ -83,7 +83,8 @@ pub struct WayPointSpec {
     /// Position of the body's origin in the world frame, mm. Default: 0.
     #[serde(default)]
     pub position_mm: [f64; 3],
-    /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0.
+    /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0. If one angle changes between two way-points, the body turns by this
+    /// change, also beyond 180°. If several change, the body takes the shorter way, and changes of 180° or more are refused.
     #[serde(default, alias = "rpy_deg")]
     pub rotation_deg: [f64; 3],
 }

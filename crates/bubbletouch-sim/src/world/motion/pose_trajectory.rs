@@ -2,7 +2,7 @@
 
 use super::Interpolation;
 use super::curve::{Curve, Moment};
-use super::rotation_curve::RotationCurve;
+use super::rotation_curve::{RotationCurve, rotation_vector, turn_near};
 use super::way_point_csv::{Column, Table, Units};
 use super::way_points::{Origin, WayPoints};
 use crate::error::{Error, Result};
@@ -10,6 +10,7 @@ use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
 use crate::world::Dimension;
 use glam::{DQuat, DVec3};
 use ndarray::Array2;
+use std::f64::consts::PI;
 use std::io::Read;
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
@@ -18,8 +19,8 @@ const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
 
 /// Pose of a body over time, interpolated through waypoints; constant before the first and after the last waypoint.
 ///
-/// The coordinates of the position are interpolated as in a `JointTrajectory`. Rotations take the shorter path between adjacent
-/// waypoints. Linear interpolation uses slerp; the other interpolations use Hermite curves of quaternions \[KKS\]. The angular velocity of these curves is
+/// The coordinates of the position are interpolated as in a `JointTrajectory`. If one of the angles roll, pitch and yaw changes between adjacent waypoints,
+/// the body turns about its axis by the given change, which may exceed 180°. All other rotations take the shorter path. Linear interpolation uses slerp; the other interpolations use Hermite curves of quaternions \[KKS\]. The angular velocity of these curves is
 /// continuous and zero at the first and last waypoint (for squad only with equidistant times). With monotone interpolation, a turn about one axis never leaves
 /// the range of its two waypoints.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +34,8 @@ impl PoseTrajectory {
     /// Creates the trajectory through `poses` (`world_from_body`, one per time) at `times` (seconds, strictly ascending).
     ///
     /// # Errors
-    /// If a waypoint is not finite or out of order, or its quaternion is not a unit quaternion (within 0.001). The error names the waypoint.
+    /// If a waypoint is not finite or out of order, or its quaternion is not a unit quaternion (within 0.001), or it is turned by 180° from the waypoint before.
+    /// The error names the waypoint.
     pub fn new(times: Vec<f64>, poses: &[Pose], interpolation: Interpolation) -> Result<Self> {
         let numbers = poses.iter().flat_map(|pose| {
             let [x, y, z] = pose.translation.to_array();
@@ -49,12 +51,31 @@ impl PoseTrajectory {
         Self::through(&way_points.checked()?, interpolation)
     }
 
+    /// Creates the trajectory through positions, metres, and angles roll, pitch, yaw, radians, about the fixed axes x, y, z in this order.
+    ///
+    /// # Errors
+    /// If a waypoint is not finite or out of order, or several angles change from the waypoint before, one of them by 180° or more. The error names the waypoint.
+    pub fn from_rpy(
+        times: Vec<f64>,
+        way_points: &[[DVec3; 2]],
+        interpolation: Interpolation,
+    ) -> Result<Self> {
+        let numbers = way_points.iter().flatten().flat_map(DVec3::to_array);
+        let values = Array2::from_shape_vec((way_points.len(), 6), numbers.collect());
+        let way_points = WayPoints {
+            times,
+            values: values.expect("six numbers a way-point"),
+            origin: Origin::Argument("pose trajectory"),
+        };
+        Self::through(&way_points.checked()?, interpolation)
+    }
+
     /// Reads a trajectory from CSV. The columns are `time_s`, the position `x`, `y`, `z` in metres (`_m`) or with `_mm`, and a rotation. The rotation is either
     /// `qx`, `qy`, `qz`, `qw`, or `roll`, `pitch`, `yaw` in radians (`_rad`) or with `_deg`. Roll, pitch and yaw turn about the fixed axes x, y, z in this
     /// order.
     ///
     /// # Errors
-    /// If the table is invalid. The message begins with `place`, the file's name, and contains the line.
+    /// If the table is invalid, or a turn is undetermined as for `new` and `from_rpy`. The message begins with `place`, the file's name, and contains the line.
     pub fn read_csv(place: &str, source: impl Read, interpolation: Interpolation) -> Result<Self> {
         let mut table = Table::read(place, source)?;
         let mut columns = claim_all(&mut table, &POSITION, Dimension::Length.units())?;
@@ -83,7 +104,8 @@ impl PoseTrajectory {
         let rotations = rotations(way_points)?;
         let curve = |k| Curve::through(times, &way_points.values.column(k).to_vec(), interpolation);
         let curves = (curve(0), curve(1), curve(2));
-        let rotation = RotationCurve::through(times, &rotations, interpolation);
+        let turns = turns(way_points, &rotations)?;
+        let rotation = RotationCurve::through(times, &rotations, &turns, interpolation);
         let ((Some(x), Some(y), Some(z)), Some(rotation)) = (curves, rotation) else {
             return Err(Error::input(
                 way_points.origin.place(),
@@ -145,4 +167,48 @@ fn rotations(way_points: &WayPoints) -> Result<Vec<DQuat>> {
         })
     })
     .collect()
+}
+
+/// Smallest difference from 180° at which the shorter of two turns is determined, radians. If smaller, rounding of a quaternion decides; if larger, turns that
+/// are determined are refused.
+const UNDETERMINED: f64 = 1e-6;
+
+/// Returns the rotation vector from each waypoint to the next, in the body's frame, radians.
+fn turns(way_points: &WayPoints, rotations: &[DQuat]) -> Result<Vec<DVec3>> {
+    let turn = |next: usize| {
+        let whole = rotations[next - 1].conjugate() * rotations[next];
+        let [from, to] = [next - 1, next].map(|index| way_points.values.row(index));
+        let refuse = |given: String| {
+            let allowed =
+                "less than 180°, or a change of one of roll, pitch and yaw alone; more way-points";
+            Err(Error::input(way_points.at(next), given, allowed))
+        };
+        if from.len() == 6 {
+            let change = [3, 4, 5].map(|k| to[k] - from[k]);
+            let largest = change.map(f64::abs).into_iter().fold(0.0, f64::max);
+            if change.iter().filter(|&&change| change != 0.0).count() == 1 {
+                // Yaw turns about the fixed z axis, pitch about the y axis after yaw, and roll about the x axis of the body.
+                let axes = [
+                    DVec3::X,
+                    DQuat::from_rotation_x(-from[3]) * DVec3::Y,
+                    rotations[next - 1].conjugate() * DVec3::Z,
+                ];
+                let expected = axes
+                    .into_iter()
+                    .zip(change)
+                    .map(|(axis, change)| change * axis);
+                return Ok(turn_near(whole, expected.sum()));
+            }
+            if largest > PI - UNDETERMINED {
+                let degrees = largest.to_degrees();
+                return refuse(format!("several angles change, one by {degrees:.6}°"));
+            }
+        }
+        let shortest = rotation_vector(whole);
+        match shortest.length() > PI - UNDETERMINED {
+            true => refuse("turned by 180°, in either direction".to_owned()),
+            false => Ok(shortest),
+        }
+    };
+    (1..rotations.len()).map(turn).collect()
 }

@@ -3,6 +3,7 @@
 use super::curve::{Interpolation, Moment};
 use super::slopes::monotone_slope;
 use glam::{DQuat, DVec3};
+use std::f64::consts::TAU;
 
 /// Rotation as a smooth function of time, given by pieces between waypoints. Between two waypoints, with s from 0 to 1,
 ///
@@ -26,17 +27,18 @@ struct CurveSegment {
 }
 
 impl RotationCurve {
-    /// Creates the curve through unit quaternions at ascending times (at least one), along the shorter path between adjacent quaternions. Returns `None` if
-    /// times are so close that a velocity is not finite.
-    pub fn through(times: &[f64], at: &[DQuat], interpolation: Interpolation) -> Option<Self> {
+    /// Creates the curve through unit quaternions at ascending times (at least one). `turns` contains the rotation vector from each quaternion to the next in
+    /// the body's frame, radians; its angle may exceed 180°. Returns `None` if times are so close that a velocity is not finite.
+    pub fn through(
+        times: &[f64],
+        at: &[DQuat],
+        turns: &[DVec3],
+        interpolation: Interpolation,
+    ) -> Option<Self> {
         let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
-        let turns = at
-            .windows(2)
-            .map(|q| rotation_vector(q[0].conjugate() * q[1]));
-        let turns: Vec<DVec3> = turns.collect();
         let velocities = match interpolation {
-            Interpolation::Monotone => monotone_velocities(&steps, &turns),
-            Interpolation::Linear | Interpolation::Cubic => body_velocities(&steps, &turns),
+            Interpolation::Monotone => monotone_velocities(&steps, turns),
+            Interpolation::Linear | Interpolation::Cubic => body_velocities(&steps, turns),
         };
         let piece = |i: usize| {
             let h = steps[i];
@@ -47,8 +49,8 @@ impl RotationCurve {
                     let third = velocities[i + 1] * h / 3.0;
                     let whole = at[i].conjugate() * at[i + 1];
                     let undone = DQuat::from_scaled_axis(-first) * whole;
-                    let middle = rotation_vector(undone * DQuat::from_scaled_axis(-third));
-                    [first, middle, third]
+                    let middle = undone * DQuat::from_scaled_axis(-third);
+                    [first, turn_near(middle, turns[i] - first - third), third]
                 }
             };
             CurveSegment {
@@ -115,8 +117,20 @@ fn monotone_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     velocities
 }
 
+/// Returns the rotation vector of a unit quaternion that is nearest to `expected`, radians, among the vectors that differ by whole turns.
+pub(super) fn turn_near(q: DQuat, expected: DVec3) -> DVec3 {
+    let shortest = rotation_vector(q);
+    // The axis of a turn by almost 0 is only rounding.
+    let axis = match shortest.length() > 1e-9 {
+        true => shortest.normalize(),
+        false => expected.normalize_or_zero(),
+    };
+    let n_turns = ((expected - shortest).dot(axis) / TAU).round();
+    shortest + n_turns * TAU * axis
+}
+
 /// Returns the rotation vector of a unit quaternion for the shorter of the two possible turns, radians.
-fn rotation_vector(q: DQuat) -> DVec3 {
+pub(super) fn rotation_vector(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let sine = q.xyz().length();
     if sine == 0.0 {
@@ -144,6 +158,13 @@ mod tests {
         turns.map(|(x, y, z)| DQuat::from_scaled_axis(DVec3::new(x, y, z)))
     }
 
+    fn through(times: &[f64], at: &[DQuat], kind: Interpolation) -> Option<RotationCurve> {
+        let turns = at
+            .windows(2)
+            .map(|q| rotation_vector(q[0].conjugate() * q[1]));
+        RotationCurve::through(times, at, &turns.collect::<Vec<DVec3>>(), kind)
+    }
+
     fn angular_velocity(curve: &RotationCurve, time: f64, dt: f64) -> DVec3 {
         let at = |time| curve.rotation(Moment::new(time, &TIMES));
         rotation_vector(at(time).conjugate() * at(time + dt)) / dt
@@ -152,7 +173,7 @@ mod tests {
     #[test]
     fn linear_is_slerp() {
         let at = way_points();
-        let curve = RotationCurve::through(&TIMES, &at, Interpolation::Linear).unwrap();
+        let curve = through(&TIMES, &at, Interpolation::Linear).unwrap();
         for share in [0.1, 0.5, 0.9] {
             let found = curve.rotation(Moment::new(0.7 + 0.3 * share, &TIMES));
             assert!(
@@ -165,7 +186,7 @@ mod tests {
     #[test]
     fn the_angular_velocity_is_continuous_and_zero_at_the_ends() {
         for kind in [Interpolation::Cubic, Interpolation::Monotone] {
-            let curve = RotationCurve::through(&TIMES, &way_points(), kind).unwrap();
+            let curve = through(&TIMES, &way_points(), kind).unwrap();
             let dt = 1e-6;
             for time in [0.7, 1.0] {
                 let before = angular_velocity(&curve, time - dt, dt);
@@ -185,7 +206,7 @@ mod tests {
     fn a_monotone_turn_stays_between_its_way_points() {
         let yaw = |degrees: f64| DQuat::from_rotation_z(degrees.to_radians());
         let at = [yaw(0.0), yaw(0.0), yaw(90.0), yaw(90.0)];
-        let curve = RotationCurve::through(&TIMES, &at, Interpolation::Monotone).unwrap();
+        let curve = through(&TIMES, &at, Interpolation::Monotone).unwrap();
         let mut last = 0.0;
         for k in 0..=2500 {
             let turn = rotation_vector(curve.rotation(Moment::new(1e-3 * f64::from(k), &TIMES)));
@@ -206,7 +227,7 @@ mod tests {
         for case in 0..200 {
             let turn = |_| DVec3::from_array([(); 3].map(|()| rng.gen_range(-1.5..1.5)));
             let at = [0; 4].map(turn).map(DQuat::from_scaled_axis);
-            let curve = RotationCurve::through(&TIMES, &at, Interpolation::Monotone).unwrap();
+            let curve = through(&TIMES, &at, Interpolation::Monotone).unwrap();
             for piece in 0..3 {
                 let whole = apart(at[piece], at[piece + 1]);
                 for step in 0..=50 {
@@ -227,7 +248,7 @@ mod tests {
     fn every_way_point_is_passed() {
         use Interpolation::{Cubic, Linear, Monotone};
         for kind in [Linear, Cubic, Monotone] {
-            let curve = RotationCurve::through(&TIMES, &way_points(), kind).unwrap();
+            let curve = through(&TIMES, &way_points(), kind).unwrap();
             for (&time, q) in TIMES.iter().zip(way_points()) {
                 for time in [time, time - 1e-13] {
                     let found = curve.rotation(Moment::new(time, &TIMES));

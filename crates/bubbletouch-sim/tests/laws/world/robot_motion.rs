@@ -1,7 +1,7 @@
 //! Laws of trajectories of robots and bodies: smooth between waypoints, and within limits at all times.
 
 use crate::counting::allocations;
-use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::geometry::{Pose, rotation_from_rpy};
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::world::{
     Interpolation, JointTrajectory, Motion, Phase, PoseTrajectory, Robot, VelocityPlan,
@@ -9,6 +9,7 @@ use bubbletouch_sim::world::{
 use glam::{DQuat, DVec3};
 use ndarray::{Array2, array};
 use rand::Rng;
+use std::f64::consts::PI;
 
 const INTERPOLATIONS: [Interpolation; 3] = [
     Interpolation::Linear,
@@ -366,6 +367,84 @@ fn a_pose_passes_its_way_points_and_a_steady_turn_stays_steady() {
         assert_eq!(trajectory.pose_at(-1.0), poses[0]);
         assert_eq!(trajectory.pose_at(5.0), poses[4]);
     }
+}
+
+#[test]
+fn one_angle_of_the_way_points_turns_by_its_change() {
+    let degrees = |angles: [f64; 3]| DVec3::from_array(angles.map(f64::to_radians));
+    let start = [20.0, -35.0, 50.0];
+    for (axis, change) in (0..3)
+        .flat_map(|axis| [90.0, 180.0, 270.0, 360.0, -540.0, 725.0].map(|change| (axis, change)))
+    {
+        let angles = |share: f64| {
+            let mut angles = start;
+            angles[axis] += share * change;
+            degrees(angles)
+        };
+        let csv = [0.0, 1.0].map(|share| {
+            let [roll, pitch, yaw] = angles(share).to_array();
+            format!("{share},0,0,0,{roll},{pitch},{yaw}\n")
+        });
+        let csv = format!("time_s,x,y,z,roll,pitch,yaw\n{}", csv.concat());
+        for kind in INTERPOLATIONS {
+            let way_points = [0.0, 1.0].map(|share| [DVec3::ZERO, angles(share)]);
+            let given = PoseTrajectory::from_rpy(vec![0.0, 1.0], &way_points, kind).unwrap();
+            let read = PoseTrajectory::read_csv("p.csv", csv.as_bytes(), kind).unwrap();
+            for step in 0..=20 {
+                let time = 0.05 * f64::from(step);
+                let share = match kind {
+                    Interpolation::Linear => time,
+                    Interpolation::Cubic | Interpolation::Monotone => {
+                        time * time * (3.0 - 2.0 * time)
+                    }
+                };
+                let expected = rotation_from_rpy(angles(share));
+                for found in [&given, &read].map(|trajectory| trajectory.pose_at(time).rotation) {
+                    let apart = 1.0 - found.dot(expected).abs();
+                    assert!(
+                        apart < 1e-13,
+                        "{kind:?}, axis {axis}, {change}°, {time} s: {apart}"
+                    );
+                }
+            }
+        }
+    }
+    // Three turns by 270° at equal times: a steady turn in the middle.
+    let yaw = |turns: f64| [DVec3::ZERO, degrees([0.0, 0.0, 270.0 * turns])];
+    let way_points = [0.0, 1.0, 2.0, 3.0].map(yaw);
+    for kind in INTERPOLATIONS {
+        let times = vec![0.0, 1.0, 2.0, 3.0];
+        let trajectory = PoseTrajectory::from_rpy(times, &way_points, kind).unwrap();
+        for time in [0.0, 1.0, 1.3, 1.5, 1.9, 2.0, 3.0] {
+            let expected = rotation_from_rpy(yaw(time)[1]);
+            let apart = 1.0 - trajectory.pose_at(time).rotation.dot(expected).abs();
+            assert!(apart < 1e-13, "{kind:?} {time}: {apart}");
+        }
+    }
+}
+
+#[test]
+fn turns_whose_direction_is_undetermined_are_refused() {
+    let new = |angles: [f64; 3]| {
+        let rpy = DVec3::from_array(angles.map(f64::to_radians));
+        let way_points = [[DVec3::ZERO; 2], [DVec3::ZERO, rpy]];
+        PoseTrajectory::from_rpy(vec![0.0, 1.0], &way_points, Interpolation::Cubic)
+    };
+    let allowed =
+        "less than 180°, or a change of one of roll, pitch and yaw alone; more way-points";
+    assert!(new([100.0, 0.0, 100.0]).is_ok() && new([0.0, 0.0, 360.0]).is_ok());
+    assert_eq!(
+        new([0.0, 10.0, 360.0]).unwrap_err().to_string(),
+        format!(
+            "pose trajectory, way-point 2: several angles change, one by 360.000000°; {allowed}"
+        )
+    );
+    let poses = [DQuat::IDENTITY, DQuat::from_rotation_x(PI)].map(Pose::from_rotation);
+    let error = PoseTrajectory::new(vec![0.0, 1.0], &poses, Interpolation::Linear).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        format!("pose trajectory, way-point 2: turned by 180°, in either direction; {allowed}")
+    );
 }
 
 #[test]
