@@ -123,7 +123,7 @@ impl Reader<'_> {
             return Err(self.check.error(key, given, nearest_names(first, names)));
         };
         let about = error.about();
-        if about.remembers || about.needs_motion {
+        if !about.is_of_single_frames() {
             let given = format!("`{first}`, which needs the frames before and after");
             let allowed = "steps that read each frame alone (studies have all)";
             return Err(self.check.error(key, given, allowed));

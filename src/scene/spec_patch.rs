@@ -107,10 +107,7 @@ impl JsonSchema for SignalStepSpec {
 fn scene_steps() -> impl Iterator<Item = (&'static str, String)> {
     let noises = NOISES.iter().map(|(key, unit)| (*key, noise_words(*unit)));
     let smoothing = "Standard deviation of the Gaussian smoothing over the array, mm.";
-    let errors = all_strengths().filter(|(error, _)| {
-        let about = error.about();
-        !about.remembers && !about.needs_motion
-    });
+    let errors = all_strengths().filter(|(error, _)| error.about().is_of_single_frames());
     let errors = errors.map(|(error, strength)| (strength.key, strength_words(error, strength)));
     noises
         .chain([("smoothing_mm", smoothing.to_owned())])

@@ -151,6 +151,10 @@ fn what_cannot_be_a_signal_is_refused_with_its_key() {
             &["needs the frames before"],
         ),
         ("[{ scan_time_ms = 5.0 }]", &["needs the frames before"]),
+        (
+            "[{ pink_noise_std_full_scale = 0.1 }]",
+            &["needs the frames before"],
+        ),
         ("[{ line_resistance = 0.1 }]", &["a skin that is no grid"]),
         ("[{}]", &["a step without a key"]),
     ] {
@@ -159,5 +163,29 @@ fn what_cannot_be_a_signal_is_refused_with_its_key() {
         let said = error.to_string();
         let has_all = parts.iter().all(|part| said.contains(part));
         assert!(said.starts_with("s.toml") && has_all, "{said}");
+    }
+}
+
+#[test]
+fn steps_that_are_given_twice_draw_twice() {
+    let spread = |signal: &str| {
+        let plan = try_plan(&format!("signal = [{signal}]")).unwrap();
+        let frames = frames(&plan);
+        let changes = frames.iter().flat_map(|frame| {
+            let reading = &frame.patches[0];
+            let signal = reading.signal.as_ref().unwrap().iter();
+            signal
+                .zip(&reading.deflection)
+                .map(|(signal, true_value)| (signal - true_value).powi(2))
+        });
+        let changes: Vec<f64> = changes.collect();
+        (changes.iter().sum::<f64>() / changes.len() as f64).sqrt()
+    };
+    for step in [
+        "{ noise_std_full_scale = 0.01 }",
+        "{ drift_std_full_scale = 0.01 }",
+    ] {
+        let ratio = spread(&format!("{step}, {step}")) / spread(step);
+        assert!((ratio - 2f64.sqrt()).abs() < 0.15, "{step}: {ratio}");
     }
 }

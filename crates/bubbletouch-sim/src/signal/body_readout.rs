@@ -8,6 +8,7 @@
 //! if its description has `by_taxel`.
 
 use super::noise::NoiseByNumber;
+use super::step::seed_of_repetition;
 use super::taxel_effect::{CHUNK, Chunk, TaxelEffect};
 use super::{MAX_STRENGTHS, Moment, Quantity, SENSOR_ERRORS, SensorError, SignalStep};
 use crate::error::{Error, Result};
@@ -222,13 +223,12 @@ fn prepare(
     noise: &Seed,
 ) -> Result<Vec<Arc<dyn TaxelEffect>>> {
     let mut prepared: Vec<Arc<dyn TaxelEffect>> = Vec::new();
-    let mut n_noises = 0;
-    for step in steps {
+    for (place, step) in steps.iter().enumerate() {
+        let repetition = step.repetition(&steps[..place]);
         match step {
             SignalStep::Noise(of) => {
-                n_noises += 1;
                 let std = of.std_of(quantity, taxel)?;
-                let key = noise.named("noise").numbered(n_noises).counter_key();
+                let key = noise.named("noise").numbered(repetition + 1).counter_key();
                 if std > 0.0 {
                     prepared.push(Arc::new(NoiseByNumber { key, std }));
                 }
@@ -240,7 +240,8 @@ fn prepare(
             } => {
                 if strengths.iter().any(|&strength| strength != 0.0) {
                     let full_scale = quantity.full_scale(taxel);
-                    prepared.push(taxel_effect(*error, strengths, full_scale, skin)?);
+                    let skin = seed_of_repetition(skin, repetition);
+                    prepared.push(taxel_effect(*error, strengths, full_scale, &skin)?);
                 }
             }
             SignalStep::Force => return Err(refused("force", "after another step")),

@@ -1,5 +1,6 @@
 //! Signal chain: prepared signal steps, applied in the order in which the study lists them.
 
+use super::step::seed_of_repetition;
 use super::surface_smoothing::SurfaceSmoothing;
 use super::{Effect, Quantity, SignalStep, Skin, Smoothing, TouchRead, force, noise};
 use crate::error::{Error, Result};
@@ -66,8 +67,11 @@ enum Prepared {
         std: f64,
         place: u64,
     },
-    /// Smoothing or a sensor error.
-    Effect(Arc<dyn Effect>),
+    /// Smoothing or a sensor error; `repetition` counts the earlier steps of the same error.
+    Effect {
+        effect: Arc<dyn Effect>,
+        repetition: u64,
+    },
 }
 
 impl Chain {
@@ -119,11 +123,10 @@ impl Chain {
             is_signed,
             scratch_len: 0,
         };
-        let mut n_noises = 0;
-        for step in steps {
-            n_noises += u64::from(matches!(step, SignalStep::Noise(_)));
+        for (place, step) in steps.iter().enumerate() {
+            let repetition = step.repetition(&steps[..place]);
             let n_before = chain.steps.len();
-            let prepared = chain.prepare(step, n_noises, patch)?;
+            let prepared = chain.prepare(step, repetition, patch)?;
             chain.steps.extend(prepared);
             if chain.steps.len() > n_before && step.remembers() {
                 chain.n_remembering = chain.steps.len();
@@ -217,13 +220,14 @@ impl Chain {
                     noise::add_normal(values, *std, &seed.named("noise").numbered(*place));
                 }
             }
-            Prepared::Effect(effect) => {
+            Prepared::Effect { effect, repetition } => {
+                let seed = seed_of_repetition(touch, *repetition);
                 let touch = TouchRead {
                     n_taxels,
                     n_before: recording.n_before,
                     interval: recording.interval,
                     time: recording.time,
-                    seed: touch,
+                    seed: &seed,
                 };
                 effect.apply(frames, &touch, scratch);
             }
@@ -239,14 +243,14 @@ impl Chain {
     fn prepare(
         &mut self,
         step: &SignalStep,
-        n_noises: u64,
+        repetition: u64,
         patch: &Patch,
     ) -> Result<Option<Prepared>> {
         Ok(Some(match step {
             SignalStep::Force => self.prepare_force()?,
             SignalStep::Noise(noise) => Prepared::Noise {
                 std: noise.std_of(self.quantity, &self.taxel)?,
-                place: n_noises,
+                place: repetition + 1,
             },
             SignalStep::Smoothing { width } => self.prepare_smoothing(*width, patch)?,
             SignalStep::Error { strengths, .. } if strengths.iter().all(|&s| s == 0.0) => {
@@ -262,9 +266,9 @@ impl Chain {
                     patch,
                     full_scale,
                     least: if self.is_signed { -full_scale } else { 0.0 },
-                    name: *name,
+                    name: seed_of_repetition(name, repetition),
                 };
-                self.prepare_effect((error.about().prepare)(strengths, &skin)?)
+                self.prepare_effect((error.about().prepare)(strengths, &skin)?, repetition)
             }
         }))
     }
@@ -286,12 +290,15 @@ impl Chain {
             Some(grid) => Box::new(Smoothing::new(width, grid)?),
             None => Box::new(SurfaceSmoothing::new(width, patch)?),
         };
-        Ok(self.prepare_effect(smoothing))
+        Ok(self.prepare_effect(smoothing, 0))
     }
 
-    fn prepare_effect(&mut self, effect: Box<dyn Effect>) -> Prepared {
+    fn prepare_effect(&mut self, effect: Box<dyn Effect>, repetition: u64) -> Prepared {
         self.scratch_len = self.scratch_len.max(effect.scratch_len());
-        Prepared::Effect(effect.into())
+        Prepared::Effect {
+            effect: effect.into(),
+            repetition,
+        }
     }
 }
 

@@ -22,6 +22,7 @@ const N_SOURCES: usize = 20;
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     is_random_by_reading: true,
+    spans_frames: true,
     ..ErrorAbout::new(
         "pink_noise",
         &[Strength::share(

@@ -46,6 +46,8 @@ pub struct ErrorAbout {
     pub is_random_by_reading: bool,
     /// Whether the readings of a touch depend on the touches before it.
     pub remembers: bool,
+    /// Whether the errors of one frame of a touch depend on the other frames.
+    pub spans_frames: bool,
     /// Whether the sensor error has an effect only if frames are read while the press moves.
     pub needs_motion: bool,
     /// Whether the sensor error depends on the positions of the taxels: on their neighbours, or on rows and columns.
@@ -118,11 +120,17 @@ impl ErrorAbout {
             is_of_skin: false,
             is_random_by_reading: false,
             remembers: false,
+            spans_frames: false,
             needs_motion: false,
             needs_places: false,
             prepare,
             by_taxel: None,
         }
+    }
+
+    /// Returns whether the error of each frame of a touch is independent of the other frames.
+    pub fn is_of_single_frames(&self) -> bool {
+        !(self.remembers || self.spans_frames || self.needs_motion)
     }
 }
 

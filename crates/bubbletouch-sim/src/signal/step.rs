@@ -27,6 +27,15 @@ pub enum SignalStep {
 }
 
 impl SignalStep {
+    /// Returns how many of the earlier steps are noise, if this step is noise, or have the same sensor error.
+    pub(super) fn repetition(&self, earlier: &[Self]) -> u64 {
+        let is_same = |other: &&Self| match (self, other) {
+            (Self::Error { error, .. }, Self::Error { error: other, .. }) => error == other,
+            _ => std::mem::discriminant(self) == std::mem::discriminant(*other),
+        };
+        earlier.iter().filter(is_same).count() as u64
+    }
+
     /// Returns whether the readings of a touch depend on the touches before it.
     pub(super) fn remembers(&self) -> bool {
         matches!(self, Self::Error { error, .. } if error.about().remembers)
@@ -49,5 +58,13 @@ impl SensorError {
     pub fn of_step(word: &str) -> Option<Self> {
         let mut all = SENSOR_ERRORS.iter().copied();
         all.find(|error| error.about().step == word)
+    }
+}
+
+/// Returns the seed of a repeated sensor error, which draws its own numbers; the first step of an error has the given seed.
+pub(super) fn seed_of_repetition(seed: &Seed, repetition: u64) -> Seed {
+    match repetition {
+        0 => *seed,
+        n => seed.named("repetition").numbered(n),
     }
 }
