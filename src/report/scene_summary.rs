@@ -1,9 +1,11 @@
 //! Summary of a scene as text tables.
 
+use crate::geometry::rpy_from_rotation;
 use crate::report::terminal::rows_text;
 use crate::scene::{Movement, PoseControl, ScenePlan, Summary};
 use crate::table::short_number;
 use crate::world::Motion;
+use glam::DVec3;
 
 /// Returns the summary of a scene as text: a table of patches with their largest values, and a table of objects with their final states.
 pub fn scene_table(plan: &ScenePlan, summary: &Summary) -> String {
@@ -66,6 +68,11 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> String {
             None => format!("{} triangles", model.n_triangles()),
         };
         let mut end = ending(&object.movement, &summary.held);
+        if matches!(object.movement, Movement::Free { .. }) {
+            let position = triple(1e3 * summary.pose.translation);
+            let angles = triple(rpy_from_rotation(summary.pose.rotation).map(f64::to_degrees));
+            end += &format!("; last at {position} mm, rotated by {angles}°");
+        }
         if summary.n_unsettled > 0 {
             end += &format!("; not at rest in {} frames", summary.n_unsettled);
         }
@@ -102,11 +109,17 @@ fn ending(movement: &Movement, held: &PoseControl) -> String {
         PoseControl::AtRest => "at rest".to_owned(),
         PoseControl::NotConverged => "not at rest".to_owned(),
         PoseControl::Escaped { time, direction } => {
-            let [x, y, z] = direction.to_array().map(|number| format!("{number:.2}"));
-            format!(
-                "escaped at {} s towards ({x}, {y}, {z})",
-                short_number(*time)
-            )
+            let towards = triple(*direction);
+            format!("escaped at {} s towards {towards}", short_number(*time))
         }
     }
+}
+
+/// Returns three numbers as text, such as `(1.00, 0.00, -2.50)`.
+fn triple(numbers: DVec3) -> String {
+    // Adding 0 makes a negative zero positive.
+    let [x, y, z] = numbers
+        .to_array()
+        .map(|number| format!("{:.2}", (1e2 * number).round() / 1e2 + 0.0));
+    format!("({x}, {y}, {z})")
 }

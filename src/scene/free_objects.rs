@@ -177,7 +177,8 @@ impl FreeObjects {
         })
     }
 
-    /// Attaches tangential springs to objects that were just placed, for all patches with friction.
+    /// Attaches tangential springs at the present poses to objects that were just placed, and to objects that a patch with friction touches for the first time.
+    /// Friction therefore also acts in the step in which a contact begins.
     fn attach_tangential_springs(
         &mut self,
         plan: &ScenePlan,
@@ -185,17 +186,22 @@ impl FreeObjects {
         objects: &PlacedObjects,
     ) {
         let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
-        for free in self.all.iter_mut().filter(|free| free.is_put) {
-            free.is_put = false;
-            if !has_friction {
+        for free in &mut self.all {
+            let is_put = std::mem::take(&mut free.is_put);
+            if !has_friction || matches!(free.reading.held, PoseControl::Escaped { .. }) {
                 continue;
             }
             let mut only = objects.clone();
             only.poses.fill(OUT_OF_REACH);
             only.poses[free.object] = free.reading.pose;
             for (skin, patch) in skins.iter_mut().zip(&plan.patches) {
-                let one = (free.object, &only);
-                skin.put(patch, &plan.models, one, &mut self.workspace);
+                let is_held = skin
+                    .tangential_springs()
+                    .any(|spring| spring.object == free.object);
+                if is_put || !is_held {
+                    let one = (free.object, &only);
+                    skin.put(patch, &plan.models, one, &mut self.workspace);
+                }
             }
         }
     }

@@ -2,9 +2,15 @@
 
 use super::frame::{ObjectReading, PoseControl};
 use super::plan::ScenePlan;
+use super::plan_press::PlannedPress;
 use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
 use crate::geometry::Pose;
+use glam::DVec3;
+
+/// Maximum number of turns in which each of several pressed objects moves to its target force. Two fingertips on neighbouring patches need 5 to 20. If larger,
+/// targets that cannot be reached together take longer; if smaller, some forces differ from their targets.
+const MAX_ROUNDS: usize = 100;
 
 /// All pressed objects of a scene, whose motion is controlled by the force on a patch.
 #[derive(Clone, Debug)]
@@ -44,8 +50,11 @@ impl PressedObjects {
         }
     }
 
-    /// Moves each pressed object from the pose of its imposed motion until its target force is reached. The time since the last call is `dt`, seconds; infinite
-    /// at the start.
+    /// Moves all pressed objects from the poses of their imposed motions until the target forces are reached together. The time since the last call is `dt`,
+    /// seconds; infinite at the start.
+    ///
+    /// Each object is moved in turn while the others stay. The turns are repeated until no object moves, because each object may touch the patches of the
+    /// others.
     pub fn push(
         &mut self,
         plan: &ScenePlan,
@@ -58,24 +67,50 @@ impl PressedObjects {
             poses,
             workspace,
         } = self;
-        for pressed in all {
-            let planned = plan.objects[pressed.object].press.as_ref();
-            let press = planned.expect("only those that are pressed are here");
-            let patch = &plan.patches[press.patch];
-            let skin = &skins[press.patch];
-            poses.clear();
-            poses.extend(objects.seen_by(patch, &skin.pose));
-            let moved = MovedObject {
-                patch: &patch.skin,
-                objects: &plan.models,
-                moving: Some(pressed.object),
-                direction: skin.pose.rotation.conjugate() * press.direction,
-            };
-            pressed.wanted = press.force_at(time);
-            let way = (press.speed * dt).min(press.travel);
-            pressed.go(&moved, poses, [way, press.travel], workspace);
-            let pose = &mut objects.poses[pressed.object];
-            pose.translation += pressed.now.travel * press.direction;
+        let imposed: Vec<Pose> = all
+            .iter()
+            .map(|pressed| objects.poses[pressed.object])
+            .collect();
+        let before: Vec<f64> = all.iter().map(|pressed| pressed.now.travel).collect();
+        let directions = all.iter().map(|pressed| pressed.plan(plan).direction);
+        let directions: Vec<DVec3> = directions.collect();
+        for (number, pressed) in all.iter().enumerate() {
+            objects.poses[pressed.object].translation += before[number] * directions[number];
+        }
+        for round in 0..=MAX_ROUNDS {
+            let mut is_moving = false;
+            for (number, pressed) in all.iter_mut().enumerate() {
+                let press = pressed.plan(plan);
+                let patch = &plan.patches[press.patch];
+                let skin = &skins[press.patch];
+                objects.poses[pressed.object] = imposed[number];
+                poses.clear();
+                poses.extend(objects.seen_by(patch, &skin.pose));
+                let moved = MovedObject {
+                    patch: &patch.skin,
+                    objects: &plan.models,
+                    moving: Some(pressed.object),
+                    direction: skin.pose.rotation.conjugate() * press.direction,
+                };
+                pressed.wanted = press.force_at(time);
+                let here = pressed.now.travel;
+                let way = (press.speed * dt).min(press.travel);
+                let limits = match round {
+                    // Only the force is computed.
+                    MAX_ROUNDS => [here; 2],
+                    _ => [
+                        (before[number] - way).max(0.0),
+                        (before[number] + way).min(press.travel),
+                    ],
+                };
+                pressed.go(&moved, poses, (way, limits), workspace);
+                is_moving |= pressed.now.travel != here;
+                let pose = &mut objects.poses[pressed.object];
+                pose.translation += pressed.now.travel * press.direction;
+            }
+            if !is_moving || directions.len() == 1 {
+                break;
+            }
         }
     }
 
@@ -108,14 +143,21 @@ impl PressedObjects {
 }
 
 impl Pressed {
-    /// Moves the object towards its target force by at most `way` metres. The object stays within `farthest` metres from the pose of its imposed motion.
+    /// Returns the plan of the object's press.
+    fn plan<'a>(&self, plan: &'a ScenePlan) -> &'a PlannedPress {
+        let press = plan.objects[self.object].press.as_ref();
+        press.expect("only pressed objects are in this list")
+    }
+
+    /// Moves the object towards its target force by at most `way` metres, in small steps. The distance from the pose of its imposed motion stays between the
+    /// limits `low` and `high`, metres.
     ///
     /// `poses` contains the pose of each object, `patch_from_object`; for the pressed object, the pose of its imposed motion.
     fn go(
         &mut self,
         moved: &MovedObject,
         poses: &mut [Pose],
-        [way, farthest]: [f64; 2],
+        (way, [low, high]): (f64, [f64; 2]),
         workspace: &mut Workspace,
     ) {
         let start = poses[self.object];
@@ -124,11 +166,11 @@ impl Pressed {
         let is_let_go = self.wanted == 0.0;
         for _ in 0..n_parts {
             let here = self.now.travel;
-            let back = (here - step).max(0.0);
+            let back = (here - step).max(low);
             // If the target force is zero, the object moves back, with or without contacts.
             let travels = match is_let_go {
                 true => [back; 3],
-                false => [back, here, (here + step).min(farthest)],
+                false => [back, here, (here + step).min(high)],
             };
             poses[self.object] = start;
             workspace.hold(&self.contacts);

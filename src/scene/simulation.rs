@@ -261,6 +261,10 @@ impl<'p> Simulation<'p> {
             let loads: Vec<_> = self.free.on_patch(number).collect();
             let carried = (&loads[..], &self.free.tips_on(number)[..]);
             skin.step_and_read(patch, &plan.models, &self.objects, dt, carried, reading);
+            skin.keep_stopped(patch, |object| {
+                let object = &plan.objects[object];
+                object.press.is_none() && !matches!(object.movement, Movement::Free { .. })
+            });
             if let Some(signal) = &patch.signal {
                 let name = self.noise[number].numbered(self.n_read as u64);
                 signal.read(reading, &name, share, &mut self.scratch);

@@ -78,6 +78,8 @@ pub(super) struct SkinState {
     /// Pose of each object in the patch frame, `patch_from_object`.
     poses: Vec<Pose>,
     counts: Contact,
+    /// Contacts of imposed objects with taxels at their stroke, in the last frame.
+    stopped: Vec<TaxelContact>,
 }
 
 impl SkinState {
@@ -98,12 +100,26 @@ impl SkinState {
             contact_modes: ContactModeCounts::default(),
             poses: Vec::new(),
             counts: Contact::default(),
+            stopped: Vec::new(),
         }
     }
 
-    /// Keeps contacts for the next steps: an object part in contact continues to push its taxel, even from behind the substrate.
-    pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
-        self.workspace.hold(contacts);
+    /// Keeps the given contacts, and the contacts that the last frame kept, for the next steps: an object part in contact continues to push its taxel, even
+    /// from behind the substrate.
+    pub fn hold<'a>(&'a mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
+        self.workspace.hold(self.stopped.iter().chain(contacts));
+    }
+
+    /// Keeps the contacts of imposed objects with taxels at their stroke, so that an object that moves through the skin stays sensed behind it. `is_imposed`
+    /// returns whether an object of the scene is imposed.
+    pub fn keep_stopped(&mut self, patch: &PlannedPatch, is_imposed: impl Fn(usize) -> bool) {
+        let taxels = patch.skin.taxels();
+        let contacts = self.workspace.contacts().iter();
+        let stopped = contacts.filter(|contact| {
+            is_imposed(contact.object) && contact.is_saturated(taxels.at(contact.taxel))
+        });
+        self.stopped.clear();
+        self.stopped.extend(stopped);
     }
 
     /// Returns the tangential springs of the patch that hold objects; each spring contains the number of its object in the scene.
@@ -113,7 +129,7 @@ impl SkinState {
             .flat_map(FrictionState::tangential_springs)
     }
 
-    /// Attaches tangential springs to the contacts of the object number `object`, which has just been placed. In `only`, all other objects are too far away
+    /// Attaches tangential springs to the contacts of the object number `object`, in place of its present ones. In `only`, all other objects are too far away
     /// to touch the patch.
     pub fn put(
         &mut self,
@@ -124,8 +140,15 @@ impl SkinState {
     ) {
         if let Some(friction) = &mut self.friction {
             let poses: Vec<Pose> = only.seen_by(patch, &self.pose).collect();
-            press_with_contacts(&patch.skin, models, &poses, workspace);
-            friction.put(&patch.skin, workspace.contacts(), (object, &poses[object]));
+            let is_reached = only.can_reach(patch, &self.pose);
+            let contacts = match is_reached {
+                true => {
+                    press_with_contacts(&patch.skin, models, &poses, workspace);
+                    workspace.contacts()
+                }
+                false => &[],
+            };
+            friction.put(&patch.skin, contacts, (object, &poses[object]));
         }
     }
 

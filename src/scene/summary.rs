@@ -2,13 +2,14 @@
 
 use super::frame::{Frame, FrameSink, PoseControl};
 use crate::error::Result;
+use crate::geometry::Pose;
 
 /// Largest values of a patch over all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PatchPeaks {
     /// Largest deflection of any taxel, metres.
     pub deflection: f64,
-    /// Largest sum of the taxel forces along their axes, newtons.
+    /// Largest force of the objects on the patch, newtons: the magnitude of the force of its wrench.
     pub force: f64,
     /// Largest number of taxels with a positive force in a frame.
     pub n_touched: usize,
@@ -29,6 +30,8 @@ pub struct PatchPeaks {
 pub struct ObjectSummary {
     /// Rule by which the pose of the object was determined in the last frame.
     pub held: PoseControl,
+    /// Pose `world_from_object` in the last frame; for an escaped object, the last pose before the escape.
+    pub pose: Pose,
     /// Number of frames in which the object was not in equilibrium.
     pub n_unsettled: usize,
     /// Largest residual of force and torque of a free object over all frames, relative to its weight; 0 for other objects.
@@ -56,7 +59,7 @@ impl FrameSink for Summary {
         for (peaks, patch) in self.patches.iter_mut().zip(&frame.patches) {
             let deepest = patch.deflection.iter().copied().fold(0.0, f64::max);
             peaks.deflection = peaks.deflection.max(deepest);
-            peaks.force = peaks.force.max(patch.force.iter().sum());
+            peaks.force = peaks.force.max(patch.wrench.force.length());
             peaks.n_touched = peaks.n_touched.max(patch.n_touched);
             peaks.n_saturated = peaks.n_saturated.max(patch.n_saturated);
             peaks.n_grazing = peaks.n_grazing.max(patch.n_grazing);
@@ -71,6 +74,7 @@ impl FrameSink for Summary {
         for (summary, object) in self.objects.iter_mut().zip(&frame.objects) {
             let imbalance = object.balance.map_or(0.0, |balance| balance.imbalance);
             summary.held = object.held;
+            summary.pose = object.pose;
             summary.n_unsettled += usize::from(object.held == PoseControl::NotConverged);
             summary.imbalance = summary.imbalance.max(imbalance);
             summary.n_off += usize::from(object.held.is_off());

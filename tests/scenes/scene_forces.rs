@@ -751,3 +751,122 @@ fn the_stop_that_carries_a_heavy_ball_is_in_the_recorded_forces() {
         assert!((along_z + 490.5).abs() < 0.01, "{along_z} N");
     }
 }
+
+/// Returns a scene with two patches side by side. Each of two balls is pushed onto its own patch and touches the other patch, too.
+fn pushed_side_by_side(is_swapped: bool) -> String {
+    let patch = |name: &str, x: f64| {
+        format!(
+            "[[patches]]\nname = \"{name}\"\nat = {{ position_mm = [{x:?}, 0.0, 0.0] }}\n\
+             layout = {{ grid = {{ nx = 10, ny = 14, pitch_mm = 3.0 }} }}\nstroke_mm = 6.0\n"
+        )
+    };
+    let ball = |name: &str, patch: &str, x: f64, forces: &str| {
+        format!(
+            "[[objects]]\nname = \"{name}\"\nobject = \"golf\"\nat = {{ position_mm = [{x:?}, 0.0, 2.0] }}\n\
+             press = {{ patch = \"{patch}\", direction = [0.0, 0.0, -1.0], time_s = [0.0, 0.4], force_n = {forces}, \
+             speed_mm_per_s = 100.0, travel_mm = 15.0 }}\n"
+        )
+    };
+    let mut balls = [
+        ball("one", "left", -6.0, "[2.0, 3.0]"),
+        ball("two", "right", 7.0, "[2.0, 1.0]"),
+    ];
+    if is_swapped {
+        balls.reverse();
+    }
+    let patches = patch("left", -15.0) + &patch("right", 15.0);
+    format!(
+        "title = \"Two balls\"\noutput_hz = 50.0\n{patches}{}{}",
+        balls[0], balls[1]
+    )
+}
+
+#[test]
+fn two_pushed_objects_reach_their_forces_together_in_any_order() {
+    let [given, swapped] =
+        [false, true].map(|is_swapped| frames(&plan(&pushed_side_by_side(is_swapped))));
+    for (one, other) in given.iter().zip(&swapped) {
+        for (object, patch) in [(0, 0), (1, 1)] {
+            let PoseControl::Pressed {
+                force,
+                wanted,
+                travel,
+            } = one.objects[object].held
+            else {
+                panic!("both balls are pressed")
+            };
+            assert!((total(&one.patches[patch]) - force).abs() < 1e-9);
+            let PoseControl::Pressed {
+                travel: travel_in_other_order,
+                ..
+            } = other.objects[1 - object].held
+            else {
+                panic!("both balls are pressed")
+            };
+            if one.time > 0.1 {
+                assert!(
+                    (force - wanted).abs() < 1e-9,
+                    "{} s: {force} of {wanted}",
+                    one.time
+                );
+                assert!((travel - travel_in_other_order).abs() < 1e-12);
+            }
+        }
+        // The balls touch the patches of each other.
+        assert!(
+            one.patches
+                .iter()
+                .all(|patch| one.time < 0.1 || patch.n_touched > 15)
+        );
+    }
+}
+
+#[test]
+fn the_largest_force_on_a_patch_is_the_force_of_its_wrench() {
+    let text = drawn("").replace(
+        "{ grid = { nx = 20, ny = 14, pitch_mm = 3.0 } }",
+        "{ cylinder = { radius_mm = 30.0, length_mm = 60.0, arc_deg = 200.0, pitch_mm = 3.0 } }",
+    );
+    let plan = plan(&text.replace("[-10.0, 3.0, 3.0]", "[20.0, 3.0, 32.0]"));
+    let (mut summary, mut largest, mut axial) = (Summary::default(), 0.0_f64, 0.0_f64);
+    for frame in frames(&plan) {
+        summary.frame(&frame).unwrap();
+        let sum: DVec3 = frame.patches[0].force3.iter().sum();
+        largest = largest.max(sum.length());
+        axial = axial.max(total(&frame.patches[0]));
+    }
+    assert!((summary.patches[0].force - largest).abs() < 1e-9 * largest);
+    assert!((largest - axial).abs() > 1e-2 * axial, "{largest} {axial}");
+}
+
+#[test]
+fn an_imposed_object_that_moves_through_the_skin_stays_sensed_behind_it() {
+    let text = |speed: f64| {
+        format!(
+            "title = \"Through\"\noutput_hz = 100.0\n[[patches]]\nname = \"palm\"\n\
+             layout = {{ grid = {{ nx = 12, ny = 12, pitch_mm = 3.0 }} }}\nstroke_mm = 4.0\n\
+             [[objects]]\nname = \"ball\"\nobject = \"golf\"\nat = {{ position_mm = [0.0, 0.0, 3.0] }}\n\
+             motion = {{ phases = [{{ duration_s = 0.5, linear_mm_per_s = [0.0, 0.0, {:?}] }}, \
+             {{ duration_s = 0.5, linear_mm_per_s = [0.0, 0.0, {speed:?}] }}] }}\n",
+            -speed
+        )
+    };
+    let readings = frames(&plan(&text(200.0)));
+    // At 0.5 s, the ball has moved by 100 mm, its diameter is 43 mm.
+    let n_saturated: Vec<usize> = readings
+        .iter()
+        .map(|frame| frame.patches[0].n_saturated)
+        .collect();
+    assert!(n_saturated[50] > 100, "{n_saturated:?}");
+    assert!(
+        n_saturated[10..50]
+            .windows(2)
+            .all(|pair| pair[0] <= pair[1]),
+        "{n_saturated:?}"
+    );
+    // Back in front of the skin, it is not sensed.
+    assert_eq!(readings.last().unwrap().patches[0].n_touched, 0);
+    // A ball that starts behind the skin was never in it.
+    let behind = text(0.0).replace("[0.0, 0.0, 3.0]", "[0.0, 0.0, -90.0]");
+    assert_eq!(frames(&plan(&behind))[0].patches[0].n_touched, 0);
+}

@@ -2,7 +2,9 @@
 
 use bubbletouch::contact::{Workspace, press_with_contacts};
 use bubbletouch::geometry::Pose;
-use bubbletouch::scene::{Frame, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping};
+use bubbletouch::scene::{
+    Frame, Movement, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping,
+};
 use glam::DVec3;
 use std::fs;
 use std::path::Path;
@@ -180,6 +182,23 @@ free = {{ mass_kg = 0.05 }}
 }
 
 #[test]
+fn a_packed_mesh_has_the_centre_of_mass_of_the_mesh() {
+    let tray = mesh("tray", "tray.obj", [1.0, 0.5, 3.0], 0.1);
+    let tray = tray.replace("\"mesh\"\n", "\"packed\"\nsurface_error_mm = 1.0\n");
+    let plan = plan(&tray).unwrap();
+    let Movement::Free { center_of_mass, .. } = plan.objects[0].movement else {
+        panic!("the tray is free")
+    };
+    let [outer, inner] = [60.0 * 60.0 * 14.0, 52.0 * 52.0 * 10.0];
+    let height = 1e-3 * (7.0 * outer - 9.0 * inner) / (outer - inner);
+    assert!(
+        center_of_mass.distance(DVec3::new(0.0, 0.0, height)) < 1e-12,
+        "{center_of_mass}"
+    );
+    assert!(plan.models[0].spheres().is_some());
+}
+
+#[test]
 fn open_and_overlapping_meshes_beside_others_are_refused() {
     let said = |objects: String| {
         let error = plan(&objects).unwrap_err();
@@ -201,4 +220,60 @@ fn open_and_overlapping_meshes_beside_others_are_refused() {
     // Alone on the skin, an open mesh has a contact without an inside.
     let alone = plan(&mesh("box", "open.obj", [0.0, 0.0, 12.0], 0.05)).unwrap();
     assert_eq!(first_frame(&alone).objects[0].held, PoseControl::AtRest);
+}
+
+/// The edges of the block lie exactly on rows of taxels, where a small shift lowers the energy.
+#[test]
+fn friction_holds_a_box_whose_edges_lie_on_rows_of_taxels_from_the_first_touch() {
+    let folder = tempfile::tempdir().unwrap();
+    let corner = |k: usize| [(k & 1, 20.0), (k >> 1 & 1, 14.0), (k >> 2, 17.0)];
+    let corners = (0..8).map(|k| {
+        let [x, y, z] = corner(k).map(|(side, size)| size * (side as f64 - 0.5));
+        format!("v {x} {y} {z}\n")
+    });
+    let faces = BOX.lines().filter(|line| line.starts_with('f'));
+    let text = corners.collect::<String>() + &faces.collect::<Vec<_>>().join("\n");
+    fs::write(folder.path().join("box.obj"), text).unwrap();
+    for (dt_ms, lag_mm, friction) in [
+        (5.0, 0.0, 0.8),
+        (5.0, 1.0, 0.8),
+        (2.0, 1.0, 2.0),
+        (5.0, 0.3, 2.0),
+    ] {
+        let fingers =
+            finger("left", -14.0, 90.0, 20.0) + &finger("right", 14.0 + lag_mm, -90.0, -20.0);
+        let fingers = fingers
+            .replace(
+                "    { duration_s = 0.1, linear_mm_per_s = [0.0, 0.0, 40.0] },\n",
+                "",
+            )
+            .replace("friction = 0.8", &format!("friction = {friction:?}"));
+        let scene = format!(
+            "title = \"Grasp\"\ndt_ms = {dt_ms:?}\noutput_hz = 20.0\n{fingers}[[planes]]\nname = \"table\"\n\
+             [[objects]]\nname = \"block\"\nmesh = \"box.obj\"\nunit = \"mm\"\nmodel = \"mesh\"\n\
+             at = {{ position_mm = [0.0, 0.0, 8.5] }}\nfree = {{ mass_kg = 0.05 }}\n"
+        );
+        let spec = SceneSpec::parse("s.toml", &scene).unwrap();
+        let plan = ScenePlan::new("s.toml", folder.path(), spec).unwrap();
+        let mut frames: Vec<Frame> = Vec::new();
+        let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+        simulation.run(&mut [&mut frames]).unwrap();
+        let case = format!("dt {dt_ms} ms, lag {lag_mm} mm, friction {friction}");
+        // Where both fingers touch at once, the box stays. One finger alone presses a box that slides on the table with no force, so nothing holds it.
+        let shift = if lag_mm == 0.0 { 1e-6 } else { 2e-4 };
+        for frame in &frames {
+            let place = frame.objects[0].pose.translation;
+            assert_eq!(frame.objects[0].held, PoseControl::AtRest, "{case}");
+            assert!(place.y.abs() < shift, "{case}: {place}");
+        }
+        // Eight columns and nine rows of taxels press the box, also those on its edges. Without friction, one of these columns would leave it.
+        let expected = 72.0 * 400.0 * (1e-3 - 0.5e-3 * lag_mm);
+        for patch in &frames.last().unwrap().patches {
+            let force = patch.wrench.force.length();
+            assert!(
+                (force - expected).abs() < 5e-3 * expected,
+                "{case}: {force} for {expected}"
+            );
+        }
+    }
 }

@@ -144,8 +144,17 @@ impl<'a, 'b> Descent<'a, 'b> {
 
     /// Repeats energy descents with updated Lagrange multipliers. If the residuals no longer decrease, the best pose within the accepted tolerances is
     /// returned.
-    pub fn run(&mut self) -> End {
+    ///
+    /// If `was_at_rest`, the poses are a solution of an earlier step. Bodies that are still at rest then do not move: smoothing would push them.
+    pub fn run(&mut self, was_at_rest: bool) -> End {
+        if was_at_rest && self.is_still_at_rest() {
+            return End::Rest;
+        }
         self.look(&[], self.farthest);
+        let now = &self.workspace.now;
+        if shear_springs::widen(&mut self.scene.springs, (&now.pairs, &now.loads)) {
+            self.look_again();
+        }
         let mut complementarity_residual = f64::INFINITY;
         let mut n_tightened = 0;
         let (mut best, mut least) = (None, f64::INFINITY);
@@ -209,6 +218,31 @@ impl<'a, 'b> Descent<'a, 'b> {
             true => End::Rest,
             false => End::Exhausted,
         }
+    }
+
+    /// Returns whether the bodies are at rest at their present poses, with the least smoothing.
+    fn is_still_at_rest(&mut self) -> bool {
+        let (smoothness, springs) = (self.scene.smoothness, self.scene.springs.clone());
+        self.scene.smoothness.tighten(0.0);
+        self.look(&[], self.farthest);
+        let now = &self.workspace.now;
+        let here = (&now.pairs, &now.loads);
+        let change = shear_springs::renew(&mut self.scene.springs, &self.scene.bodies, here);
+        // Taxels that are touched by rounding alone carry nothing, however they share it.
+        let is_untouched = self
+            .deepest()
+            .is_some_and(|deepest| deepest <= smoothness.least);
+        let residual = if is_untouched {
+            f64::INFINITY
+        } else {
+            ACCEPTED_RESIDUAL
+        };
+        let is_still =
+            change <= ACCEPTED_IMBALANCE && self.is_at_rest(ACCEPTED_IMBALANCE, residual);
+        if !is_still {
+            (self.scene.smoothness, self.scene.springs) = (smoothness, springs);
+        }
+        is_still
     }
 
     fn is_at_rest(&self, imbalance: f64, complementarity_residual: f64) -> bool {

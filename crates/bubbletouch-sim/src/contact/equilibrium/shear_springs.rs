@@ -106,8 +106,9 @@ impl Spring {
         x * self.axes[0] + y * self.axes[1]
     }
 
-    /// Returns the force with which the taxel's spring presses the body, newtons, without the force at the end of the stroke.
-    fn pressing(&self, (pairs, loads): (&Pairs, &Loads)) -> f64 {
+    /// Returns the force with which the taxel's spring presses the body, newtons, without the force at the end of the stroke. The deflection is increased by
+    /// `slack` times the width of the smoothing.
+    fn pressing(&self, (pairs, loads): (&Pairs, &Loads), slack: f64) -> f64 {
         let key = Key::Taxel(self.skin as u32, self.tip.taxel as u32);
         let Ok(at) = pairs.groups.binary_search_by_key(&key, |group| group.key) else {
             return 0.0;
@@ -116,8 +117,10 @@ impl Spring {
         let is_own = |&pair: &usize| {
             pairs.all[pair].part.0 as usize == self.body && loads.shares[pair] > 0.0
         };
+        let load = &loads.all[at];
+        let deflection = load.deepest + slack * load.smoothing;
         match group.pairs.clone().any(|pair| is_own(&pair)) {
-            true => group.stiffness * loads.all[at].deepest.clamp(0.0, group.stroke),
+            true => group.stiffness * deflection.clamp(0.0, group.stroke),
             false => 0.0,
         }
     }
@@ -156,12 +159,24 @@ pub(super) fn add_wrenches(springs: &[Spring], bodies: &[Body], to: &mut [(DVec3
     }
 }
 
+/// Raises the friction limits of the shear springs to those of the present normal forces, including the forces that the smoothing adds. At the beginning of a
+/// step, a taxel that the skin's motion presses into a body thereby holds the body, although it carried nothing before. Returns whether a limit changed.
+pub(super) fn widen(springs: &mut [Spring], here: (&Pairs, &Loads)) -> bool {
+    let mut is_wider = false;
+    for spring in springs {
+        let reach = spring.tip.shear.reach(spring.pressing(here, 1.0));
+        is_wider |= reach > spring.reach;
+        spring.reach = spring.reach.max(reach);
+    }
+    is_wider
+}
+
 /// Updates the friction limits of the shear springs from the present normal forces. Returns the largest change of a friction force, relative to the body's
 /// weight.
 pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loads)) -> f64 {
     let mut most = 0.0_f64;
     for spring in springs {
-        let reach = spring.tip.shear.reach(spring.pressing(here));
+        let reach = spring.tip.shear.reach(spring.pressing(here, 0.0));
         let before = spring.slope(spring.stretch(bodies));
         spring.reach = reach;
         let change = before - spring.slope(spring.stretch(bodies));

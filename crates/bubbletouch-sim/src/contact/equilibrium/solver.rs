@@ -158,12 +158,13 @@ impl EquilibriumSolver {
         self.touches.clear();
         self.tangential_springs.clear();
         while !bodies.is_empty() {
-            if is_again || self.numbers != numbers {
+            let was_at_rest = !is_again && self.numbers == numbers;
+            if !was_at_rest {
                 self.workspace.multipliers = Multipliers::default();
                 self.numbers.clone_from(&numbers);
             }
             let mut descent = Descent::new(&mut self.workspace, bodies, ground);
-            let end = descent.run();
+            let end = descent.run(was_at_rest);
             n_steps += descent.n_steps;
             let is_first = !std::mem::replace(&mut is_again, false);
             // The outcome of an object that leaves contains its own direction and is set below.
