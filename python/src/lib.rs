@@ -69,7 +69,7 @@ mod _core {
     #[pymodule_export]
     use sphere_union::SphereUnion;
     #[pymodule_export]
-    use study::{advise, run_study, toml_of, with_recorded};
+    use study::{advise, rename_old_results, run_study, toml_of, with_recorded};
     #[pymodule_export]
     use svm::{KernelSvm, LinearModel, choose_svm};
     #[pymodule_export]

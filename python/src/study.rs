@@ -191,6 +191,14 @@ fn run_here(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Res
     Ok(outcome.tables)
 }
 
+/// Renames a result folder to FOLDER.1, FOLDER.2, …; does nothing if it does not exist.
+#[pyfunction]
+pub fn rename_old_results(folder: PathBuf) -> PyResult<()> {
+    bubbletouch::study::journal::rename_old_results(&folder)
+        .map(drop)
+        .map_err(exception)
+}
+
 /// Runs a study (TOML text) and writes its results into a folder. Returns the file name, title, note and columns of each table. Classifiers and features are
 /// tuples of name, version and object. A shard, such as `3/8`, writes its journal alone and returns no tables.
 #[pyfunction]

@@ -144,3 +144,40 @@ def test_vectors_are_made_by_name() -> None:
     assert vector.reset(seed=0)[0].shape == (3, 258)
     with pytest.raises(ValueError, match=r"actions: shape \(2, 2\); \(3, 2\)"):
         vector.step(np.zeros((2, 2), np.float32))
+
+
+def test_a_reset_mask_resets_only_the_environments_of_the_mask(many: FindObjectVector) -> None:
+    actions = np.random.default_rng(2).uniform(-1, 1, (6, 64, 2)).astype(np.float32)
+    mask = np.arange(64) % 3 == 0
+    runs = []
+    for options in (None, {"reset_mask": mask}):
+        many.reset(seed=list(range(64)))
+        for action in actions[:3]:
+            many.step(action)
+        before = many._patch.copy(), many._n_steps.copy(), many._scores.copy()
+        if options:
+            observed, info = many.reset(seed=list(range(100, 164)), options=options)
+            assert observed.shape == (64, 258) and len(info["object"]) == 64
+            for now, then in zip((many._patch, many._n_steps, many._scores), before, strict=True):
+                assert np.array_equal(now[~mask], then[~mask])
+            assert not many._n_steps[mask].any() and not many._scores[mask].any()
+        runs.append([many.step(action)[0][~mask] for action in actions[3:]])
+    # The other environments go on as without the reset.
+    np.testing.assert_array_equal(*runs)
+    anew = FindObjectVector(64)
+    expected = anew.reset(seed=list(range(100, 164)))[0][mask]
+    np.testing.assert_array_equal(many.reset(seed=list(range(100, 164)), options={"reset_mask": mask})[0][mask], expected)
+    for wrong in (np.zeros(64, bool), mask[:3], mask.astype(int)):
+        with pytest.raises(ValueError, match="reset_mask"):
+            many.reset(options={"reset_mask": wrong})
+
+
+def test_an_action_that_is_no_number_is_refused_and_moves_nothing(many: FindObjectVector) -> None:
+    many.reset(seed=3)
+    actions = np.zeros((64, 2), np.float32)
+    actions[5, 1] = np.nan
+    before = many._patch.copy()
+    with pytest.raises(ValueError, match=r"actions\[5\]: NaN"):
+        many.step(actions)
+    assert np.array_equal(many._patch, before)
+    assert np.isfinite(many.step(np.zeros((64, 2), np.float32))[0]).all()

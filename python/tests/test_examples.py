@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import csv
 import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from conftest import Command
 
 PACKAGE = Path(__file__).resolve().parents[1]
 EXAMPLES = sorted((PACKAGE / "examples").glob("*.py"))
@@ -58,3 +61,20 @@ def test_the_guide_s_program_for_layouts(tmp_path: Path, monkeypatch: pytest.Mon
     [block] = re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S)
     exec(compile(block, str(page), "exec"), {})
     assert capsys.readouterr().out == "(3, 3) 9\n"
+
+
+def test_the_minimal_study_of_recorded_frames(
+    tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (PACKAGE.parent / "guide" / "recorded_frames.md").read_text()
+    blocks = dict(re.findall(r"^```(?:python|toml),(\S+)\n(.*?)^```", text, re.M | re.S))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "minimal.toml").write_text(blocks["minimal.toml"])
+    exec(compile(blocks["frames.py"], "frames.py", "exec"), {})
+    assert "\nbubbletouch run minimal.toml\n" in text
+    command("run", "minimal.toml")
+    lines = (tmp_path / "results" / "minimal" / "summary.csv").read_text().splitlines()
+    [row] = csv.DictReader(lines)
+    exec(compile(blocks["minimal.py"], "minimal.py", "exec"), {})
+    assert capsys.readouterr().out == f"[{float(row['accuracy']):g}]\n".replace("[1]", "[1.]")
+    assert float(row["accuracy"]) > 0.9

@@ -13,6 +13,7 @@ from typing import Any
 import bubbletouch as bt
 import numpy as np
 import pytest
+from bubbletouch import _foreign
 
 from conftest import Command
 
@@ -419,3 +420,54 @@ def test_the_python_of_the_guide_runs(tmp_path: Path, monkeypatch: pytest.Monkey
     code = re.findall(r"^```python\n(.*?)^```", GUIDE, re.M | re.S)[0]
     exec(compile(code, "own_methods.md", "exec"), {})
     assert "tuned" in (tmp_path / "results" / "mine" / "summary.csv").read_text()
+
+
+FACTOR = 2.0
+
+
+def scaled(frames: Any) -> Any:
+    return FACTOR * frames
+
+
+def scaled_again(frames: Any) -> Any:
+    return scaled(frames)
+
+
+class WithState:
+    """Method with variables of any type."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    def features(self, frames: Any) -> Any:
+        return FACTOR * frames
+
+
+def test_a_version_follows_bound_methods_variables_matrices_and_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+    def version(thing: Any) -> str:
+        [(_, found, _)] = _foreign.identified(None, {"f": thing})[1]
+        return found
+
+    tables: list[Any] = [np.array([1, "a"], object), np.array([1, "b"], object)]
+    if pandas := sys.modules.get("pandas") or pytest.importorskip("pandas"):
+        # The representation of a long table omits its middle.
+        tables += [pandas.DataFrame({"a": np.where(np.arange(1000) == row, 1.0, 0.0)}) for row in (500, 501)]
+    sparse = pytest.importorskip("scipy.sparse")
+    tables += [sparse.csr_matrix(np.eye(3) * k) for k in (1, 2)]
+    versions = [version(WithState(value).features) for value in tables]
+    assert len(set(versions)) == len(tables)
+    assert versions == [version(WithState(copy.deepcopy(value)).features) for value in tables]
+    before = [version(thing) for thing in (scaled, scaled_again, WithState(1).features)]
+    monkeypatch.setattr(sys.modules[__name__], "FACTOR", 3.0)
+    assert all(version(thing) != old for thing, old in zip((scaled, scaled_again, WithState(1).features), before, strict=True))
+
+
+def test_a_fresh_run_computes_everything_again(tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    out = tmp_path / "out"
+    for fresh in (False, False, True):
+        bt.run(STUDY, out, classifiers={"mine": (Nearest(log), "1")}, fresh=fresh)
+        log.write_text(log.read_text() + "end\n")
+    runs = [run.count("\n") for run in log.read_text().split("end\n")]
+    assert runs[0] > 0 and runs[1] == 0 and runs[2] == runs[0]
+    assert (tmp_path / "out.1").is_dir()

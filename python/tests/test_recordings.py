@@ -152,6 +152,17 @@ def test_a_lerobot_dataset_has_windows_of_fast_touch_and_point_sets(lerobot: Pat
     assert stats["timestamp"]["count"] == [29] and len(stats["timestamp"]["mean"]) == 1
 
 
+def test_our_reader_takes_the_newest_frame_of_a_window(lerobot: Path) -> None:
+    import pyarrow.parquet as pq
+
+    feature = "observation.touch.back"
+    windows = np.array(pq.read_table(lerobot / "data/chunk-000/file-000.parquet")[feature].to_pylist())
+    read = bt.read_recorded(lerobot, feature)
+    assert read.frames.shape[2:] == windows.shape[2:]
+    first = windows[: read.frames.shape[1], -1]
+    np.testing.assert_array_equal(read.frames[0], first)
+
+
 def test_huggingfaces_datasets_read_the_lerobot_dataset(lerobot: Path) -> None:
     datasets = pytest.importorskip("datasets")
     info = json.loads((lerobot / "meta/info.json").read_text())

@@ -32,6 +32,7 @@ __all__ = [
     "choose_svm",
     "column_families",
     "read_table",
+    "rename_old_results",
     "run_audit",
     "run_study",
     "toml_of",
@@ -1324,6 +1325,9 @@ def run_audit(
     """Audits files, by their names `data`, `labels`, `groups`, `sessions`, `times`, `lengths`, `frames_test`, `labels_test`, `groups_test` and `lengths_test`, as the
     command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the findings and the tables.
     """
+
+def rename_old_results(folder: _Path) -> None:
+    """Renames a result folder to FOLDER.1, FOLDER.2, …; does nothing if it does not exist."""
 
 def run_study(
     text: str,

@@ -15,7 +15,8 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from importlib import import_module
 from multiprocessing import get_context
-from types import CodeType, FunctionType
+from sysconfig import get_paths
+from types import CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -27,69 +28,129 @@ Given = tuple[str, str, Any]
 # Hexadecimal digits of the version that is derived from code and parameters. With fewer digits, two versions may be equal.
 _DIGITS = 12
 
+# Folders of the standard library and of installed packages, whose code belongs to no version.
+_INSTALLED = tuple({path for name, path in get_paths().items() if name in ("stdlib", "platstdlib", "purelib", "platlib")})
+
 # One call at a time in this process: the random generators of NumPy and PyTorch are global.
 _LOCK = threading.RLock()
 
 
-def _described(thing: Any, above: tuple[Any, ...] = ()) -> str:
-    """Returns a text that depends only on the code and the parameters of an estimator or a function; equal in all processes.
+class _Description:
+    """Text that depends only on the code and the parameters of estimators and functions; equal in all processes."""
 
-    above: things that contain this thing; a thing that contains itself is described once.
-    """
-    if any(thing is other for other in above):
-        return "itself"
-    inside = (*above, thing)
-    if isinstance(thing, np.ndarray):
-        return f"array {thing.dtype} {thing.shape} {hashlib.sha256(thing.tobytes()).hexdigest()}"
-    if isinstance(thing, dict):
-        return "{" + ", ".join(f"{key}: {_described(value, inside)}" for key, value in sorted(thing.items(), key=lambda item: str(item[0]))) + "}"
-    if isinstance(thing, list | tuple):
-        return "[" + ", ".join(_described(item, inside) for item in thing) + "]"
-    if isinstance(thing, set | frozenset):
-        # The order of a set differs between processes.
-        return "{" + ", ".join(sorted(_described(item, inside) for item in thing)) + "}"
-    if isinstance(thing, CodeType):
-        return f"{thing.co_code.hex()} {_described(thing.co_consts, inside)} {thing.co_names!r} {thing.co_freevars!r}"
-    if isinstance(thing, FunctionType):
-        return f"{_source(thing)} {_cells(thing, inside)} {_described(thing.__defaults__ or (), inside)}"
-    if isinstance(thing, type):
-        # A class depends on its bases in the same module, and on the variables around its methods.
-        own = [base for base in thing.__mro__ if base.__module__ == thing.__module__ and base is not object]
-        cells = [_cells(method, inside) for base in own for method in vars(base).values() if isinstance(method, FunctionType) and method.__closure__]
-        bases = " ".join(map(_source, own[1:]))
-        return " ".join(filter(None, [f"{thing.__module__}.{thing.__qualname__} {_source(thing)}", bases, *cells]))
-    if hasattr(thing, "func") and hasattr(thing, "args"):
-        return f"{_described(thing.func, inside)} {_described(thing.args, inside)} {_described(getattr(thing, 'keywords', {}), inside)}"
-    if hasattr(thing, "get_params") and not isinstance(thing, type):
-        return f"{_described(type(thing), inside)} {_described(thing.get_params(deep=False), inside)}"
-    if hasattr(thing, "__dict__") and getattr(type(thing), "__repr__", None) is getattr(object, "__repr__", None):
-        return f"{_described(type(thing), inside)} {_described(vars(thing), inside)}"
-    # The address of an object differs between processes.
-    text = re.sub(r" at 0x[0-9a-fA-F]+", "", repr(thing))
-    # The text of a dataclass, for example, contains its fields and not its code.
-    return text if type(thing).__module__ == "builtins" else f"{_described(type(thing), inside)} {text}"
+    def __init__(self) -> None:
+        # Things that contain the thing that is described; a thing that contains itself is described once.
+        self._above: list[Any] = []
+        # Classes and functions that have been described.
+        self._known: set[int] = set()
 
-
-def _cells(function: FunctionType, above: tuple[Any, ...]) -> str:
-    """Returns a text of the variables around a function, without the class of a method."""
-    described = []
-    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+    def of(self, thing: Any) -> str:
+        """Returns the text of a thing; the second text of a class or a function is its name."""
+        if any(thing is other for other in self._above):
+            return "itself"
+        if isinstance(thing, type | FunctionType):
+            if id(thing) in self._known:
+                return f"{thing.__module__}.{thing.__qualname__}"
+            self._known.add(id(thing))
+        self._above.append(thing)
         try:
-            described.append("class" if name == "__class__" else _described(cell.cell_contents, above))
-        except ValueError:
-            described.append("no value")
-    return "[" + ", ".join(described) + "]"
+            return self._text(thing)
+        finally:
+            self._above.pop()
+
+    def _text(self, thing: Any) -> str:
+        if isinstance(thing, np.ndarray):
+            # The bytes of an array of objects are addresses.
+            values = self.of(thing.tolist()) if thing.dtype.hasobject else hashlib.sha256(thing.tobytes()).hexdigest()
+            return f"array {thing.dtype} {thing.shape} {values}"
+        if isinstance(thing, dict):
+            return "{" + ", ".join(f"{key}: {self.of(value)}" for key, value in sorted(thing.items(), key=lambda item: str(item[0]))) + "}"
+        if isinstance(thing, list | tuple):
+            return "[" + ", ".join(map(self.of, thing)) + "]"
+        if isinstance(thing, set | frozenset):
+            # The order of a set differs between processes.
+            return "{" + ", ".join(sorted(map(self.of, thing))) + "}"
+        if isinstance(thing, CodeType):
+            return f"{thing.co_code.hex()} {self.of(thing.co_consts)} {thing.co_names!r} {thing.co_freevars!r}"
+        if isinstance(thing, MethodType):
+            return f"{self.of(thing.__self__)} {self.of(thing.__func__)}"
+        if isinstance(thing, FunctionType):
+            return f"{self._source(thing)} {self._around(thing)} {self.of([thing.__defaults__, thing.__kwdefaults__])}"
+        if isinstance(thing, type):
+            return self._class(thing)
+        if hasattr(thing, "func") and hasattr(thing, "args"):
+            return f"{self.of(thing.func)} {self.of(thing.args)} {self.of(getattr(thing, 'keywords', {}))}"
+        if hasattr(thing, "get_params"):
+            return f"{self.of(type(thing))} {self.of(thing.get_params(deep=False))}"
+        if isinstance(getattr(thing, "__wrapped__", None), FunctionType):
+            return self.of(thing.__wrapped__)
+        if isinstance(thing, ModuleType) or type(thing).__module__ == "builtins":
+            return _without_address(thing)
+        return f"{self.of(type(thing))} {self.of(_state(thing))}"
+
+    def _class(self, thing: type) -> str:
+        """Returns the text of a class: its source, the sources of its bases in the user's modules, and the variables around their methods."""
+        bases = [base for base in thing.__mro__ if base is thing or _is_own(base)]
+        methods = [getattr(method, "__func__", method) for base in bases if _is_own(base) for method in vars(base).values()]
+        around = [self._around(method) for method in methods if isinstance(method, FunctionType)]
+        return " ".join([f"{thing.__module__}.{thing.__qualname__}", *map(self._source, bases), *around])
+
+    def _around(self, function: FunctionType) -> str:
+        """Returns a text of the variables that a function names: those of the functions around it, of its module, and of other modules of the user."""
+        described = []
+        for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+            try:
+                described.append("class" if name == "__class__" else self.of(cell.cell_contents))
+            except ValueError:
+                described.append("no value")
+        codes, names = [function.__code__], set[str]()
+        for code in codes:
+            names.update(code.co_names)
+            codes += [inner for inner in code.co_consts if isinstance(inner, CodeType)]
+        for name in sorted(names & function.__globals__.keys()) if _is_own(function) else ():
+            value = function.__globals__[name]
+            if isinstance(value, ModuleType) and _is_own(value):
+                value = {member: vars(value)[member] for member in sorted(names & vars(value).keys())}
+            elif isinstance(value, type | FunctionType) and not _is_own(value):
+                value = f"{value.__module__}.{value.__qualname__}"
+            described.append(f"{name}: {self.of(value)}")
+        return "[" + ", ".join(described) + "]"
+
+    def _source(self, code: Any) -> str:
+        """Returns the source text of a function or a class, or its bytecode if there is no source."""
+        found = getattr(code, "__code__", None)
+        try:
+            source = inspect.getsource(code)
+        except (OSError, TypeError):
+            return f"{code.__qualname__}" if found is None else self.of(found)
+        # The source of a lambda is the whole line, which may contain several.
+        return f"{source} {self.of(found)}" if found is not None and found.co_name == "<lambda>" else source
 
 
-def _source(code: Any) -> str:
-    """Returns the source text of a function or a class, or its bytecode if there is no source."""
-    found = getattr(code, "__code__", None)
+def _state(thing: Any) -> Any:
+    """Returns the variables of an object, or the parts of which its copies are made. An object without either, such as a lock, has no state."""
+    is_plain = type(thing).__reduce__ is object.__reduce__ and type(thing).__reduce_ex__ is object.__reduce_ex__
+    if is_plain and hasattr(thing, "__dict__"):
+        return vars(thing)
     try:
-        source = inspect.getsource(code)
-    except (OSError, TypeError):
-        return f"{code.__qualname__}" if found is None else _described(found)
-    # The source of a lambda is the whole line, which may contain several.
-    return f"{source} {_described(found)}" if found is not None and found.co_name == "<lambda>" else source
+        parts = thing.__reduce_ex__(2)
+    except (TypeError, AttributeError, pickle.PicklingError):
+        return _without_address(thing)
+    # The last two parts are iterators of items.
+    return parts if isinstance(parts, str) else [*parts[:3], *([] if part is None else list(part) for part in parts[3:5])]
+
+
+def _without_address(thing: Any) -> str:
+    """Returns the representation of an object without its address, which differs between processes."""
+    return re.sub(r" at 0x[0-9a-fA-F]+", "", repr(thing))
+
+
+def _is_own(code: Any) -> bool:
+    """Returns whether a module, class or function is the user's, and not of the standard library, an installed package or this package."""
+    name = code.__name__ if isinstance(code, ModuleType) else code.__module__
+    file = getattr(sys.modules.get(name), "__file__", None)
+    is_built_in = file is None and name in sys.builtin_module_names
+    return not is_built_in and name.partition(".")[0] != "bubbletouch" and not (file or "").startswith(_INSTALLED)
 
 
 def _named(what: str, given: Mapping[str, Any] | None, is_right: Callable[[Any], bool], allowed: str) -> Iterator[Given]:
@@ -104,7 +165,7 @@ def _named(what: str, given: Mapping[str, Any] | None, is_right: Callable[[Any],
             thing, version = thing
         if not is_right(thing):
             raise ValueError(f"{what} {name}: {type(thing).__name__}; {allowed}")
-        yield str(name), hashlib.sha256(_described(thing).encode()).hexdigest()[:_DIGITS] if version is None else version, thing
+        yield str(name), hashlib.sha256(_Description().of(thing).encode()).hexdigest()[:_DIGITS] if version is None else version, thing
 
 
 @contextmanager

@@ -73,7 +73,11 @@ def of_lerobot(
         shape = tuple(features[feature].get("shape") or values.shape[1:])
         if values.size != len(values) * int(np.prod(shape)):
             raise ValueError(f"{folder}, feature `{feature}`: rows of shape {values.shape[1:]}; {shape}, as {info_file} says")
-        sensors[name] = values.reshape(len(values), *shape)
+        values = values.reshape(len(values), *shape)
+        # A row of `write_lerobot` has a window of touch frames, newest last, beside the points of the taxels.
+        points = features.get(feature.replace("observation.touch.", "observation.points."), {}).get("shape")
+        is_window = feature.startswith("observation.touch.") and len(shape) == 2 and list(points or ()) == [shape[1], 6]
+        sensors[name] = values[:, -1] if is_window else values
     numbers = as_keys(f"{folder}, feature `{touches or 'episode_index'}`", column(touches or "episode_index"))
     if "frame_index" in table.column_names:
         # Rows of an episode are in order of time, whatever the order of the files.

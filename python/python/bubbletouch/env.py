@@ -181,20 +181,38 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Starts new episodes in all environments; returns the observations, and a dict with the indices of the objects.
+        """Starts new episodes; returns the observations of all environments, and a dict with the indices of the objects.
 
         seed: one seed makes the current and all later episodes reproducible. A sequence contains one seed per environment: the episodes of an
-        environment equal those of a single environment with this seed. Default: random episodes. Raises TypeError and ValueError for invalid seeds.
+        environment equal those of a single environment with this seed. Default: random episodes.
+        options: {"reset_mask": mask} starts new episodes only in the environments for which the mask is true; the others and their random numbers stay
+        unchanged. Default: all environments.
+
+        Raises TypeError and ValueError for invalid seeds and masks.
         """
-        if seed is None or isinstance(seed, Integral):
-            super().reset(seed=None if seed is None else whole("seed", seed, least=0), options=options)
-            # As in Gymnasium, a reset without a seed continues with the current generators.
-            self._own_random = self._own_random if seed is None else None
-        else:
-            self._own_random = self._generators(seed)
-        self._begin(np.arange(self.num_envs))
-        self._is_over[:] = False
+        mask = self._mask((options or {}).get("reset_mask"))
+        # As in Gymnasium, a reset without a seed continues with the current generators.
+        if seed is not None:
+            before = self._own_random or [self.np_random] * self.num_envs
+            if isinstance(seed, Integral):
+                super().reset(seed=whole("seed", seed, least=0))
+                anew = [self.np_random] * self.num_envs
+            else:
+                anew = self._generators(seed)
+            chosen = [new if is_reset else old for new, old, is_reset in zip(anew, before, mask, strict=True)]
+            self._own_random = None if all(one is self.np_random for one in chosen) else chosen
+        self._begin(np.flatnonzero(mask))
+        self._is_over[mask] = False
         return self._observe()[0], {"object": self._which.copy()}
+
+    def _mask(self, mask: Any) -> NDArray[np.bool_]:
+        """Returns the environments to reset. Raises ValueError if the mask is not a bool array (num_envs,) with a true value."""
+        if mask is None:
+            return np.ones(self.num_envs, bool)
+        mask = np.asarray(mask)
+        if mask.dtype != bool or mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(f"options['reset_mask']: {mask!r}; a bool array ({self.num_envs},) with at least one true value")
+        return mask
 
     def _generators(self, seeds: int | Sequence[int | None]) -> list[np.random.Generator]:
         """Returns one random generator per environment. Raises TypeError and ValueError for invalid seeds."""
@@ -211,11 +229,14 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
     ) -> tuple[NDArray[np.float32], Floats, NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         """Moves and presses the patches of all environments. Environments whose episode has ended start a new episode instead, with reward 0.
 
-        Returns observations, rewards, terminated, truncated, and a dict with the indices of the objects and the summed scores.
+        Returns observations, rewards, terminated, truncated, and a dict with the indices of the objects and the summed scores. Raises ValueError, and
+        moves nothing, if an action is NaN or the actions have another shape.
         """
         actions = np.clip(np.asarray(actions, np.float64), -1, 1)
         if actions.shape != (self.num_envs, 2):
             raise ValueError(f"actions: shape {actions.shape}; ({self.num_envs}, 2)")
+        if np.isnan(actions).any():
+            raise ValueError(f"actions[{np.argwhere(np.isnan(actions))[0][0]}]: NaN; numbers from -1 to 1")
         anew = self._is_over
         self._begin(np.flatnonzero(anew))
         goes = np.where(anew[:, None], 0, 0.02 * actions)

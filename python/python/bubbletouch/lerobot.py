@@ -3,7 +3,7 @@
 Touch is recorded at a higher rate than video. A row of the dataset is an instant of the video clock and contains the latest touch frames up to this
 instant. The features of each patch are:
 
-- observation.touch.NAME: (window, m), the quantity measured by the taxels, newest frame last;
+- observation.touch.NAME: (window, m), the quantity measured by the taxels, newest frame last; `read_recorded` reads the newest frame;
 - observation.points.NAME: (m, 6), for each taxel its position x, y, z in metres and the force Fx, Fy, Fz on it in newtons, in the world frame;
 - observation.pose.NAME: (7,), pose of the patch in the world.
 

@@ -133,6 +133,7 @@ def run(
     classifiers: Mapping[str, Any] | None = None,
     features: Mapping[str, Any] | None = None,
     processes: int = 0,
+    fresh: bool = False,
 ) -> Study:
     """Runs a study on all cores. The tables are bitwise equal to the tables of `bubbletouch run`.
 
@@ -151,11 +152,16 @@ def run(
     compression, a frame contains the taxels in rows: frames.reshape(-1, ny, nx).
     processes: number of processes in which estimators and functions run. 0: one call at a time in this process. Results have the same bytes.
 
-    The default version of an estimator or a function is a hash of its source code and parameters. Work items of another version are computed again.
+    fresh: computes all work items again; the old result folder is renamed to OUT.1, OUT.2, …
+
+    The default version of an estimator or a function is a hash of its source code, its parameters, and the functions and variables of the user's modules
+    that it names. Work items of another version are computed again.
 
     Raises ValueError, which names the key, if the study is invalid; OSError if a file cannot be read or written; KeyboardInterrupt after Ctrl-C.
     The first work item that fails ends the run. Finished work items are kept in `out`.
     """
+    if fresh and out is not None:
+        _core.rename_old_results(Path(out))
     source, kept = StudySource.of(study, recorded, out, seed)
     host = Host(processes)
     given = hosted(host, identified(classifiers, features))
