@@ -1,6 +1,7 @@
 //! Data set that an audit examines: frames, labels, groups and sessions.
 
 use crate::error::{Error, Result};
+use crate::note::note;
 use ndarray::{Array2, Axis};
 
 /// Recorded frames with optional labels, groups and sessions. Rows are touches in the order of recording.
@@ -41,6 +42,13 @@ impl AuditData {
     /// # Panics
     /// If there are fewer times than touches.
     pub fn sort_by_time(&mut self, times: &[f64]) {
+        let continued = unwrapped(times);
+        if let Some((_, period)) = &continued {
+            note(format_args!(
+                "times: the clock wraps around at {period}; the times are read as if they continued"
+            ));
+        }
+        let times = continued.as_ref().map_or(times, |(times, _)| times);
         let mut order: Vec<usize> = (0..self.n_touches()).collect();
         order.sort_by(|&a, &b| times[a].total_cmp(&times[b]).then(a.cmp(&b)));
         let frames_of = |touch: &usize| touch * self.n_frames..(touch + 1) * self.n_frames;
@@ -105,6 +113,43 @@ impl AuditData {
             None => Ok(()),
         }
     }
+}
+
+/// Numbers of bits at which the counters of clocks wrap around, and factors by which recordings convert their counts to other units.
+const CLOCK_BITS: [i32; 4] = [16, 24, 31, 32];
+const CLOCK_FACTORS: [f64; 3] = [1.0, 1e-3, 1e-6];
+/// Longest step over the end of a clock's range, in multiples of the longest other step, and shortest range, in the same unit. With a larger step or a shorter
+/// range, times of touches that are sorted by class may count as wrapped; with a smaller step, a pause at the end of the range hides it.
+const MAX_STEP: f64 = 3.0;
+const MIN_STEPS: f64 = 20.0;
+
+/// Returns times that continue where a clock has wrapped around, and the period of the clock. Returns `None` if the times never fall back, or not always by the
+/// period of a clock.
+fn unwrapped(times: &[f64]) -> Option<(Vec<f64>, f64)> {
+    let steps = || times.windows(2).map(|pair| pair[1] - pair[0]);
+    let longest = steps().fold(0.0, f64::max);
+    let n_back = steps().filter(|&step| step < 0.0).count();
+    if n_back == 0 || longest == 0.0 {
+        return None;
+    }
+    let periods = CLOCK_FACTORS
+        .into_iter()
+        .flat_map(|factor| CLOCK_BITS.map(|bits| factor * 2.0_f64.powi(bits)));
+    let is_explained = |period: &f64| {
+        let mut back = steps().filter(|&step| step < 0.0);
+        back.all(|step| (0.0..=MAX_STEP * longest).contains(&(step + period)))
+    };
+    let period = periods
+        .into_iter()
+        .find(is_explained)
+        .filter(|period| MIN_STEPS * longest < *period)?;
+    let mut n_wraps = 0.0;
+    let mut continued = times.to_vec();
+    for touch in 1..times.len() {
+        n_wraps += f64::from(u8::from(times[touch] < times[touch - 1]));
+        continued[touch] += n_wraps * period;
+    }
+    Some((continued, period))
 }
 
 /// Minimum number of touches of an audit. With fewer touches, the tests have too little power to find a fault.

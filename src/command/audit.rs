@@ -65,7 +65,7 @@ pub struct Args {
     /// Take these frames of each touch as before contact
     ///
     /// Frames are counted from 0. The range excludes its end. By default, frames without contact are found.
-    #[arg(long, value_name = "FROM..TO", value_parser = super::calibrate::range, help_heading = "Input")]
+    #[arg(long, value_name = "FROM..TO", value_parser = super::calibrate::range::<usize>, help_heading = "Input")]
     before_contact: Option<Range<usize>>,
     /// Write page, tables and charts here [default: results/NAME_audit]
     #[arg(long, value_name = "FOLDER", help_heading = "Output")]

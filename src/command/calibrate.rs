@@ -8,6 +8,7 @@ use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames};
 use bubbletouch::{Error, Result};
 use std::ops::Range;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 /// Estimate a sensor's noise and errors from recorded frames
 ///
@@ -43,10 +44,15 @@ pub struct Args {
         help_heading = "Input"
     )]
     untouched: Option<PathBuf>,
+    /// Set the times of the frames of --untouched, such as 0..0.1,0.9..1
+    ///
+    /// The frames are at even intervals over these fractions of the session. 0..0 is before the first frame of FRAMES, 0..1 during the whole session.
+    #[arg(long, value_name = "FROM..TO,...", value_delimiter = ',', value_parser = range::<f64>, requires = "untouched", help_heading = "Input")]
+    untouched_times: Vec<Range<f64>>,
     /// Take these frames as untouched, such as 0..200,900..1000
     ///
     /// Frames are counted from 0. A range excludes its end.
-    #[arg(long, value_name = "FROM..TO,...", value_delimiter = ',', value_parser = range, help_heading = "Input")]
+    #[arg(long, value_name = "FROM..TO,...", value_delimiter = ',', value_parser = range::<usize>, help_heading = "Input")]
     untouched_frames: Vec<Range<usize>>,
     /// Read the force of each frame, newtons, to estimate stiffness
     #[arg(
@@ -57,14 +63,15 @@ pub struct Args {
     )]
     forces: Option<PathBuf>,
     /// Set the reading of an untouched taxel
+    ///
+    /// Default: the median of the untouched readings if nearly all have one sign, otherwise 0.
     #[arg(
         long,
         value_name = "READING",
-        default_value_t = 0.0,
         allow_negative_numbers = true,
         help_heading = "Sensor"
     )]
-    zero: f64,
+    zero: Option<f64>,
     /// Set the reading at full scale [default: the largest reading]
     #[arg(
         long,
@@ -106,7 +113,15 @@ pub fn calibrate(args: &Args) -> Result<()> {
         columns: args.columns.clone(),
         grid: args.grid,
         untouched: match &args.untouched {
-            Some(path) => UntouchedFrames::File(path.clone()),
+            Some(path) if args.untouched_times.is_empty() => {
+                let given = format!("{} without --untouched-times", path.display());
+                let allowed = "--untouched-times FROM..TO, fractions of the session: 0..0 before the first frame, 0..1 at even intervals during all frames";
+                return Err(Error::input("--untouched", given, allowed));
+            }
+            Some(path) => UntouchedFrames::File {
+                path: path.clone(),
+                times: args.untouched_times.clone(),
+            },
             None if args.untouched_frames.is_empty() => UntouchedFrames::None,
             None => UntouchedFrames::Among(args.untouched_frames.clone()),
         },
@@ -115,7 +130,7 @@ pub fn calibrate(args: &Args) -> Result<()> {
         full_scale: args.full_scale,
         stroke_mm: args.stroke_mm,
     };
-    let skin = files.read()?;
+    let (skin, zero) = files.read()?;
     let mut found =
         estimated(&skin).map_err(|error| error.under(format!("{}: ", args.frames.display())))?;
     if args.full_scale.is_none() && found.converter.value().is_some_and(|bits| bits > 0.0) {
@@ -124,7 +139,7 @@ pub fn calibrate(args: &Args) -> Result<()> {
     }
     let (rows, columns) = skin.shape;
     let mut text = format!(
-        "# {}: {} frames of {rows} × {columns} taxels, {} of the untouched skin. Taxels are taken to be {} mm apart.\n",
+        "# {}: {} frames of {rows} × {columns} taxels, {} of the untouched skin. The zero is {zero}. Taxels are taken to be {} mm apart.\n",
         args.frames.display(),
         skin.touched.nrows() + skin.untouched.nrows(),
         skin.untouched.nrows(),
@@ -158,12 +173,12 @@ pub fn grid(text: &str) -> std::result::Result<[usize; 2], String> {
 }
 
 /// `FROM..TO`.
-pub fn range(text: &str) -> std::result::Result<Range<usize>, String> {
+pub fn range<T: FromStr>(text: &str) -> std::result::Result<Range<T>, String> {
     let ends = text
         .split_once("..")
         .map(|(from, to)| (from.trim().parse(), to.trim().parse()));
     match ends {
         Some((Ok(from), Ok(to))) => Ok(from..to),
-        _ => Err("FROM..TO in whole numbers".to_owned()),
+        _ => Err("FROM..TO in numbers".to_owned()),
     }
 }

@@ -37,7 +37,11 @@ pub struct Args {
 
 pub fn layout(args: &Args) -> Result<()> {
     let mesh = args.mesh.as_ref().map(|path| -> Result<_> {
-        let (mesh, orientation) = read_mesh(path, args.mesh_unit, &SizeLimits::ANY, None)?;
+        let sizes = SizeLimits {
+            option: "--mesh-unit",
+            ..SizeLimits::ANY
+        };
+        let (mesh, orientation) = read_mesh(path, args.mesh_unit, &sizes, None)?;
         orientation.require(&path.display().to_string())?;
         Ok(mesh)
     });

@@ -122,6 +122,34 @@ fn frames_that_tell_nothing_are_refused_or_say_so() {
         (&["broken.npy"], "NaN; finite numbers"),
         (
             &["frames.npy", "--untouched", "other.npy"],
+            "--untouched: other.npy without --untouched-times",
+        ),
+        (
+            &[
+                "frames.npy",
+                "--untouched",
+                "frames.npy",
+                "--untouched-times",
+                "0.5..0.2",
+            ],
+            "times of untouched frames: 0.5..0.2",
+        ),
+        (
+            &["frames.npy", "--untouched-frames", "30..130"],
+            "untouched frames: 16 taxels change by more than",
+        ),
+        (
+            &["frames.npy", "--untouched-frames", "50..100,150..200"],
+            "untouched frames: 16 taxels read more than in the other frames",
+        ),
+        (
+            &[
+                "frames.npy",
+                "--untouched",
+                "other.npy",
+                "--untouched-times",
+                "0..1",
+            ],
             "other.npy: frames of 3 × 4 taxels; 12 × 12",
         ),
         (
@@ -131,8 +159,8 @@ fn frames_that_tell_nothing_are_refused_or_say_so() {
         (&["frames.npy", "--untouched-frames", "9..9"], "9..9"),
         (&["frames.npy", "--untouched-frames", "x"], "FROM..TO"),
         (
-            &["frames.npy", "--full-scale", "-1"],
-            "full scale: -1; a number above the zero, 0",
+            &["frames.npy", "--full-scale", "0"],
+            "full scale: 0; a number other than the zero, 0",
         ),
         (
             &["frames.npy", "--pitch-mm", "0"],
@@ -155,4 +183,54 @@ fn frames_that_tell_nothing_are_refused_or_say_so() {
             "# noise_std_full_scale: not identifiable: there are too few untouched frames"
         )
     );
+}
+
+/// Law: the zero of readings that are all positive is the median of the untouched ones, and such readings are not clipped.
+#[test]
+fn counts_with_an_offset_have_a_zero_and_no_drift() {
+    let case = Case::new();
+    write_npy(&case.path("frames.npy"), &frames().mapv(f32::round)).unwrap();
+    let given = [
+        "calibrate",
+        "frames.npy",
+        "--untouched-frames",
+        UNTOUCHED,
+        "--full-scale",
+        "500",
+    ];
+    let (table, _) = case.succeeds(&given);
+    assert!(table.contains("The zero is 100."), "{table}");
+    let read: toml::Table = table.parse().unwrap();
+    let value = |key: &str| match &read["signal"][key] {
+        toml::Value::Integer(number) => *number as f64,
+        other => other.as_float().unwrap(),
+    };
+    assert!(value("drift_std_full_scale") < 0.002, "{table}");
+    assert!(
+        (value("noise_std_full_scale") - 0.01).abs() < 0.0005,
+        "{table}"
+    );
+}
+
+/// Law: untouched frames of a file have the times that are given, so those before the first frame determine no drift.
+#[test]
+fn a_file_of_untouched_frames_has_times() {
+    let case = Case::new();
+    write_npy(&case.path("frames.npy"), &frames()).unwrap();
+    let untouched = frames().slice(ndarray::s![..50, .., ..]).to_owned();
+    write_npy(&case.path("untouched.npy"), &untouched).unwrap();
+    let given = |times: &str| {
+        let words = [
+            "calibrate",
+            "frames.npy",
+            "--untouched",
+            "untouched.npy",
+            "--untouched-times",
+            times,
+        ];
+        case.succeeds(&words).0
+    };
+    let reason = "# drift_std_full_scale: not identifiable: untouched frames are from one time";
+    assert!(given("0..0").contains(reason));
+    assert!(given("0..0.1,0.9..1").contains("\ndrift_std_full_scale = 0"));
 }

@@ -383,7 +383,7 @@ fn a_wrong_file_is_refused_with_its_row() {
         (
             "few.csv",
             "x_mm,y_mm,z_mm\n1,2,3\n".to_owned(),
-            "no column nx",
+            "few.csv: no column nx; the columns nx, ny and nz, or a mesh beside it",
         ),
         (
             "radius.csv",

@@ -720,3 +720,48 @@ fn rows_of_icub_without_a_section_and_points_with_named_coordinates_are_read() {
     let read = file("s.json", &text).unwrap();
     assert_eq!(read.layout.centers()[1], DVec3::new(4e-3, 5e-3, 6e-3));
 }
+
+/// Law: positions without normals take them from a mesh in every format, and positions of x and y alone are a flat skin.
+#[test]
+fn positions_alone_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let cube = TriangleMesh::cuboid("cube", DVec3::splat(0.01)).unwrap();
+    let on_cube = LayoutOptions {
+        mesh: Some(&cube),
+        sensor: None,
+    };
+    let published = r#"{"units": "millimeters", "points": [{"id": 1, "x_mm": 1, "y_mm": 0, "z_mm": 5.0}, {"id": 2, "x_mm": 5.1, "y_mm": 0, "z_mm": 0}]}"#;
+    for (name, text) in [
+        ("p.csv", "x_mm,y_mm,z_mm\n1,0,5\n5.1,0,0\n"),
+        ("p.json", published),
+    ] {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains("a mesh beside it"), "{error}");
+        let file = LayoutFile::read(&path, on_cube).unwrap();
+        assert_eq!(file.layout.axes(), [DVec3::Z, DVec3::X], "{name}");
+        assert_eq!(
+            file.layout.centers(),
+            [DVec3::new(1e-3, 0.0, 5e-3), DVec3::new(5.1e-3, 0.0, 0.0)]
+        );
+        let has_note = file.notes.iter().any(|note| note.contains("not used: id"));
+        assert_eq!(has_note, name == "p.json", "{:?}", file.notes);
+    }
+    let path = folder.path().join("flat.npz");
+    let mut npz = NpzWriter::new(File::create(&path).unwrap());
+    let places = ndarray::array![[0.0, 1e-3], [2e-3, 3e-3]];
+    npz.add_array("positions", &places).unwrap();
+    npz.finish().unwrap();
+    let table = folder.path().join("flat.csv");
+    fs::write(&table, "x_mm,y_mm\n0,1\n2,3\n").unwrap();
+    for path in [path, table] {
+        let file = read(&path).unwrap();
+        assert_eq!(
+            file.layout.centers(),
+            [DVec3::new(0.0, 1e-3, 0.0), DVec3::new(2e-3, 3e-3, 0.0)]
+        );
+        assert_eq!(file.layout.axes(), [DVec3::Z; 2]);
+        assert!(file.notes[0].contains("flat skin"), "{:?}", file.notes);
+    }
+}

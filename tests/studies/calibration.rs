@@ -83,8 +83,8 @@ impl Settings {
         ]
     }
 
-    /// Returns the readings of such a skin over a session, as fractions of the full scale.
-    fn read(&self, deflections: &Array2<f64>, name: &str) -> Array2<f64> {
+    /// Returns the readings of such a skin at times of a session, as fractions of the full scale.
+    fn read(&self, deflections: &Array2<f64>, times: &Array1<f64>, name: &str) -> Array2<f64> {
         let seed = Seed::new(7);
         let grid = Grid {
             nx: SIDE,
@@ -101,14 +101,13 @@ impl Settings {
         let chain = Chain::new(&self.steps(seed.named("skin")), &patch).unwrap();
         let mut scratch = SignalWorkspace::default();
         let mut read = deflections.clone();
-        let last = (read.nrows() - 1) as f64;
         for (k, mut frame) in read.outer_iter_mut().enumerate() {
             let recording = Recording {
                 frames: frame.as_slice_mut().unwrap(),
                 rates: None,
                 n_before: 0,
                 interval: None,
-                time: Some(k as f64 / last),
+                time: Some(times[k]),
             };
             let touch = seed.named(name).numbered(k as u64);
             chain.apply_recording(recording, &touch, &mut scratch);
@@ -117,17 +116,15 @@ impl Settings {
         read.mapv(|metres| f64::from((metres / STROKE) as f32))
     }
 
-    fn calibrated(&self, n_untouched: usize) -> Calibration {
-        let untouched = Array2::zeros((n_untouched, SIDE * SIDE));
+    fn calibrated(&self, untouched_times: Array1<f64>) -> Calibration {
+        let untouched = Array2::zeros((untouched_times.len(), SIDE * SIDE));
+        let touched_times = Array1::linspace(0.0, 1.0, TOUCHED.nrows());
         calibrate(&RecordedSkin {
             shape: (SIDE, SIDE),
-            touched: self.read(&TOUCHED, "touched"),
-            untouched: match n_untouched {
-                0 => untouched,
-                _ => self.read(&untouched, "untouched"),
-            },
-            touched_times: Array1::linspace(0.0, 1.0, TOUCHED.nrows()),
-            untouched_times: Array1::linspace(0.0, 1.0, n_untouched),
+            touched: self.read(&TOUCHED, &touched_times, "touched"),
+            untouched: self.read(&untouched, &untouched_times, "untouched"),
+            touched_times,
+            untouched_times,
             forces: Some(TOUCHED.sum_axis(Axis(1)) * STIFFNESS),
             stroke: Some(STROKE),
         })
@@ -137,7 +134,22 @@ impl Settings {
 
 /// Asserts that the estimates are within 10 % of the settings (near zero for absent ones), and that exactly the expected settings are not identifiable.
 fn is_recovered(settings: Settings, n_untouched: usize, unknown: &[&str]) {
-    let found = settings.calibrated(n_untouched);
+    let times = Array1::linspace(0.0, 1.0, n_untouched);
+    let found = are_right(settings, times);
+    for name in unknown {
+        assert!(found.contains(name), "{settings:?}: {name} is estimated");
+    }
+    assert_eq!(
+        found.len(),
+        unknown.len(),
+        "{settings:?}: not identifiable are {found:?}"
+    );
+}
+
+/// Asserts that the estimates are within 10 % of the settings (near zero for absent ones). Returns the names of the settings that are not identifiable.
+fn are_right(settings: Settings, untouched_times: Array1<f64>) -> Vec<&'static str> {
+    let found = settings.calibrated(untouched_times);
+    let mut unknown = Vec::new();
     let all = [
         ("crosstalk", &found.crosstalk, settings.crosstalk, 0.01),
         ("gain", &found.gain, settings.gain, 0.01),
@@ -151,16 +163,72 @@ fn is_recovered(settings: Settings, n_untouched: usize, unknown: &[&str]) {
     ];
     for (name, estimate, expected, none) in all {
         match estimate {
-            Estimate::NotIdentifiable(why) => {
-                assert!(unknown.contains(&name), "{settings:?}: {name}: {why}");
-            }
+            Estimate::NotIdentifiable(_) => unknown.push(name),
             Estimate::Found { value, interval } => {
                 let allowed = (0.1 * expected).max(none);
                 let given = format!("{settings:?}: {name}: {estimate:?}");
-                assert!(!unknown.contains(&name), "{given}");
                 assert!((value - expected).abs() <= allowed, "{given}");
                 assert!(interval[0] <= *value && *value <= interval[1], "{given}");
             }
+        }
+    }
+    unknown
+}
+
+/// Law: zeros that drift between untouched frames are neither gains nor crosstalk.
+#[test]
+fn drift_is_no_gain_wherever_the_skin_is_untouched() {
+    let none = Settings::default();
+    let evenly = || Array1::linspace(0.0, 1.0, 400);
+    let at_ends = || {
+        Array1::from_iter((0..200).map(|k| {
+            if k < 100 {
+                5e-4 * f64::from(k)
+            } else {
+                0.9 + 5e-4 * f64::from(k)
+            }
+        }))
+    };
+    let at_start = || Array1::linspace(0.0, 0.05, 200);
+    let never = || Array1::zeros(0);
+    let cases: [(&dyn Fn() -> Array1<f64>, &[&str]); 4] = [
+        (&evenly, &["drift"]),
+        (&at_ends, &["drift"]),
+        (&at_start, &[]),
+        (&never, &[]),
+    ];
+    for (times, found) in cases {
+        for settings in [
+            Settings {
+                drift: 0.05,
+                noise: 0.003,
+                ..none
+            },
+            Settings {
+                drift: 0.05,
+                noise: 0.003,
+                crosstalk: 0.2,
+                ..none
+            },
+            Settings {
+                drift: 0.1,
+                noise: 0.003,
+                gain: 0.1,
+                ..none
+            },
+            Settings {
+                drift: 0.02,
+                noise: 0.02,
+                gain: 0.05,
+                crosstalk: 0.1,
+                ..none
+            },
+        ] {
+            let unknown = are_right(settings, times());
+            assert!(
+                found.iter().all(|name| !unknown.contains(name)),
+                "{settings:?}: {unknown:?}"
+            );
         }
     }
 }

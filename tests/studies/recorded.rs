@@ -191,6 +191,22 @@ fn an_array_of_any_sides_is_measured_by_every_ensemble() {
 }
 
 #[test]
+fn folds_without_trials_have_a_trial_each() {
+    let with = |trials: &str| {
+        let text = format!(
+            "question = \"?\"\n{trials}[recorded]\nframes = \"f.npy\"\n[recognition]\nclassifier = \"linear_svm\"\nfolds = 4\n[skin]\npitch_mm = 1.0\nstroke_mm = 1.0\n"
+        );
+        bubbletouch::study::StudySpec::parse("study.toml", &text)
+            .unwrap()
+            .trials
+    };
+    assert_eq!(
+        (with(""), with("trials = 8\n"), with("trials = 1\n")),
+        (4, 8, 1)
+    );
+}
+
+#[test]
 fn what_does_not_fit_is_refused_by_its_name() {
     let case = Case::new();
     let folder = case.folder();
@@ -209,7 +225,7 @@ fn what_does_not_fit_is_refused_by_its_name() {
     refused("zero = nan", "key recorded.zero: NaN");
     refused(
         "full_scale = 0.0",
-        "key recorded.full_scale: 0; a number above recorded.zero",
+        "key recorded.full_scale: 0; a number other than recorded.zero",
     );
     refused(
         "names = [\"a\"]",

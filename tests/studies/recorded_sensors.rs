@@ -529,7 +529,7 @@ fn recordings_that_contradict_themselves_are_refused() {
         ),
         (
             two("", "zero = 2.0\nfull_scale = 2.0"),
-            "key recorded.sensors[1].full_scale: 2; a number above the zero, 2",
+            "key recorded.sensors[1].full_scale: 2; a number other than the zero, 2",
         ),
         (
             two("", "order = \"n q\""),

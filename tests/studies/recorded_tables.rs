@@ -59,11 +59,11 @@ fn calibrated(case: &Case, name: &str, columns: Option<&str>) -> bubbletouch::Re
         grid: Some([1, TAXELS]),
         untouched: UntouchedFrames::None,
         forces: None,
-        zero: 0.0,
+        zero: Some(0.0),
         full_scale: Some(1.0),
         stroke_mm: None,
     };
-    files.read().map(|skin| skin.touched)
+    files.read().map(|skin| skin.0.touched)
 }
 
 fn studied(keys: &str) -> bubbletouch::Result<Vec<TrialScore>> {

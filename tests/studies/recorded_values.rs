@@ -241,3 +241,71 @@ fn recordings_with_several_values_that_do_not_fit_are_refused() {
         "{said}"
     );
 }
+
+/// Returns the study of frames of 12 × 12 places, of which an ellipse has taxels, all pressed alike; the other places read `absent`.
+fn foot(absent: f64, rest: &str) -> Array2<f64> {
+    let case = written();
+    let is_inside = |y: usize, x: usize| {
+        ((x as f64 - 5.5) / 4.0).powi(2) + ((y as f64 - 5.5) / 6.0).powi(2) < 1.0
+    };
+    let frames = Array3::from_shape_fn((N, 12, 12), |(touch, y, x)| match is_inside(y, x) {
+        true => 0.25 + 0.25 * (touch % 3) as f64,
+        false => absent,
+    });
+    write_npy(&case.path("foot.npy"), &frames).unwrap();
+    let recorded = format!("{LABELS}frames = \"FOLDER/foot.npy\"\nfull_scale = 1.0\n");
+    let study = planned(&case, &recorded, rest).unwrap();
+    let features = study.first().features((0, 0), &Silent).unwrap();
+    features.data.records
+}
+
+/// Law: a place without a taxel is the neighbour of no taxel, so a uniform press stays uniform.
+#[test]
+fn absent_places_are_no_neighbours() {
+    for signal in [
+        "steps = [\"crosstalk\"]\ncrosstalk = 0.3",
+        "steps = [\"smoothing\"]\nsmoothing_mm = 6.0",
+        "steps = [\"crosstalk\", \"smoothing\"]\ncrosstalk = 0.3\nsmoothing_mm = 6.0",
+    ] {
+        for sensing in [
+            "ensemble = \"identity\"",
+            "ensemble = \"block_average\"\nmeasurements = 9",
+        ] {
+            let rest = format!(
+                "{SKIN}[signal]\n{signal}\n[sensing]\n{sensing}\n[recognition]\nclassifier = \"linear_svm\"\n"
+            );
+            for absent in [f64::NAN, -1.0] {
+                let records = foot(absent, &rest);
+                for (touch, row) in records.outer_iter().enumerate() {
+                    let pressed = 5e-3 * (0.25 + 0.25 * (touch % 3) as f64);
+                    let is_right =
+                        |value: &f64| *value == 0.0 || (value / pressed - 1.0).abs() < 1e-6;
+                    assert!(row.iter().all(is_right), "{signal} {sensing}: {row}");
+                    assert!(row.iter().any(|value| *value > 0.0));
+                }
+            }
+        }
+    }
+}
+
+/// Law: readings that fall under pressure are recognised as those that rise.
+#[test]
+fn falling_readings_are_scaled_as_they_stand() {
+    let case = with_values();
+    let list: Array4<f64> = read_npy(case.path("first.npy")).unwrap();
+    write_npy(
+        &case.path("falling.npy"),
+        &list.mapv(|reading| 4000.0 - 1024.0 * reading),
+    )
+    .unwrap();
+    let order = "order = \"n c y x\"";
+    for rest in [
+        format!("{SKIN}{NOISE}{RAW}"),
+        format!("{SKIN}{COUPLED}{IMAGES}"),
+    ] {
+        let rising = rows(&case, &keys("first", order), &rest);
+        let falling =
+            keys("falling", &format!("{order}\nzero = 4000.0")).replace("= 2.0", "= 1952.0");
+        assert_eq!(rows(&case, &falling, &rest), rising);
+    }
+}

@@ -129,7 +129,7 @@ class _Description:
 
 def _state(thing: Any) -> Any:
     """Returns the variables of an object, or the parts of which its copies are made. An object without either, such as a lock, has no state."""
-    is_plain = type(thing).__reduce__ is object.__reduce__ and type(thing).__reduce_ex__ is object.__reduce_ex__
+    is_plain = all(getattr(type(thing), name) is getattr(object, name) for name in ("__reduce__", "__reduce_ex__"))
     if is_plain and hasattr(thing, "__dict__"):
         return vars(thing)
     try:

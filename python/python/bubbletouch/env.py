@@ -209,10 +209,10 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         """Returns the environments to reset. Raises ValueError if the mask is not a bool array (num_envs,) with a true value."""
         if mask is None:
             return np.ones(self.num_envs, bool)
-        mask = np.asarray(mask)
-        if mask.dtype != bool or mask.shape != (self.num_envs,) or not mask.any():
+        chosen: NDArray[np.bool_] = np.asarray(mask)
+        if chosen.dtype != bool or chosen.shape != (self.num_envs,) or not chosen.any():
             raise ValueError(f"options['reset_mask']: {mask!r}; a bool array ({self.num_envs},) with at least one true value")
-        return mask
+        return chosen
 
     def _generators(self, seeds: int | Sequence[int | None]) -> list[np.random.Generator]:
         """Returns one random generator per environment. Raises TypeError and ValueError for invalid seeds."""

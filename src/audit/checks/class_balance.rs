@@ -1,7 +1,8 @@
-//! Numbers of touches of the classes.
+//! Numbers of touches of the classes, and classes that differ in their spelling alone.
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result};
 use crate::audit::finding::percent;
+use crate::inputs::arrays::whole_numbers::spellings;
 use crate::audit::splits::touches_of_classes;
 use crate::table::short_number;
 use statrs::distribution::{Binomial, ChiSquared, ContinuousCDF, DiscreteCDF};
@@ -57,7 +58,9 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         percent(context.chance())
     );
     // The imbalance of these data is a fact. The test only excludes differences that random labels of equal frequency would have.
-    let is_fault = ratio >= RELEVANT && p_value <= SIGNIFICANT;
+    let spelled = spellings(context.data.classes.iter().map(String::as_str));
+    // Classes of several spellings are not classes that were recorded.
+    let is_fault = ratio >= RELEVANT && p_value <= SIGNIFICANT && spelled.is_none();
     let balance = Finding::counted("", ratio, sentence, is_fault)
         .about("ratio")
         .against(1.0)
@@ -82,5 +85,18 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         .against(0.0)
         .advice("Record more touches of these classes, or leave the classes out.")
         .shown_in("classes");
-    Ok(vec![balance, few])
+    let spelled = spelled.map(|names| {
+        let quoted: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
+        let sentence = format!(
+            "The labels {} differ only by case or spaces, and count as {} classes.",
+            quoted.join(", "),
+            names.len()
+        );
+        Finding::counted("", names.len() as f64, sentence, true)
+            .about("spellings")
+            .against(1.0)
+            .advice("Give all touches of a class one label.")
+            .shown_in("classes")
+    });
+    Ok([balance, few].into_iter().chain(spelled).collect())
 }

@@ -12,11 +12,14 @@ pub const ABOUT: CheckAbout = CheckAbout {
 };
 
 fn run(context: &Context) -> Result<Vec<Finding>> {
-    let n: usize = context.n_missing.iter().sum();
     let n_padded: usize = context.n_padded.iter().sum();
     let n_recorded = context.data.frames.nrows() - n_padded;
-    let share = n as f64 / (n_recorded * context.data.frames.ncols()) as f64;
-    let n_taxels = context.n_missing.iter().filter(|&&count| count > 0).count();
+    // A taxel that never reads is a place without a sensor.
+    let present = || context.n_missing.iter().filter(|&&count| count < n_recorded);
+    let n: usize = present().sum();
+    let n_present = present().count();
+    let share = n as f64 / (n_recorded * n_present) as f64;
+    let n_taxels = present().filter(|&&count| count > 0).count();
     let mut sentence = match n {
         0 => "No reading is missing.".to_owned(),
         _ => format!(
@@ -24,6 +27,13 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
             percent(share)
         ),
     };
+    let n_absent = context.n_missing.len() - n_present;
+    if n_absent > 0 {
+        sentence += &format!(
+            " {n_absent} of {} taxels have no reading in any frame: they count as absent.",
+            context.n_missing.len()
+        );
+    }
     if n_padded > 0 {
         let lengths = context.n_padded.iter();
         let lengths = lengths.map(|n_padded| context.data.n_frames - n_padded);

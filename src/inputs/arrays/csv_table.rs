@@ -13,6 +13,8 @@
 use crate::error::{Error, Result};
 use crate::inputs::arrays::column_names::{column_families, listed, matches};
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
+use crate::inputs::arrays::utf8_or_latin1;
+use std::collections::HashSet;
 use std::path::Path;
 
 /// Minimum number of consecutive integers that are a count of rows. With a smaller value, entries 0 and 1 of class columns are taken as an index.
@@ -59,9 +61,7 @@ impl Table {
     pub fn read(path: &Path, n_rows: Option<usize>) -> Result<Self> {
         let place = path.display().to_string();
         let text = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
-        let text = String::from_utf8(text).map_err(|_| {
-            Error::input(&place, "a text that is not UTF-8", "a .csv file in UTF-8")
-        })?;
+        let text = utf8_or_latin1(text);
         let is_data = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.starts_with('#');
         let lines = text.trim_start_matches('\u{feff}').lines();
         let lines = (1..).zip(lines).filter(is_data);
@@ -203,7 +203,8 @@ impl Table {
         Ok(self)
     }
 
-    /// Converts the cells to an array of numbers or, if a cell is no number, of texts. An empty cell among numbers is NaN.
+    /// Converts the cells to an array of numbers or, if a cell is no number, of texts. An empty cell among numbers is NaN. A single column with a whole number
+    /// both with and without leading zeros, such as 007 and 7, contains texts.
     pub fn into_array(self) -> FileArray {
         let shape = vec![self.rows.len(), self.n_columns()];
         let is_text = |cell: &&String| number(cell).is_none();
@@ -216,8 +217,9 @@ impl Table {
             let at = format!("{}, line {line}", self.place);
             [at, format!("`{cell}`"), "numbers".to_owned()]
         });
+        let are_texts = text.is_some() || self.has_padded_twin();
         let cells = self.rows.into_iter().flat_map(|(_, cells)| cells);
-        if text.is_some() {
+        if are_texts {
             return FileArray {
                 place: self.place,
                 shape,
@@ -242,6 +244,21 @@ impl Table {
             elements: Elements::Numbers(numbers),
             refusal: None,
         }
+    }
+
+    /// Returns whether the table is a single column with a whole number both with and without leading zeros.
+    fn has_padded_twin(&self) -> bool {
+        if self.n_columns() != 1 {
+            return false;
+        }
+        let texts: HashSet<&str> = self.column(0).collect();
+        let is_padded = |text: &&&str| {
+            text.len() > 1
+                && text.starts_with('0')
+                && text.bytes().all(|byte| byte.is_ascii_digit())
+        };
+        let mut padded = texts.iter().filter(is_padded);
+        padded.any(|text| texts.contains(text.trim_start_matches('0')))
     }
 
     /// Returns an error if the numbers of a column have decimal commas, which are texts of other programs.

@@ -4,10 +4,10 @@ use crate::error::{Error, Result};
 use crate::inputs::arrays::csv_table::TableContent;
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
-/// Largest number below which f64 represents every integer exactly: 2⁵³.
+/// Number below which f64 represents every integer exactly: 2⁵³. The number itself may be a rounded 2⁵³ + 1.
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// Value in a file that identifies the class or the group of a touch.
@@ -41,6 +41,19 @@ impl ClassLabels {
     }
 }
 
+/// Returns class names that differ only by case or spaces, such as `mug`, `Mug` and `mug `; `None` if there are none.
+pub fn spellings<'a>(classes: impl IntoIterator<Item = &'a str>) -> Option<Vec<&'a str>> {
+    let mut known: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for class in classes {
+        let words: Vec<&str> = class.split_whitespace().collect();
+        known
+            .entry(words.concat().to_lowercase())
+            .or_default()
+            .push(class);
+    }
+    known.into_values().find(|classes| classes.len() > 1)
+}
+
 /// Returns the distinct values: integers in ascending order, texts in the order of first occurrence.
 fn distinct(values: &[KeyValue]) -> Vec<KeyValue> {
     let all = values.iter().cloned();
@@ -62,7 +75,7 @@ pub fn read_class_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyVal
     let array = one_hot(FileArray::read_content(path, name, TableContent::Rows(n))?)?;
     values(
         array,
-        "one class for each touch: int8 to int64, uint8 to uint64, whole floats, bool or texts, or a column of 0 and 1 for each class",
+        "one class for each touch: int8 to int64, uint8 to uint64, whole floats (each below 2^53), bool or texts, or a column of 0 and 1 for each class",
     )
 }
 
@@ -82,11 +95,10 @@ pub fn read_class_labels(path: &Path, name: &str, n_rows: usize) -> Result<Class
 /// Reads one group for each of `n` touches: non-negative whole numbers of any type, or texts.
 ///
 /// # Errors
-/// If the file does not exist or contains other data, or an integer is below 0 or beyond 2⁵³; the error names its position.
+/// If the file does not exist or contains other data, or an integer is not from 0 to 2⁵³ − 1; the error names its position.
 pub fn read_group_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
     let array = FileArray::read_content(path, name, TableContent::Rows(n))?;
-    let allowed =
-        "one group for each touch: int8 to int64, uint8 to uint64, whole floats, bool or texts";
+    let allowed = "one group for each touch: int8 to int64, uint8 to uint64, whole floats (each below 2^53), bool or texts";
     let values = values(array, allowed)?;
     not_below_zero(path, &values)?;
     Ok(values)
@@ -164,7 +176,7 @@ fn not_below_zero(path: &Path, values: &[KeyValue]) -> Result<()> {
                 return Ok(());
             };
             let place = format!("{}, position {position}", path.display());
-            Err(Error::input(place, number, "zero or more, up to 2^53"))
+            Err(Error::input(place, number, "zero or more, below 2^53"))
         }
     }
 }
@@ -206,7 +218,7 @@ fn values(array: FileArray, allowed: &str) -> Result<Vec<KeyValue>> {
         Elements::Texts(texts) => return Ok(texts.into_iter().map(KeyValue::Text).collect()),
         Elements::Numbers(numbers) => numbers,
     };
-    let is_wrong = |number: &f64| number.fract() != 0.0 || number.abs() > MAX_INTEGER;
+    let is_wrong = |number: &f64| number.fract() != 0.0 || number.abs() >= MAX_INTEGER;
     match numbers.iter().position(is_wrong) {
         None => Ok(numbers
             .into_iter()

@@ -1,9 +1,10 @@
 //! Layouts as CSV files with the columns `x_mm, y_mm, z_mm, nx, ny, nz` in any order. The columns `radius_mm`, and `row` and `column` (of the sensor's image)
-//! are optional. Lengths may be in `_m`, `_cm` or `_mm`. Separators are commas, semicolons or tabs; lines that begin with `#` are comments.
+//! are optional. Without normals, they are taken from a mesh; without `z_mm` too, the skin is flat. Lengths may be in `_m`, `_cm` or `_mm`. Separators are commas, semicolons or tabs; lines that begin with `#` are comments.
 
 use super::LayoutFile;
 use super::millimetres::{millimetres, scaled};
 use crate::error::{Error, Result};
+use crate::mesh::TriangleMesh;
 use crate::numbers_csv::{check_width, finite, line_of, unreadable};
 use csv::StringRecord;
 use glam::DVec3;
@@ -26,7 +27,7 @@ struct Column {
 type Columns = [Option<Column>; 9];
 
 /// Reads a layout of taxels from the text of a CSV file.
-pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
+pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
     let allowed = format!("a table with the columns {}", REQUIRED.join(", "));
     let text = text.trim_start_matches('\u{feff}');
     let is_header = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
@@ -48,7 +49,8 @@ pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
     let header_place = format!("{place}, line {}", line_of(&header));
     let (columns, notes) = read_header(place, &header_place, &header, &allowed)?;
     let has_radii = columns[6].is_some();
-    let (mut taxels, mut numbers) = (Vec::new(), Vec::new());
+    let [is_flat, has_normals] = [columns[2].is_none(), columns[3].is_some()];
+    let (mut positions, mut normals, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
     let (mut radii, mut pixels) = (Vec::new(), Vec::new());
     for row in rows {
         let row = row.map_err(|e| unreadable(place, e, &allowed))?;
@@ -73,14 +75,11 @@ pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
             let metres = exponent.and_then(|exponent| scaled(&decimal, exponent));
             Ok(metres.unwrap_or(value))
         };
-        let vector = |first: usize| -> Result<DVec3> {
-            Ok(DVec3::new(
-                value(first)?,
-                value(first + 1)?,
-                value(first + 2)?,
-            ))
-        };
-        taxels.push((vector(0)?, vector(3)?));
+        let height = if is_flat { 0.0 } else { value(2)? };
+        positions.push(DVec3::new(value(0)?, value(1)?, height));
+        if has_normals {
+            normals.push(DVec3::new(value(3)?, value(4)?, value(5)?));
+        }
         numbers.push(line_of(&row) as usize - 1);
         if has_radii {
             let radius = value(6)?;
@@ -102,11 +101,20 @@ pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
             pixels.push([whole(7)?, whole(8)?]);
         }
     }
-    let read = LayoutFile {
-        radii: (!radii.is_empty()).then_some(radii),
-        notes,
-        ..LayoutFile::new(place, taxels, &numbers)?
+    let mut read = match (has_normals, mesh) {
+        (true, None) => LayoutFile::new(
+            place,
+            positions.into_iter().zip(normals).collect(),
+            &numbers,
+        )?,
+        _ => {
+            let normals = has_normals.then_some(normals);
+            let without_normals = ("no column nx", "the columns nx, ny and nz, or ");
+            LayoutFile::of_positions(place, (positions, is_flat), normals, mesh, without_normals)?
+        }
     };
+    read.radii = (!radii.is_empty()).then_some(radii);
+    read.notes.extend(notes);
     Ok(match pixels.is_empty() {
         true => read,
         false => read.with_pixels(pixels),
@@ -144,7 +152,14 @@ fn read_header(
             }
         }
     }
-    if let Some(at) = (0..REQUIRED.len()).find(|at| columns[*at].is_none()) {
+    // Positions alone may have normals from elsewhere, and those of a flat skin no height.
+    let has_normals = columns[3..6].iter().any(Option::is_some);
+    let n_required = match (has_normals, columns[2].is_some()) {
+        (true, _) => 6,
+        (false, true) => 3,
+        (false, false) => 2,
+    };
+    if let Some(at) = (0..n_required).find(|at| columns[*at].is_none()) {
         let given = format!("no column {}", REQUIRED[at]);
         return Err(Error::input(header_place, given, allowed));
     }

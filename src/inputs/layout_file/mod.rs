@@ -63,7 +63,7 @@ impl LayoutFile {
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
         let refuse =
             |option: &str, of: &str| Err(Error::input(&place, option, format!("none: {of}")));
-        if options.mesh.is_some() && !matches!(&ending[..], "json" | "txt" | "ini") {
+        if options.mesh.is_some() && matches!(&ending[..], "urdf" | "xml") {
             return refuse("a mesh for normals", "this format has normals of its own");
         }
         if options.sensor.is_some() && !matches!(&ending[..], "urdf" | "xml") {
@@ -78,8 +78,8 @@ impl LayoutFile {
             read => read.map_err(|error| Error::unreadable(path, FORMATS, error)),
         };
         let file = match &ending[..] {
-            "csv" | "tsv" => csv::read(&place, &text()?)?,
-            "npz" => npz::read(path)?,
+            "csv" | "tsv" => csv::read(&place, &text()?, options.mesh)?,
+            "npz" => npz::read(path, options.mesh)?,
             "txt" | "ini" => icub::read(&place, &text()?, options.mesh)?,
             "json" => paxini::read(&place, &text()?, options.mesh)?,
             "urdf" | "xml" => urdf::read(&place, &text()?, options.sensor)?,
@@ -160,6 +160,44 @@ impl LayoutFile {
         let rows: Vec<usize> = (1..=positions.len()).collect();
         let normals = normals::surface_normals(place, (&positions, &rows), surface)?;
         Self::from_points(place, positions, normals)
+    }
+
+    /// Creates the content of a layout file from positions (metres) with or without normals of any length. Positions of x and y alone, whose z is 0, are a flat skin
+    /// with axes along z.
+    ///
+    /// # Errors
+    /// If a normal has no position or no direction, a mesh is given beside normals, or neither is given for positions in space. The last error consists of the two
+    /// texts `without_normals`: what is given, and what else is allowed.
+    fn of_positions(
+        place: &str,
+        (positions, is_flat): (Vec<DVec3>, bool),
+        normals: Option<Vec<DVec3>>,
+        mesh: Option<&TriangleMesh>,
+        without_normals: (&str, &str),
+    ) -> Result<Self> {
+        match (normals, mesh) {
+            (Some(normals), None) => Self::from_points(place, positions, normals),
+            (Some(_), Some(_)) => {
+                let allowed = "none: the file has normals of its own";
+                Err(Error::input(place, "a mesh for normals", allowed))
+            }
+            (None, Some(mesh)) => Self::on_surface(place, positions, mesh),
+            (None, None) if is_flat => {
+                let normals = vec![DVec3::Z; positions.len()];
+                let note = format!(
+                    "{place}: positions x and y alone are read as a flat skin with normals along z"
+                );
+                Ok(Self {
+                    notes: vec![note],
+                    ..Self::from_points(place, positions, normals)?
+                })
+            }
+            (None, None) => {
+                let (given, allowed) = without_normals;
+                let allowed = format!("{allowed}a mesh beside it, whose surface gives the normals");
+                Err(Error::input(place, given, allowed))
+            }
+        }
     }
 
     /// Sets the row and column of each taxel in the sensor's image. If the taxels are numbered row by row in a complete image, the layout has its sides.

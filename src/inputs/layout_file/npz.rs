@@ -6,7 +6,9 @@
 use super::LayoutFile;
 use crate::error::{Error, Result};
 use crate::geometry::written_rotation_matrix;
+use crate::inputs::arrays::csv_table::TableContent;
 use crate::inputs::arrays::file_array::FileArray;
+use crate::mesh::TriangleMesh;
 use glam::{DMat3, DVec3};
 use ndarray::{Array1, Array2, Array3, ArrayD};
 use ndarray_npy::{NpzWriter, WriteNpzError};
@@ -24,7 +26,7 @@ const NAMES: [&[&str]; 5] = [
 const ALLOWED: &str = "positions and normals, or poses";
 
 /// Reads a layout of taxels from a `.npz` archive of NumPy arrays.
-pub(super) fn read(path: &Path) -> Result<LayoutFile> {
+pub(super) fn read(path: &Path, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
     let place = path.display().to_string();
     let names = crate::inputs::arrays::member_names(path)?;
     let mut found = [None; NAMES.len()];
@@ -52,16 +54,24 @@ pub(super) fn read(path: &Path) -> Result<LayoutFile> {
             allowed.join(" × "),
         ))
     };
-    let taxels = match (poses, positions, normals) {
-        (Some(poses), None, _) => from_poses(&place, &read(poses, &[None, Some(3), Some(4)])?)?,
-        (None, Some(positions), Some(normals)) => {
-            let positions = vectors(&read(positions, &[None, Some(3)])?);
-            let normals = vectors(&read(normals, &[Some(positions.len()), Some(3)])?);
-            positions.into_iter().zip(normals).collect()
+    let (positions, normals) = match (poses, positions) {
+        (Some(poses), None) => {
+            let (positions, normals) =
+                from_poses(&place, &read(poses, &[None, Some(3), Some(4)])?)?
+                    .into_iter()
+                    .unzip();
+            ((positions, false), Some(normals))
         }
-        (None, Some(_), None) => {
-            let given = format!("no array normals (the arrays {})", names.join(", "));
-            return Err(Error::input(place, given, ALLOWED));
+        (None, Some(positions)) => {
+            let is_flat = normals.is_none()
+                && FileArray::shape_of(path, positions, TableContent::Any)?.last() == Some(&2);
+            let positions = match is_flat {
+                true => flat(&read(positions, &[None, Some(2)])?),
+                false => vectors(&read(positions, &[None, Some(3)])?),
+            };
+            let normals = normals.map(|normals| read(normals, &[Some(positions.len()), Some(3)]));
+            let normals = normals.transpose()?.map(|normals| vectors(&normals));
+            ((positions, is_flat), normals)
         }
         _ => {
             let given = match names.is_empty() {
@@ -71,7 +81,9 @@ pub(super) fn read(path: &Path) -> Result<LayoutFile> {
             return Err(Error::input(place, given, ALLOWED));
         }
     };
-    let n = taxels.len();
+    let n = positions.0.len();
+    let given = format!("no array normals (the arrays {})", names.join(", "));
+    let without_normals = (&given[..], "positions and normals, or poses, or ");
     let pixels = pixels.map(|name| -> Result<_> {
         let pixels = read(name, &[Some(n), Some(2)])?;
         let whole = |(row, number): (usize, &f64)| {
@@ -107,7 +119,7 @@ pub(super) fn read(path: &Path) -> Result<LayoutFile> {
     });
     let read = LayoutFile {
         radii: radii.transpose()?,
-        ..LayoutFile::in_order(&place, taxels)?
+        ..LayoutFile::of_positions(&place, positions, normals, mesh, without_normals)?
     };
     Ok(match pixels.transpose()? {
         Some(pixels) => read.with_pixels(pixels),
@@ -165,6 +177,11 @@ fn archive(
 }
 
 type Archive = NpzWriter<Cursor<Vec<u8>>>;
+
+fn flat(array: &ArrayD<f64>) -> Vec<DVec3> {
+    let rows = array.rows().into_iter();
+    rows.map(|row| DVec3::new(row[0], row[1], 0.0)).collect()
+}
 
 fn vectors(array: &ArrayD<f64>) -> Vec<DVec3> {
     let numbers: Vec<f64> = array.iter().copied().collect();

@@ -1,6 +1,7 @@
 //! Taxel positions of PaXini's tactile sensors as JSON, mm: `{"units": "mm", "taxels_mm": [[x, y, z], …]}`, or a list of positions. With `rotation`, a list of
 //! rotation matrices by columns, the third column is the normal of a taxel. The normals may also be a list `normals`. Without both, the normals are taken from a
-//! mesh. The units of `taxels` and `points` may be mm, cm or m.
+//! mesh. The units of `taxels` and `points` may be mm, cm or m. A position may also be an object with the members
+//! `x`, `y` and `z`, or `x_mm`, `y_mm` and `z_mm`, and optionally its normal `nx`, `ny` and `nz`.
 
 use super::LayoutFile;
 use super::millimetres::scaled;
@@ -9,7 +10,10 @@ use crate::geometry::written_rotation_matrix;
 use crate::mesh::TriangleMesh;
 use glam::{DMat3, DVec3};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 
+/// Members of a point that are its normal.
+const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
 const ALLOWED: &str = "points [x, y, z] in mm: a list, or the member taxels_mm, taxels or points";
 
 /// Reads a layout of taxels from the text of a PaXini JSON file. If the file has no normals, they are computed from the mesh.
@@ -20,21 +24,23 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
         .or_else(|error| serde_json::from_str(&quoted_not_finite(text)).map_err(|_| error))
         .map_err(|e| Error::input(place, e, ALLOWED))?;
     let units = json.get("units").or_else(|| json.get("unit"));
-    let exponent = match units.map(|units| units.as_str().unwrap_or_default().to_lowercase()) {
-        None => -3,
-        Some(unit) if unit == "mm" => -3,
-        Some(unit) if unit == "cm" && json.get("taxels_mm").is_none() => -2,
-        Some(unit) if unit == "m" && json.get("taxels_mm").is_none() => 0,
-        Some(_) => {
-            let given = format!("units {}", units.unwrap_or(&Value::Null));
-            let allowed = "\"mm\"; \"cm\" or \"m\" for the members taxels and points";
-            return Err(Error::input(place, given, allowed));
-        }
+    let exponent = match units {
+        None => Some(-3),
+        Some(units) => exponent_of(&units.as_str().unwrap_or_default().to_lowercase()),
+    };
+    let is_millimetres = json.get("taxels_mm").is_some();
+    let Some(exponent) = exponent.filter(|&exponent| exponent == -3 || !is_millimetres) else {
+        let given = format!("units {}", units.unwrap_or(&Value::Null));
+        let allowed = "\"mm\"; \"cm\" or \"m\" for the members taxels and points";
+        return Err(Error::input(place, given, allowed));
     };
     let members = ["taxels_mm", "taxels", "points"];
     let points = members.iter().find_map(|name| json.get(name));
     let points = points.unwrap_or(&json).as_array();
     let points = points.ok_or_else(|| Error::input(place, "no list of points", ALLOWED))?;
+    // Members of points that are no positions, such as numbers of taxels.
+    let mut unused = BTreeSet::new();
+    let mut normals_of_points = Vec::new();
     let row_numbers = |what: &str, row: usize, value: &Value, allowed: &str| {
         // A vector is a list, or an object with the members x, y and z.
         let numbers = match value {
@@ -52,8 +58,34 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
             Error::input(place, format!("`{value}`"), allowed)
         })
     };
-    let point = |(row, point): (usize, &Value)| {
+    let mut point = |(row, point): (usize, &Value)| {
         const ALLOWED: &str = "three numbers: x, y, z";
+        // Members may name their unit, such as x_mm, and stand beside others, such as the number of the taxel.
+        let (mut exponent, mut place_of_taxel) = (exponent, None);
+        if let Value::Object(members) = point {
+            let units = ["mm", "cm", "m"]
+                .map(|unit| (format!("_{unit}"), exponent_of(unit).unwrap_or(exponent)));
+            for (ending, of_unit) in units.into_iter().chain([(String::new(), exponent)]) {
+                let names = ["x", "y", "z"].map(|axis| format!("{axis}{ending}"));
+                if names.iter().all(|name| members.contains_key(name)) {
+                    exponent = of_unit;
+                    let normal = NORMAL.map(|name| members.get(name).and_then(Value::as_f64));
+                    let has_normal = normal.iter().all(Option::is_some);
+                    normals_of_points.extend(
+                        has_normal.then(|| DVec3::from(normal.map(Option::unwrap_or_default))),
+                    );
+                    let is_used = |key: &&String| {
+                        names.contains(key) || has_normal && NORMAL.contains(&key.as_str())
+                    };
+                    unused.extend(members.keys().filter(|key| !is_used(key)).cloned());
+                    place_of_taxel = Some(Value::Array(
+                        names.map(|name| members[&name].clone()).to_vec(),
+                    ));
+                    break;
+                }
+            }
+        }
+        let point = place_of_taxel.as_ref().unwrap_or(point);
         match row_numbers("", row, point, ALLOWED)?[..] {
             [x, y, z] => {
                 // The decimal number in the file, not its binary rounding, is converted to metres.
@@ -66,7 +98,7 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
             }
         }
     };
-    let points = points.iter().enumerate().map(point);
+    let points = points.iter().enumerate().map(&mut point);
     let points = points.collect::<Result<Vec<_>>>()?;
     if points.is_empty() {
         return Err(Error::input(place, "no taxel", "at least one taxel"));
@@ -125,17 +157,36 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
         }
         None => listed_normals()?,
     };
-    match (normals, mesh) {
-        (Some(normals), None) => LayoutFile::from_points(place, points, normals),
-        (None, Some(mesh)) => LayoutFile::on_surface(place, points, mesh),
-        (Some(_), Some(_)) => {
-            let allowed = "none: the file has normals of its own";
-            Err(Error::input(place, "a mesh for normals", allowed))
-        }
-        (None, None) => {
-            let allowed = "a mesh beside it, whose surface gives the normals";
-            Err(Error::input(place, "points without normals", allowed))
-        }
+    let are_in_points = normals.is_none() && normals_of_points.len() == points.len();
+    let normals = if are_in_points {
+        Some(normals_of_points)
+    } else {
+        normals
+    };
+    let mut file = LayoutFile::of_positions(
+        place,
+        (points, false),
+        normals,
+        mesh,
+        ("points without normals", ""),
+    )?;
+    if !unused.is_empty() {
+        let unused: Vec<String> = unused.into_iter().collect();
+        file.notes.push(format!(
+            "{place}: members of points that are not used: {}",
+            unused.join(", ")
+        ));
+    }
+    Ok(file)
+}
+
+/// Returns the exponent of ten that converts a unit to metres; `None` if the unit is unknown.
+fn exponent_of(unit: &str) -> Option<i64> {
+    match unit {
+        "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => Some(-3),
+        "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => Some(-2),
+        "m" | "meter" | "meters" | "metre" | "metres" => Some(0),
+        _ => None,
     }
 }
 

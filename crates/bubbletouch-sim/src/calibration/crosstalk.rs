@@ -25,12 +25,16 @@ const CLIPPED: f64 = 0.97;
 const FEWEST: usize = 200;
 /// Number of fixed-point iterations that estimate the leaked fraction.
 const N_ROUNDS: usize = 8;
+/// Largest change of the leaked fraction in the last iteration: absolute, and relative to the fraction. If larger, a fraction counts that the readings beside
+/// edges do not confirm; if smaller, slow convergence counts as none.
+const CONVERGED: [f64; 2] = [0.002, 0.02];
 /// Number of iterations that invert the crosstalk. The remaining fraction of an error is at most (2κ)²⁵ for the leaked fraction κ.
 const N_STEPS: usize = 25;
 /// Largest leaked fraction for which the iteration that inverts the crosstalk converges fast enough.
 const LARGEST: f64 = 0.45;
 
-/// Estimates the fraction of a taxel's value that leaks to its neighbours.
+/// Estimates the fraction of a taxel's value that leaks to its neighbours. `noise` is the standard deviation of a reading, which includes errors of the zero
+/// offsets; `width` is the width of the smoothing in pitches.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     touched: &Array2<f64>,
@@ -43,9 +47,10 @@ pub(super) fn estimate(
     let stride = touched.nrows().div_ceil(N_FRAMES).max(1);
     let frames = touched.outer_iter().step_by(stride);
     let frames: Vec<Array1<f64>> = frames.map(|frame| &frame / &gains.of_taxels).collect();
-    let mut leak = 0.0;
+    let (mut leak, mut before) = (0.0, 0.0);
     let mut shares = Vec::new();
     for _ in 0..N_ROUNDS {
+        before = leak;
         shares = frames
             .iter()
             .map(|frame| shares_of(skin, frame, leak, noise))
@@ -62,6 +67,9 @@ pub(super) fn estimate(
             "more than {LARGEST} seems to leak: edges are not sharp"
         ));
     }
+    if (leak - before).abs() > CONVERGED[0].max(CONVERGED[1] * leak) {
+        return Estimate::unknown("noise or drifting zeros hide the edges of contacts");
+    }
     let found = jackknife(shares.len(), |keep| {
         let kept = (0..shares.len()).filter(|&frame| keep(frame));
         let mut kept: Vec<f64> = kept
@@ -69,7 +77,6 @@ pub(super) fn estimate(
             .collect();
         Some(4.0 * mode(&mut kept))
     });
-    let found = found.map(|found| found.map(|leak| leak.max(0.0)));
     found.unwrap_or_else(|| Estimate::unknown("there are too few frames"))
 }
 

@@ -4,8 +4,12 @@
 //! every taxel on average, so the differences between taxels are ln gᵢ − ¼ Σⱼ ln gⱼ. Let L be this operator and S the smoothing. The variance of ln g is
 //! the variance of d divided by ‖L S‖² (5/4 without smoothing). Medians of even and of odd frames have independent errors. Their covariance over taxels is
 //! therefore the variance of d without the effects of contacts and noise. Gains are log-normal: std² = exp(Var ln g) − 1.
+//!
+//! An error z of a taxel's zero offset acts like a gain of ln g = z / x. Both halves of the frames have its mean z̄ over time, so the interval of Var ln g is
+//! extended downwards by the effect of this mean, Var z̄ E[1/x]².
 
 use super::robust::{jackknife, mean, median};
+use super::touched::Errors;
 use super::{Estimate, RecordedSkin};
 use crate::signal::Smoothing;
 use crate::world::Grid;
@@ -33,16 +37,21 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// Estimates the gains from frames with contact after subtraction of the zero offsets. `noise` is a standard deviation; `width` is the width of the
-    /// smoothing in pitches.
+    /// Estimates the gains from frames with contact after subtraction of the zero offsets. `errors` are the errors of these frames; `width` is
+    /// the width of the smoothing in pitches.
     pub(super) fn new(
         skin: &RecordedSkin,
         touched: &Array2<f64>,
-        (noise, width): (f64, f64),
+        (errors, width): (&Errors, f64),
     ) -> Self {
-        let pressed = [PRESSED[0].max(ABOVE_NOISE * noise), PRESSED[1]];
-        let halves: Vec<Option<[f64; 2]>> = (0..skin.n_taxels())
+        let pressed = [PRESSED[0].max(ABOVE_NOISE * errors.total()), PRESSED[1]];
+        let found: Vec<Option<Halves>> = (0..skin.n_taxels())
             .map(|taxel| halves(skin, touched, taxel, pressed))
+            .collect();
+        let inverse = mean(found.iter().flatten().map(|halves| halves.inverse));
+        let halves: Vec<Option<[f64; 2]>> = found
+            .into_iter()
+            .map(|halves| halves.map(|halves| halves.log_ratios))
             .collect();
         let known = halves.iter().flatten().count();
         if known < MIN_TAXELS {
@@ -60,6 +69,8 @@ impl Gains {
             let kept: Vec<[f64; 2]> = kept.filter_map(|(_, halves)| *halves).collect();
             Some(covariance(&kept) / share)
         });
+        let of_zeros = (errors.of_mean_zeros * inverse).powi(2);
+        let spread = spread.map(|spread| spread.lowered_by(of_zeros));
         let std = |variance: f64| variance.max(0.0).exp_m1().sqrt();
         Self {
             spread: spread.map_or_else(|| Estimate::unknown("too few taxels"), |v| v.map(std)),
@@ -68,26 +79,37 @@ impl Gains {
     }
 }
 
-/// Returns the median logarithm of the ratio between the readings of a taxel and of its neighbours. The first value is for the even frames, the second for the
-/// odd frames.
+/// Readings of a taxel relative to its neighbours, in frames in which all of them are well pressed.
+struct Halves {
+    /// Median logarithm of the ratio between the readings of the taxel and of its neighbours, in even frames and in odd frames.
+    log_ratios: [f64; 2],
+    /// Mean of the inverse readings of the taxel.
+    inverse: f64,
+}
+
+/// Returns the readings of a taxel relative to its neighbours; `None` if they are well pressed together in too few frames.
 fn halves(
     skin: &RecordedSkin,
     touched: &Array2<f64>,
     taxel: usize,
     [least, most]: [f64; 2],
-) -> Option<[f64; 2]> {
+) -> Option<Halves> {
     let near = skin.neighbours(taxel)?;
     let five = [taxel, near[0], near[1], near[2], near[3]];
-    let mut halves = [Vec::new(), Vec::new()];
+    let (mut halves, mut inverses) = ([Vec::new(), Vec::new()], Vec::new());
     for (frame, readings) in touched.outer_iter().enumerate() {
         let five = five.map(|taxel| readings[taxel]);
         if five.iter().all(|reading| (least..most).contains(reading)) {
             let around = five[1..].iter().map(|reading| reading.ln());
             halves[frame % 2].push(five[0].ln() - 0.25 * around.sum::<f64>());
+            inverses.push(1.0 / five[0]);
         }
     }
     let is_known = halves.iter().all(|half| half.len() >= MIN_FRAMES);
-    is_known.then(|| halves.map(|mut half| median(&mut half)))
+    is_known.then(|| Halves {
+        log_ratios: halves.map(|mut half| median(&mut half)),
+        inverse: mean(inverses.into_iter()),
+    })
 }
 
 /// Returns the covariance of pairs of numbers, computed without outliers.

@@ -65,7 +65,7 @@ pub struct Calibration {
 /// Estimates all parameters of the signal chain of a recorded skin.
 ///
 /// # Errors
-/// If frames, times or forces have inconsistent sizes, or if readings are not finite.
+/// If frames, times or forces have inconsistent sizes, if readings are not finite, or if frames given as untouched have contacts.
 pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
     skin.check()?;
     let faults = faults::find(skin);
@@ -74,12 +74,16 @@ pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
     let step = converter.value().map_or(0.0, converter::step_of);
     let untouched = untouched::Untouched::new(skin, &faults, step);
     let untouched = untouched.as_ref();
+    if let Some(untouched) = untouched {
+        untouched.check(&faults)?;
+    }
     let smoothing = smoothing::estimate(skin, untouched);
     let width = smoothing.value().unwrap_or(0.0);
     let read_noise = noise::of_readings(untouched);
     let std = read_noise.value().unwrap_or(0.0);
     let drift = drift::estimate(skin, untouched, (std, width));
     let drifts = drift.value().unwrap_or(1.0);
+    let read_noise = noise::without_drift(read_noise, untouched, &drift);
     let touched = touched::touched(skin, &faults, (untouched, drifts), saturation);
     let is_clipped = untouched.is_some_and(|untouched| untouched.is_clipped);
     let hides_zeros = is_clipped && drift.value() != Some(0.0);
@@ -87,8 +91,8 @@ pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
         true => Estimate::unknown("readings are clipped at zeros that drift"),
         false => estimate.resolved(),
     };
-    let levels = (std, width);
-    let gains = gain::Gains::new(skin, &touched, levels);
+    let errors = touched::Errors::new(skin, &touched, untouched, (&drift, &read_noise));
+    let gains = gain::Gains::new(skin, &touched, (&errors, width));
     let of_gains = match is_clipped && width > 0.0 {
         true => {
             Estimate::unknown("readings are clipped at the zero, and smoothing mixes the gains")
@@ -97,7 +101,12 @@ pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
     };
     Ok(Calibration {
         noise: noise::before_smoothing(read_noise, skin, width).resolved(),
-        crosstalk: told(crosstalk::estimate(skin, &touched, &gains, levels)),
+        crosstalk: told(crosstalk::estimate(
+            skin,
+            &touched,
+            &gains,
+            (errors.total(), width),
+        )),
         stiffness: told(stiffness::estimate(
             skin,
             &touched,

@@ -44,6 +44,23 @@ pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
     }
 }
 
+/// Extends the interval of the noise downwards by the change of the zero offsets between consecutive frames: a drift σ changes them by σ² Δt, which counts half.
+/// Unknown drift changes nothing.
+pub(super) fn without_drift(
+    read: Estimate,
+    untouched: Option<&Untouched>,
+    drift: &Estimate,
+) -> Estimate {
+    let (Some(untouched), Some(drift)) = (untouched, drift.value()) else {
+        return read;
+    };
+    let squared = read.map(|std| std * std);
+    let excess = 0.5 * drift.powi(2) * untouched.frame_interval();
+    squared
+        .lowered_by(excess)
+        .map(|square| square.max(0.0).sqrt())
+}
+
 /// Converts the noise of the readings to the noise before smoothing, given the smoothing `width` in pitches.
 pub(super) fn before_smoothing(read: Estimate, skin: &RecordedSkin, width: f64) -> Estimate {
     let share = Smoothed::new(skin.shape, width).variance.sqrt();

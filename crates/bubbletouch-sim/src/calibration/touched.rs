@@ -1,10 +1,17 @@
 //! Frames with contact after subtraction of the taxels' zero offsets.
 
-use super::RecordedSkin;
 use super::faults::FoundFaults;
+use super::robust::{mean, median, mode, variance};
 use super::saturation::plateau;
 use super::untouched::Untouched;
-use ndarray::Array2;
+use super::{Estimate, RecordedSkin};
+use ndarray::{Array2, ArrayView1, Axis};
+
+/// Number of periods of the session in which the zero offsets of touched frames are determined. With more periods, a period has fewer frames without contact;
+/// with fewer, the zero offset drifts within a period.
+const N_PERIODS: usize = 4;
+/// Standard deviation of normal data divided by the median distance of the values below their mode.
+const STD_OF_MEDIAN: f64 = 1.4826;
 
 /// Returns the smallest reading at which a taxel counts as saturated: the full scale, or a smaller largest reading that many frames share.
 pub(super) fn saturation(skin: &RecordedSkin, faults: &FoundFaults) -> f64 {
@@ -42,4 +49,79 @@ pub(super) fn touched(
         }
     }
     touched
+}
+
+/// Errors of the readings of frames with contact, standard deviations as fractions of the full scale.
+pub(super) struct Errors {
+    /// Error of the subtracted zero offset in a frame; infinite if nothing determines it.
+    of_zeros: f64,
+    /// Mean error of the subtracted zero offset over all frames; infinite if nothing determines it.
+    pub of_mean_zeros: f64,
+    /// Noise of the readings.
+    noise: f64,
+}
+
+impl Errors {
+    /// Determines the errors of the frames of `touched`, given the estimates of drift and noise from untouched frames.
+    ///
+    /// The errors of the zero offsets are the smaller ones of two bounds: the readings at which taxels rest, and the drift since the nearest untouched frames. A
+    /// taxel rests at the mode of its readings, because a contact moves. Without untouched frames, noise is the spread of the readings below their mode.
+    pub fn new(
+        skin: &RecordedSkin,
+        touched: &Array2<f64>,
+        untouched: Option<&Untouched>,
+        (drift, noise): (&Estimate, &Estimate),
+    ) -> Self {
+        let n_frames = touched.nrows().div_ceil(N_PERIODS).max(1);
+        let (mut squares, mut spreads) = (Vec::new(), Vec::new());
+        let mut of_taxels = vec![0.0; touched.ncols()];
+        let n_periods = touched.nrows().div_ceil(n_frames) as f64;
+        for frames in touched.axis_chunks_iter(Axis(0), n_frames) {
+            let rests: Vec<_> = frames.columns().into_iter().map(rest).collect();
+            for (of_taxel, rest) in of_taxels.iter_mut().zip(&rests) {
+                *of_taxel += rest.map_or(f64::NAN, |(rest, _)| rest) / n_periods;
+            }
+            let (rests, mut below): (Vec<f64>, Vec<f64>) = rests.into_iter().flatten().unzip();
+            squares.push(mean_square(rests));
+            spreads.push(STD_OF_MEDIAN * median(&mut below));
+        }
+        of_taxels.retain(|rest| rest.is_finite());
+        let seen = [mean(squares.into_iter()), mean_square(of_taxels)];
+        let noise = noise.value().unwrap_or_else(|| mean(spreads.into_iter()));
+        let known = untouched.zip(match drift {
+            Estimate::Found { interval, .. } => Some(interval[1]),
+            Estimate::NotIdentifiable(_) => None,
+        });
+        let known = known.map_or([f64::INFINITY; 2], |(untouched, drift)| {
+            untouched.square_errors(&skin.touched_times, (drift, noise))
+        });
+        // The smaller one of two numbers is the known one if the other is NaN.
+        let [of_zeros, of_mean_zeros] = [0, 1].map(|k| known[k].min(seen[k]).sqrt());
+        Self {
+            of_zeros,
+            of_mean_zeros,
+            noise: if noise.is_finite() { noise } else { 0.0 },
+        }
+    }
+
+    /// Returns the error of a reading minus its zero offset.
+    pub fn total(&self) -> f64 {
+        self.noise.hypot(self.of_zeros)
+    }
+}
+
+/// Returns the mean square of values, without outliers; NaN if there are none.
+fn mean_square(mut values: Vec<f64>) -> f64 {
+    variance(&values) + median(&mut values).powi(2)
+}
+
+/// Returns the mode of the readings of a taxel, and the median distance of the readings below the mode; `None` if no reading is known.
+pub(super) fn rest(readings: ArrayView1<f64>) -> Option<(f64, f64)> {
+    let known = readings.iter().copied().filter(|reading| !reading.is_nan());
+    let mut known: Vec<f64> = known.collect();
+    let rest = mode(&mut known);
+    let below = known.iter().take_while(|&&reading| reading < rest);
+    let spread = median(&mut below.map(|reading| rest - reading).collect::<Vec<_>>());
+    let spread = if spread.is_nan() { 0.0 } else { spread };
+    rest.is_finite().then_some((rest, spread))
 }

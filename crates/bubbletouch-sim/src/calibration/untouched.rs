@@ -5,8 +5,10 @@
 
 use super::RecordedSkin;
 use super::faults::FoundFaults;
-use super::robust::mean;
-use ndarray::{Array2, ArrayView1, s};
+use super::robust::{mean, variance};
+use super::touched::rest;
+use crate::error::{Error, Result};
+use ndarray::{Array1, Array2, ArrayView1, s};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
 /// Number of consecutive frames per run. If smaller, the zero offset is less accurate; if larger, the zero offset drifts during a run.
@@ -18,6 +20,14 @@ const FEWEST: usize = 20;
 const CLIPPED: [f64; 2] = [0.3, 0.98];
 /// Minimum fraction of runs without clipped readings. If at least this fraction of the runs is free of clipping, the other runs are omitted.
 const SUFFICIENT_CLEAR: f64 = 0.1;
+
+/// Smallest change of a reading that a contact explains better than noise or drift: as a fraction of the full scale, and in standard deviations of the changes.
+/// If smaller, noise counts as contact; if larger, light contacts in untouched frames are missed.
+const CONTACT: [f64; 2] = [0.1, 8.0];
+/// Minimum number of taxels that a contact changes. A single taxel may have spikes.
+const MIN_TOUCHED: usize = 3;
+/// Approximate maximum number of changes from which their standard deviation is estimated.
+const N_CHANGES: usize = 200_000;
 
 /// Zero offset of a taxel in a run of frames without contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,8 +67,12 @@ impl<'a> Untouched<'a> {
         }
         let n_run = N_RUN.min(n / 2);
         let n_runs = n / n_run;
-        let readings = || skin.untouched.iter();
-        let is_clipped = readings().all(|&reading| reading >= 0.0) && readings().any(|&r| r > 0.0);
+        // Readings whose zero offset is above the lowest reading are not clipped, and all of them are positive.
+        let columns = skin.untouched.columns().into_iter().zip(&faults.is_sound);
+        let sound = columns.filter(|(_, is_sound)| **is_sound);
+        let readings: Vec<f64> = sound.flat_map(|(column, _)| column.to_vec()).collect();
+        let least = readings.iter().copied().fold(f64::INFINITY, f64::min);
+        let is_clipped = least == 0.0 && readings.iter().any(|&reading| reading > 0.0);
         let of = |(run, taxel): (usize, usize)| {
             let readings = skin.untouched.column(taxel);
             let readings = readings.slice(s![run * n_run..(run + 1) * n_run]);
@@ -87,6 +101,71 @@ impl<'a> Untouched<'a> {
         })
     }
 
+    /// Checks that nothing touches the skin in the untouched frames.
+    ///
+    /// # Errors
+    /// If several taxels change between consecutive untouched frames by much more than the noise, or rest far below their zero offsets in the other frames.
+    pub fn check(&self, faults: &FoundFaults) -> Result<()> {
+        let refused = |given: String| {
+            let allowed = "frames in which nothing touches the skin";
+            Err(Error::input("untouched frames", given, allowed))
+        };
+        let (times, skin) = (&self.skin.untouched_times, self.skin);
+        let gaps = || times.windows(2).into_iter().map(|pair| pair[1] - pair[0]);
+        let usual = self.frame_interval();
+        // The zero offsets may drift in a gap between two ranges of frames.
+        let pairs = || {
+            (1..times.len())
+                .zip(gaps())
+                .filter(|(_, gap)| *gap <= 1.5 * usual)
+        };
+        let change = |frame: usize| &skin.untouched.row(frame) - &skin.untouched.row(frame - 1);
+        let stride = (skin.untouched.len() / N_CHANGES).max(1);
+        let changes = pairs().flat_map(|(frame, _)| change(frame)).step_by(stride);
+        let changes: Vec<f64> = changes.collect();
+        // Clipped readings do not change.
+        let varying: Vec<f64> = changes
+            .iter()
+            .copied()
+            .filter(|&change| change != 0.0)
+            .collect();
+        let std = match 4 * varying.len() > changes.len() {
+            true => variance(&varying).sqrt(),
+            false => 0.0,
+        };
+        let least = CONTACT[0].max(CONTACT[1] * std);
+        for (frame, _) in pairs() {
+            let changed = change(frame)
+                .into_iter()
+                .filter(|change| change.abs() > least);
+            let n = changed.count();
+            if n >= MIN_TOUCHED {
+                return refused(format!(
+                    "{n} taxels change by more than {least:.2} of the full scale at frame {frame} of them"
+                ));
+            }
+        }
+        let rests = (0..skin.n_taxels()).filter(|&taxel| faults.is_sound[taxel]);
+        let rests = rests.filter_map(|taxel| {
+            let readings = skin
+                .touched
+                .column(taxel)
+                .into_iter()
+                .zip(&skin.touched_times);
+            let above = readings.map(|(reading, &time)| Some(reading - self.zero(taxel, time)?));
+            Some(rest(above.collect::<Option<Array1<f64>>>()?.view())?.0)
+        });
+        let rests: Vec<f64> = rests.collect();
+        let least = CONTACT[0].max(CONTACT[1] * variance(&rests).sqrt());
+        let n = rests.iter().filter(|&&rest| rest < -least).count();
+        match n >= MIN_TOUCHED {
+            true => refused(format!(
+                "{n} taxels read more than in the other frames, by over {least:.2} of the full scale"
+            )),
+            false => Ok(()),
+        }
+    }
+
     /// Returns the zero offset of a taxel at a time, interpolated linearly between the runs before and after this time. Returns `None` if the zero offset is
     /// unknown in one of these runs.
     pub fn zero(&self, taxel: usize, time: f64) -> Option<f64> {
@@ -104,6 +183,34 @@ impl<'a> Untouched<'a> {
             false => 0.0,
         };
         Some(first + share * (second - first))
+    }
+
+    /// Returns the mean square error of an interpolated zero offset over some times, and the square of its mean error, for drift of the standard deviation `drift`
+    /// and noise of the standard deviation `noise`. Over a gap L between two runs, a Wiener process of known ends has the mean square σ² L / 6 and the mean of
+    /// variance σ² L / 12; before the first and after the last run, these are σ² L / 2 and σ² L / 3. Gaps are independent.
+    pub fn square_errors(&self, times: &Array1<f64>, (drift, noise): (f64, f64)) -> [f64; 2] {
+        let of_runs = noise.powi(2) / self.n_run as f64;
+        let mut errors = [of_runs, of_runs];
+        for gap in 0..=self.times.len() {
+            let is_within = |time: &&f64| self.times.partition_point(|run| run <= *time) == gap;
+            let share = times.iter().filter(is_within).count() as f64 / times.len() as f64;
+            let before = gap.checked_sub(1).map(|run| self.times[run]);
+            let (length, [of_squares, of_mean]) = match (before, self.times.get(gap)) {
+                (Some(before), Some(after)) => (after - before, [6.0, 12.0]),
+                (Some(before), None) => (1.0 - before, [2.0, 3.0]),
+                (None, after) => (after.copied().unwrap_or(1.0), [2.0, 3.0]),
+            };
+            errors[0] += drift.powi(2) * share * length / of_squares;
+            errors[1] += drift.powi(2) * share.powi(2) * length / of_mean;
+        }
+        errors
+    }
+
+    /// Returns the shortest time between consecutive untouched frames, as a fraction of the recording session.
+    pub fn frame_interval(&self) -> f64 {
+        let times = &self.skin.untouched_times;
+        let gaps = times.windows(2).into_iter().map(|pair| pair[1] - pair[0]);
+        gaps.fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the indices of the runs in which no reading of a taxel is clipped.

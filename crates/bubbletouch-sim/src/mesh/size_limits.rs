@@ -11,7 +11,12 @@ pub struct SizeLimits {
     pub smallest: f64,
     /// Upper limit of the longest side, metres.
     pub largest: f64,
+    /// Command-line option for the unit of the file, which errors name.
+    pub option: &'static str,
 }
+
+/// Usual option for the unit of a mesh file.
+const UNIT_OPTION: &str = "--unit";
 
 /// Maximum length of an object, in multiples of the side of the sensor array. A touch on a longer object covers less than a hundredth of a face.
 const MAX_SIDES: f64 = 10.0;
@@ -24,6 +29,7 @@ impl SizeLimits {
     pub const ANY: Self = Self {
         smallest: 1e-4,
         largest: 10.0,
+        option: UNIT_OPTION,
     };
 
     /// Returns the size limits for arrays given by (longest side, taxel radius), metres. An object smaller than the smallest taxel radius has no detectable
@@ -32,12 +38,14 @@ impl SizeLimits {
         let none = Self {
             smallest: f64::INFINITY,
             largest: ALWAYS_ALLOWED,
+            option: UNIT_OPTION,
         };
         arrays
             .into_iter()
             .fold(none, |limits, (side, radius)| Self {
                 smallest: limits.smallest.min(radius),
                 largest: limits.largest.max(MAX_SIDES * side),
+                ..limits
             })
     }
 
@@ -56,13 +64,16 @@ impl SizeLimits {
             LengthUnit::Inch,
         ];
         let is_likely = |unit: &&LengthUnit| (5e-3..=1.0).contains(&(length * unit.metres()));
+        let option = self.option;
         let advice = match likely.iter().find(is_likely) {
             Some(unit) => {
                 let name = unit.name();
                 let would_be = in_words(length * unit.metres());
-                format!("in {name} it would be {would_be}: give unit = \"{name}\" (--unit {name})")
+                format!(
+                    "in {name} it would be {would_be}: give unit = \"{name}\" ({option} {name})"
+                )
             }
-            None => "give unit = \"m\" (--unit m) if it is as large as that".to_owned(),
+            None => format!("give unit = \"m\" ({option} m) if it is as large as that"),
         };
         let [smallest, largest] = [self.smallest, self.largest].map(in_words);
         Err(Error::input(

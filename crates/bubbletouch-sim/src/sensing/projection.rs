@@ -156,6 +156,33 @@ impl Projection {
         self.operator.each_entry(&mut visit);
     }
 
+    /// Divides each measurement that averages taxels by the sum of the weights of its present taxels, so that absent taxels, which read 0, do not lower the average.
+    /// Other measurements are unchanged. `is_absent` has one value for each taxel; `measurements` has the shape (n_frames, m).
+    pub fn average_present(&self, is_absent: &[bool], measurements: &mut Array2<f64>) {
+        if !is_absent.contains(&true) {
+            return;
+        }
+        // An average has weights of at least 0 with the sum 1.
+        let mut sums = vec![(0.0, 0.0, true); self.n_measurements];
+        self.each_entry(|measurement, taxel, value| {
+            let (all, present, is_positive) = &mut sums[measurement];
+            *all += value;
+            *present += if is_absent[taxel % is_absent.len()] {
+                0.0
+            } else {
+                value
+            };
+            *is_positive &= value >= 0.0;
+        });
+        for (mut column, (all, present, is_positive)) in
+            measurements.columns_mut().into_iter().zip(sums)
+        {
+            if is_positive && (all - 1.0_f64).abs() < 1e-9 && present > 0.0 && present < all {
+                column.mapv_inplace(|value| value / present);
+            }
+        }
+    }
+
     /// Returns the root mean square norm of the rows of the matrix Φ. This norm equals the noise of measurements divided by the noise of taxels.
     pub fn row_norm(&self) -> f64 {
         self.operator.row_norm()

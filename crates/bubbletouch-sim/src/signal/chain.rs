@@ -286,7 +286,7 @@ impl Chain {
     }
 
     fn prepare_smoothing(&mut self, width: f64, patch: &Patch) -> Result<Prepared> {
-        let smoothing: Box<dyn Effect> = match patch.layout().as_grid() {
+        let smoothing: Box<dyn Effect> = match patch.whole_grid() {
             Some(grid) => Box::new(Smoothing::new(width, grid)?),
             None => Box::new(SurfaceSmoothing::new(width, patch)?),
         };

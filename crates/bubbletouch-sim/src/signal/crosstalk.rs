@@ -59,7 +59,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
         "crosstalk",
         &[Strength::fraction("crosstalk", "crosstalk")],
         |&[leak, _], skin| {
-            Ok(match skin.patch.layout().as_grid() {
+            Ok(match skin.patch.whole_grid() {
                 Some(grid) => Box::new(Crosstalk::new(leak, grid)?),
                 None => Box::new(SurfaceLeak {
                     leak: fraction("crosstalk", leak)?,

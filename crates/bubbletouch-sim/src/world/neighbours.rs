@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Neighbours of every taxel of a skin, as a symmetric graph of taxels.
 ///
-/// If taxel a is a neighbour of b, then b is a neighbour of a. The neighbours of each taxel are in ascending order.
+/// If taxel a is a neighbour of b, then b is a neighbour of a. An absent taxel has no neighbours. The neighbours of each taxel are in ascending order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbours {
     /// Index of each taxel's first neighbour in the list of neighbours, followed by the length of the list.
@@ -158,9 +158,12 @@ fn others_within(skin: &Patch, taxel: usize, radius: f64) -> Vec<usize> {
     let (centers, axes) = (skin.layout().centers(), skin.layout().axes());
     let (center, axis) = (centers[taxel], axes[taxel]);
     let mut others = Vec::new();
+    if skin.is_absent(taxel) {
+        return others;
+    }
     skin.tree().each_near(center, radius, |near| {
         let other = near.number as usize;
-        let is_same_side = axes[other].dot(axis) > OPPOSED;
+        let is_same_side = axes[other].dot(axis) > OPPOSED && !skin.is_absent(other);
         if other != taxel && is_same_side && near.center.distance(center) <= radius * ROUNDING {
             others.push(other);
         }

@@ -14,6 +14,8 @@ pub struct Patch {
     name: String,
     layout: Layout,
     taxels: Taxels,
+    /// Whether each taxel is absent; empty if none is.
+    is_absent: Vec<bool>,
     even_grid: Option<EvenGrid>,
     /// Search tree over the taxels, created on first use.
     tree: OnceLock<TaxelTree>,
@@ -94,7 +96,37 @@ impl Patch {
             name,
             layout,
             taxels,
+            is_absent: Vec::new(),
         }
+    }
+
+    /// Returns the patch with places at which no taxel reads, such as the corners of a rectangle that contains a foot. An absent taxel is the neighbour of no taxel;
+    /// contacts are not affected.
+    ///
+    /// # Panics
+    /// If the list does not have one value for each taxel.
+    pub fn without(mut self, is_absent: &[bool]) -> Self {
+        assert_eq!(is_absent.len(), self.n_taxels(), "one value for each taxel");
+        self.is_absent = match is_absent.contains(&true) {
+            true => is_absent.to_vec(),
+            false => Vec::new(),
+        };
+        self
+    }
+
+    /// Returns whether each taxel is absent; empty if none is.
+    pub fn absent(&self) -> &[bool] {
+        &self.is_absent
+    }
+
+    /// Returns whether a taxel is absent.
+    pub fn is_absent(&self, taxel: usize) -> bool {
+        self.is_absent.get(taxel) == Some(&true)
+    }
+
+    /// Returns the grid of the taxels, if they form one in which every taxel reads.
+    pub fn whole_grid(&self) -> Option<&Grid> {
+        self.layout.as_grid().filter(|_| self.is_absent.is_empty())
     }
 
     /// Returns the name of the patch.

@@ -73,7 +73,7 @@ pub fn record_touch(
     mut rows: ArrayViewMut2<f32>,
     workspace: &mut Workspace,
 ) -> (bool, bool) {
-    let (mut n_touched, mut n_saturated) = (0, 0);
+    let (mut is_missed, mut n_saturated) = (true, 0);
     // Most hands only move and keep their shape, so their spheres are reused.
     let mut shape: Option<(Hand, [Model; 1])> = None;
     for (frame, row) in rows.outer_iter_mut().enumerate() {
@@ -82,10 +82,10 @@ pub fn record_touch(
         let (_, hand) =
             shape.insert(known.unwrap_or_else(|| (state.hand, [state.spheres().into()])));
         let contact = press_with_contacts(skin, hand, &[state.patch_from_hand], workspace);
-        n_touched += contact.n_touched;
         n_saturated += contact.n_saturated;
         let row = row.into_slice().expect("rows are whole");
         round_to_single(workspace.deflections(), row);
+        is_missed &= row.iter().all(|&deflection| deflection == 0.0);
     }
-    (n_touched == 0, n_saturated > 0)
+    (is_missed, n_saturated > 0)
 }

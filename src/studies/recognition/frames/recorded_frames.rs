@@ -1,7 +1,7 @@
 //! Recorded frames of a study, which replace simulated touches; the files are read once.
 //!
 //! A reading v corresponds to the deflection `stroke · (v − zero) / (full_scale − zero)`. Noise and sensor errors of a study are fractions of the full scale,
-//! so they have the same effect as on a simulated skin. Readings of tangential forces are in newtons. The readings of several sensors are joined to one frame.
+//! so they have the same effect as on a simulated skin. A full scale below the zero belongs to readings that fall under pressure. Readings of tangential forces are in newtons. The readings of several sensors are joined to one frame.
 
 use crate::contact::saturation_limit;
 use crate::engine::progress::Progress;
@@ -10,10 +10,11 @@ use crate::inputs::arrays::TableContent;
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::is_member;
 use crate::inputs::arrays::whole_numbers::{
-    ClassLabels, KeyValue, group_keys, read_class_values, read_group_values, read_rows,
+    ClassLabels, KeyValue, group_keys, read_class_values, read_group_values, read_rows, spellings,
 };
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
+use crate::note::note;
 use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
@@ -55,9 +56,9 @@ pub struct RecordedFrames {
     is_masked: Vec<bool>,
     /// Reading of each untouched taxel; 0 for a masked taxel.
     zeros: Vec<f64>,
-    /// Reading of each taxel at which its deflection equals its stroke.
+    /// Reading of each taxel at which its deflection equals its stroke; below its zero if readings fall under pressure.
     full_scales: Vec<f64>,
-    /// Reading above which each taxel counts as saturated.
+    /// Reading from which on each taxel counts as saturated.
     saturations: Vec<f64>,
     /// Time between the frames of each touch relative to the time between recorded frames, in the order of the field `order`; 1 without resampling.
     steps: Vec<f64>,
@@ -287,6 +288,15 @@ impl RecordedSpec {
             let given = format!("{:?} twice", names[name]);
             return Err(Error::input("key recorded.names", given, "each name once"));
         }
+        if let Some(same) = spellings(names.iter().map(String::as_str)) {
+            let quoted: Vec<String> = same.iter().map(|name| format!("{name:?}")).collect();
+            note(format_args!(
+                "{}: the labels {} differ only by case or spaces, and count as {} classes",
+                file.display(),
+                quoted.join(", "),
+                same.len()
+            ));
+        }
         Ok((names, streams, counts))
     }
 
@@ -477,6 +487,10 @@ impl TouchSet for RecordedFrames {
         (of_taxels.iter().filter(|&&is| is).count(), self.n_taxels)
     }
 
+    fn absent(&self) -> &[bool] {
+        &self.is_masked[..self.n_taxels]
+    }
+
     fn simulate(&self, (array, n_frames): (&TaxelArray, usize), progress: &dyn Progress) -> Frames {
         let stroke = array.taxel().stroke;
         let mut frames = Frames::new((array.n_values(), n_frames));
@@ -488,8 +502,18 @@ impl TouchSet for RecordedFrames {
                     *to = from as f32;
                 }
             }
-            let is_touched = self.any_reading(touch, |taxel, reading| reading > self.zeros[taxel]);
-            let is_full = |taxel: usize, reading| reading >= self.saturations[taxel];
+            // Readings may fall under pressure.
+            let above = |taxel: usize, reading: f64, level: f64| match self.full_scales[taxel]
+                > self.zeros[taxel]
+            {
+                true => reading - level,
+                false => level - reading,
+            };
+            let is_touched = self.any_reading(touch, |taxel, reading| {
+                above(taxel, reading, self.zeros[taxel]) > 0.0
+            });
+            let is_full =
+                |taxel: usize, reading| above(taxel, reading, self.saturations[taxel]) >= 0.0;
             (!is_touched, self.any_reading(touch, is_full))
         };
         frames.make(&touches, || (), copy, progress);

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::inputs::arrays::TableContent;
 use crate::inputs::arrays::file_array::{ElementKind, FileArray};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
+use bubbletouch_sim::statistics::quantile::quantile;
 use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -14,9 +15,14 @@ use std::path::{Path, PathBuf};
 pub enum UntouchedFrames {
     /// The recording does not specify frames in which nothing touches the skin.
     None,
-    /// Separate file of frames in which nothing touches the skin. The untouched frames are recorded at even intervals over the session of the main file, in
-    /// order of time.
-    File(PathBuf),
+    /// Separate file of frames in which nothing touches the skin, in order of time. The untouched frames are recorded at even intervals over the ranges `times`,
+    /// which are fractions of the session of the main file, 0 to 1.
+    File {
+        /// Path of the file.
+        path: PathBuf,
+        /// Ranges of times at which the frames were recorded.
+        times: Vec<Range<f64>>,
+    },
     /// Ranges of the numbers of untouched frames in the main file.
     Among(Vec<Range<usize>>),
 }
@@ -36,20 +42,21 @@ pub struct RecordedSkinFiles {
     pub untouched: UntouchedFrames,
     /// File with the total force on the skin in each frame, newtons, shape (n,).
     pub forces: Option<PathBuf>,
-    /// Reading of a taxel that is not touched.
-    pub zero: f64,
-    /// Reading of a taxel at full scale; if `None`, the largest of all readings.
+    /// Reading of a taxel that is not touched. If `None`, the median of the untouched frames if their readings have one sign, otherwise 0.
+    pub zero: Option<f64>,
+    /// Reading of a taxel at full scale, not equal to `zero`; if `None`, the largest of all readings.
     pub full_scale: Option<f64>,
     /// Deflection of a taxel at full scale, mm; `None` if unknown.
     pub stroke_mm: Option<f64>,
 }
 
 impl RecordedSkinFiles {
-    /// Reads the recorded files of the skin.
+    /// Reads the recorded files of the skin. Also returns the reading of a taxel that is not touched.
     ///
     /// # Errors
-    /// If a file cannot be read or does not fit the others, a range exceeds the frames, or the full scale is not above the zero.
-    pub fn read(&self) -> Result<RecordedSkin> {
+    /// If a file cannot be read or does not fit the others, a range exceeds the frames, the times of untouched frames are no ranges within 0 to 1,
+    /// or the full scale equals the zero.
+    pub fn read(&self) -> Result<(RecordedSkin, f64)> {
         let (frames, shape) = self.frames_of(&self.frames)?;
         let n = frames.nrows();
         let times = Array1::linspace(0.0, 1.0, n);
@@ -61,7 +68,7 @@ impl RecordedSkinFiles {
         let all: Vec<usize> = (0..n).collect();
         let (untouched, untouched_times, touched) = match &self.untouched {
             UntouchedFrames::None => (Array2::zeros((0, frames.ncols())), Array1::zeros(0), all),
-            UntouchedFrames::File(path) => {
+            UntouchedFrames::File { path, times } => {
                 let (untouched, other) = self.frames_of(path)?;
                 if other != shape {
                     let given = format!("frames of {} × {} taxels", other.0, other.1);
@@ -69,7 +76,7 @@ impl RecordedSkinFiles {
                         format!("{} × {}, as {}", shape.0, shape.1, self.frames.display());
                     return Err(Error::input(path.display(), given, allowed));
                 }
-                let times = Array1::linspace(0.0, 1.0, untouched.nrows());
+                let times = times_in(times, untouched.nrows())?;
                 (untouched, times, all)
             }
             UntouchedFrames::Among(ranges) => {
@@ -87,12 +94,13 @@ impl RecordedSkinFiles {
         let all = || frames.iter().chain(&untouched);
         let largest = all().fold(f64::NEG_INFINITY, |largest, &reading| largest.max(reading));
         let full_scale = self.full_scale.unwrap_or(largest);
-        if full_scale.is_nan() || full_scale <= self.zero {
-            let allowed = format!("a number above the zero, {}", self.zero);
+        let zero = self.zero.unwrap_or_else(|| usual_zero(&untouched));
+        if full_scale.is_nan() || full_scale == zero {
+            let allowed = format!("a number other than the zero, {zero}");
             return Err(Error::input("full scale", full_scale, allowed));
         }
-        let share = |reading: f64| (reading - self.zero) / (full_scale - self.zero);
-        Ok(RecordedSkin {
+        let share = |reading: f64| (reading - zero) / (full_scale - zero);
+        let skin = RecordedSkin {
             shape,
             touched: frames.select(Axis(0), &touched).mapv(share),
             touched_times: times.select(Axis(0), &touched),
@@ -100,7 +108,8 @@ impl RecordedSkinFiles {
             untouched_times,
             forces: forces.map(|forces| forces.select(Axis(0), &touched)),
             stroke: self.stroke_mm.map(|stroke| stroke * 1e-3),
-        })
+        };
+        Ok((skin, zero))
     }
 }
 
@@ -120,6 +129,48 @@ impl RecordedSkinFiles {
         let readings = spec.read_array("frames")?.into_numbers()?;
         Ok((shape.arrange(readings), (shape.rows, shape.columns)))
     }
+}
+
+/// Fraction of untouched readings that may have another sign than the zero offset of the skin. A skin whose zero is 0 reads as many values on both sides of 0,
+/// or 0 itself.
+const OTHER_SIGN: f64 = 0.05;
+
+/// Returns the median of untouched readings if nearly all of them have one sign, otherwise 0.
+fn usual_zero(untouched: &Array2<f64>) -> f64 {
+    let most = OTHER_SIGN * untouched.len() as f64;
+    let n_with =
+        |sign: fn(&f64) -> bool| untouched.iter().filter(|reading| sign(reading)).count() as f64;
+    match n_with(|reading| *reading <= 0.0) < most || n_with(|reading| *reading >= 0.0) < most {
+        true => quantile(&mut untouched.iter().copied().collect::<Vec<_>>(), 0.5),
+        false => 0.0,
+    }
+}
+
+/// Returns the times of n frames at even intervals over ranges of times, one range after the other.
+fn times_in(ranges: &[Range<f64>], n: usize) -> Result<Array1<f64>> {
+    let mut last = 0.0;
+    for range in ranges {
+        if !(last <= range.start && range.start <= range.end && range.end <= 1.0) {
+            let given = format!("{}..{}", range.start, range.end);
+            let allowed =
+                "FROM..TO with 0 ≤ FROM ≤ TO ≤ 1, fractions of the session in order of time";
+            return Err(Error::input("times of untouched frames", given, allowed));
+        }
+        last = range.end;
+    }
+    let total: f64 = ranges.iter().map(|range| range.end - range.start).sum();
+    let time = |frame: usize| {
+        let mut rest = total * frame as f64 / (n.max(2) - 1) as f64;
+        for range in ranges {
+            let length = range.end - range.start;
+            if rest <= length {
+                return range.start + rest;
+            }
+            rest -= length;
+        }
+        last
+    };
+    Ok((0..n).map(time).collect())
 }
 
 /// Reads one number per frame from a file.

@@ -13,6 +13,14 @@ use ndarray::{Array2, Axis, concatenate};
 /// rejected; with a smaller value, a few missing readings mask a taxel.
 const MASKED: f64 = 0.1;
 
+/// Minimum number of frames from which a taxel with one reading counts as one without a sensor. With fewer frames, an untouched taxel may read one number by
+/// chance.
+const MIN_CONSTANT: usize = 20;
+
+/// Largest distance of readings from their zero, in multiples of their change. Frames are kept in single precision, with a relative error of 6e-8. With a larger
+/// value, changes are rounded by more than 0.6 %; with a smaller value, exact recordings with an offset are refused.
+const MAX_OFFSET: f64 = 1e5;
+
 /// Frames that one file contains, and the shape of each frame.
 struct FramesOfFile {
     shape: FrameShape,
@@ -42,7 +50,7 @@ pub struct SensorScale {
     pub zeros: Vec<f64>,
     /// Reading of a taxel whose deflection equals its stroke.
     pub full_scale: f64,
-    /// Reading above which a taxel counts as saturated.
+    /// Reading from which on a taxel counts as saturated.
     pub saturation: f64,
 }
 
@@ -116,9 +124,13 @@ impl SensorFrames {
     /// If a reading is not finite although its taxel is not masked, or the zeros do not fit the readings.
     pub fn scale(&self, are_depths_known: bool) -> Result<SensorScale> {
         let (files, shape) = (self.files(), &self.train.shape);
-        let is_masked = masked(&files, shape.rows * shape.columns)?;
-        let zeros = self.spec.checked_zeros(shape, &is_masked)?;
-        let scale = self.spec.full_scale_of(&files, &zeros, are_depths_known)?;
+        let mut is_masked = masked(&files, shape.rows * shape.columns)?;
+        let zeros = self.spec.zeros(shape)?;
+        mask_placeholders(&files, &zeros, &mut is_masked);
+        let zeros = self.spec.checked_zeros(zeros, &is_masked)?;
+        check_precision(&files, &zeros, &is_masked)?;
+        let scale = (&files[..], &zeros[..], &is_masked[..]);
+        let scale = self.spec.full_scale_of(scale, are_depths_known)?;
         let (full_scale, saturation) = scale;
         Ok(SensorScale {
             is_masked,
@@ -212,8 +224,7 @@ impl RecordedSpec {
     }
 
     /// Checks and returns the reading of each untouched taxel; the reading of a masked taxel is 0.
-    fn checked_zeros(&self, shape: &FrameShape, is_masked: &[bool]) -> Result<Vec<f64>> {
-        let mut zeros = self.zeros(shape)?;
+    fn checked_zeros(&self, mut zeros: Vec<f64>, is_masked: &[bool]) -> Result<Vec<f64>> {
         for (taxel, zero) in zeros.iter_mut().enumerate() {
             if is_masked[taxel] {
                 *zero = 0.0;
@@ -228,32 +239,52 @@ impl RecordedSpec {
         Ok(zeros)
     }
 
-    /// Returns two readings: the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. A taxel counts as saturated above
-    /// the given full scale, or above a smaller largest reading that many frames share. If the depths are known, a shared largest reading is ignored, because
-    /// equal depths may cause it.
+    /// Returns two readings: the reading of a taxel at full scale, and the reading from which on a taxel counts as saturated. A taxel counts as saturated from
+    /// the given full scale on, or from a smaller largest reading that many frames share. If the depths are known, a shared largest reading is ignored, because
+    /// equal depths may cause it. If the full scale is below the zeros, readings fall under pressure, and the smallest reading counts as the largest one.
     fn full_scale_of(
         &self,
-        files: &[&FramesOfFile],
-        zeros: &[f64],
+        (files, zeros, is_masked): (&[&FramesOfFile], &[f64], &[bool]),
         are_depths_known: bool,
     ) -> Result<(f64, f64)> {
+        let present = || (0..zeros.len()).filter(|&taxel| !is_masked[taxel]);
+        let highest = present()
+            .map(|taxel| zeros[taxel])
+            .fold(f64::NEG_INFINITY, f64::max);
+        let lowest = present()
+            .map(|taxel| zeros[taxel])
+            .fold(f64::INFINITY, f64::min);
+        let sign = match self.full_scale {
+            Some(full_scale) if full_scale < lowest => -1.0,
+            _ => 1.0,
+        };
         let frames = || files.iter().flat_map(|file| file.readings.outer_iter());
-        let pushes = || frames().map(|frame| frame.into_iter().take(zeros.len()).copied());
+        let pushes = || {
+            frames().map(|frame| {
+                let taxels = frame.into_iter().zip(is_masked).take(zeros.len());
+                taxels.map(
+                    move |(&reading, &is_masked)| if is_masked { f64::NAN } else { sign * reading },
+                )
+            })
+        };
         let largest = pushes().flatten().filter(|reading| !reading.is_nan());
         let largest = largest.fold(f64::NEG_INFINITY, f64::max);
         let full_scale = self.full_scale.unwrap_or(largest);
-        let highest = zeros.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if highest >= full_scale {
+        if sign * (full_scale - if sign > 0.0 { highest } else { lowest }) <= 0.0 {
             return Err(match &self.zero {
                 ZeroSpec::One(zero) => {
                     let given = format!("no reading above recorded.zero, {zero}");
-                    Error::input(self.frames.display(), given, "touches")
+                    let allowed =
+                        "touches (readings that fall under pressure need recorded.full_scale)";
+                    Error::input(self.frames.display(), given, allowed)
                 }
                 ZeroSpec::Each(path) => {
-                    let taxel = zeros.iter().position(|&zero| zero == highest);
+                    let taxel = present().find(|&taxel| zeros[taxel] == highest);
                     let place = format!("{}, taxel {}", path.display(), taxel.unwrap_or(0));
                     let allowed = match self.full_scale {
-                        Some(full_scale) => format!("below recorded.full_scale, {full_scale}"),
+                        Some(full_scale) => format!(
+                            "below recorded.full_scale, {full_scale} (or all zeros above it, if readings fall under pressure)"
+                        ),
                         None => format!(
                             "below the largest reading, {largest}, which stands for the full scale"
                         ),
@@ -266,15 +297,80 @@ impl RecordedSpec {
             ElementKind::Float(spacing) => spacing,
             _ => 0.0,
         };
-        let given = self.full_scale.map(|full| full - spacing * full.abs());
+        let given = self
+            .full_scale
+            .map(|full| sign * full - spacing * full.abs());
         let shared = match are_depths_known {
             true => None,
-            false => plateau(pushes).filter(|&level| level > highest),
+            false => {
+                plateau(pushes).filter(|&level| level > if sign > 0.0 { highest } else { -lowest })
+            }
         };
         let saturation = given
             .unwrap_or(f64::INFINITY)
             .min(shared.unwrap_or(f64::INFINITY));
-        Ok((full_scale, saturation))
+        Ok((full_scale, sign * saturation))
+    }
+}
+
+/// Checks that the readings minus their zeros keep their changes in single precision.
+///
+/// # Errors
+/// If the changes of most taxels are too small beside their distance from the zero.
+fn check_precision(files: &[&FramesOfFile], zeros: &[f64], is_masked: &[bool]) -> Result<()> {
+    let (mut n_rounded, mut n_changing, mut example) = (0, 0, None);
+    for taxel in (0..zeros.len()).filter(|&taxel| !is_masked[taxel]) {
+        let readings = files.iter().flat_map(|file| file.readings.column(taxel));
+        let range = readings.fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(low, high), &reading| (low.min(reading), high.max(reading)),
+        );
+        let change = range.1 - range.0;
+        let away = (range.0 - zeros[taxel])
+            .abs()
+            .min((range.1 - zeros[taxel]).abs());
+        n_changing += usize::from(change > 0.0);
+        if change > 0.0 && away > MAX_OFFSET * change {
+            n_rounded += 1;
+            example.get_or_insert(range);
+        }
+    }
+    match example.filter(|_| 2 * n_rounded > n_changing) {
+        Some((low, high)) => Err(Error::input(
+            &files[0].place,
+            format!(
+                "readings from {low} to {high}, far from recorded.zero: single precision would round their changes off"
+            ),
+            "recorded.zero = the reading of an untouched taxel",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Masks taxels that read one number other than their zero in all frames, such as −1 at places of a rectangle without a sensor, if another taxel changes.
+fn mask_placeholders(files: &[&FramesOfFile], zeros: &[f64], is_masked: &mut [bool]) {
+    let n_frames: usize = files.iter().map(|file| file.readings.nrows()).sum();
+    if n_frames < MIN_CONSTANT {
+        return;
+    }
+    let frames = || files.iter().flat_map(|file| file.readings.outer_iter());
+    let first: Vec<f64> = frames().next().into_iter().flatten().copied().collect();
+    let mut is_constant = vec![true; first.len()];
+    for frame in frames() {
+        for (is_constant, (reading, first)) in is_constant.iter_mut().zip(frame.iter().zip(&first))
+        {
+            *is_constant &= reading == first;
+        }
+    }
+    if (0..first.len()).all(|place| is_masked[place] || is_constant[place]) {
+        return;
+    }
+    let n_taxels = zeros.len();
+    for taxel in (0..n_taxels).filter(|&taxel| first[taxel] != zeros[taxel]) {
+        let values = (taxel..first.len()).step_by(n_taxels);
+        if values.clone().all(|place| is_constant[place]) {
+            values.for_each(|place| is_masked[place] = true);
+        }
     }
 }
 

@@ -82,6 +82,11 @@ pub trait TouchSet: Sync {
         (0, 0)
     }
 
+    /// Returns whether each taxel of a recorded skin is absent, that is, masked; empty for simulated touches.
+    fn absent(&self) -> &[bool] {
+        &[]
+    }
+
     /// Computes data that all touches need, using all threads. Without this call, the first touches would compute the data one after the other.
     fn prepare(&self) {}
 

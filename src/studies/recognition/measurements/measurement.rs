@@ -192,7 +192,7 @@ pub fn measure_group(
         projection: &sensed.projection,
         ..reading
     };
-    let (values, cpu_s) = measure(reading, &touches)?;
+    let (mut values, cpu_s) = measure(reading, &touches)?;
     let mut copies = None;
     let of_images = match &sensed.images {
         None => Vec::new(),
@@ -205,6 +205,8 @@ pub fn measure_group(
             wanted.into_iter().zip(made).collect()
         }
     };
+    let is_absent = array.patch().absent();
+    sensed.projection.average_present(is_absent, &mut values);
     let ones = Array2::ones((1, array.n_values()));
     let selected = sensed
         .projection

@@ -65,15 +65,11 @@ impl Check<'_> {
             return Err(self.error("recognition.group_by", "given", allowed));
         }
         self.table("recorded", recorded)?;
-        let zero = match recorded.zero {
-            ZeroSpec::One(zero) => zero,
-            // Zeros from a file are compared with the full scale when the frames are read.
-            ZeroSpec::Each(_) => f64::NEG_INFINITY,
-        };
-        if let Some(full_scale) = recorded.full_scale
-            && full_scale <= zero
+        // Zeros from a file are compared with the full scale when the frames are read.
+        if let (Some(full_scale), ZeroSpec::One(zero)) = (recorded.full_scale, &recorded.zero)
+            && full_scale == *zero
         {
-            let allowed = format!("a number above recorded.zero, {zero}");
+            let allowed = format!("a number other than recorded.zero, {zero}");
             return Err(self.error("recorded.full_scale", full_scale, allowed));
         }
         self.of_time(recorded, spec)?;

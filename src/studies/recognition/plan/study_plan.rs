@@ -128,6 +128,17 @@ impl Plan {
         Ok(plan)
     }
 
+    /// Removes taxels that read nothing from all arrays. The list has one value for each taxel, or none if all taxels read.
+    pub(crate) fn without_taxels(mut self, is_absent: &[bool]) -> Self {
+        if is_absent.contains(&true) {
+            let arrays = self.arrays.into_iter();
+            self.arrays = arrays.map(|array| array.without(is_absent)).collect();
+            let tested = self.tested.map(Arc::unwrap_or_clone);
+            self.tested = tested.map(|plan| Arc::new(plan.without_taxels(is_absent)));
+        }
+        self
+    }
+
     /// Returns one plan for each combination of values in the table `[axes]`, or a single plan if there are no axes. Each plan contains the specification of
     /// the whole study.
     ///

@@ -103,6 +103,12 @@ impl TaxelArray {
         self
     }
 
+    /// Returns the array with taxels that read nothing, given as one value for each taxel; see [`Patch::without`].
+    pub fn without(mut self, is_absent: &[bool]) -> Self {
+        self.patch = Arc::new(Patch::clone(&self.patch).without(is_absent));
+        self
+    }
+
     /// Returns whether the positions of the array's taxels are known.
     pub fn is_placed(&self) -> bool {
         self.is_placed
@@ -382,7 +388,7 @@ impl TaxelArray {
     }
 }
 
-/// Writes all inputs that determine the frames of the array; the patch is omitted because it is derived from them.
+/// Writes all inputs that determine the frames of the array; of the patch, which is derived from them, only the absent taxels.
 impl fmt::Debug for TaxelArray {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self {
@@ -394,7 +400,7 @@ impl fmt::Debug for TaxelArray {
             slide,
             is_placed,
             listed,
-            patch: _,
+            patch,
         } = self;
         let places = match listed {
             Some(listed) => format!(" {}", listed.identity()),
@@ -404,7 +410,13 @@ impl fmt::Debug for TaxelArray {
         write!(
             f,
             "{grid:?} {taxel:?} {layout:?} {radius} {sensed:?} {slide}{places}"
-        )
+        )?;
+        let absent = patch.absent().iter().enumerate().filter(|(_, is)| **is);
+        let absent: Vec<usize> = absent.map(|(taxel, _)| taxel).collect();
+        match &absent[..] {
+            [] => Ok(()),
+            absent => write!(f, " without {absent:?}"),
+        }
     }
 }
 

@@ -52,7 +52,7 @@ pub struct StudySpec {
     /// Seed of all random numbers. Default: 2018.
     #[serde(default = "default_seed")]
     pub seed: u64,
-    /// Number of trials per configuration, at least 1, each with a new split, projection and noise. Default: 1.
+    /// Number of trials per configuration, at least 1, each with a new split, projection and noise. Default: `recognition.folds`, or 1 without folds.
     #[serde(default = "count::<1>")]
     pub trials: usize,
     /// Number P of projections (measurement matrices) per split; the study has `trials` / P splits, each combined with P projections. Default: one projection
@@ -321,7 +321,18 @@ impl StudySpec {
     /// If the text is not a valid study. The error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         let (spec, axes) = axes::read::<Self>(place, text, recognition_keys())?;
-        Ok(Self { axes, ..spec })
+        let has_trials = text
+            .parse::<toml::Table>()
+            .is_ok_and(|table| table.contains_key("trials"));
+        let trials = match spec.recognition.folds {
+            Some(folds) if !has_trials => folds,
+            _ => spec.trials,
+        };
+        Ok(Self {
+            axes,
+            trials,
+            ..spec
+        })
     }
 
     /// Returns whether the study places objects and presses an array on them.

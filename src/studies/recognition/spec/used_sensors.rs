@@ -145,9 +145,9 @@ impl RecordedSpec {
                 return refuse(&key("pitch_mm"), pitch.to_string(), "a positive number");
             }
             if let (Some(full_scale), ZeroSpec::One(zero)) = (sensor.full_scale, &sensor.zero)
-                && (!full_scale.is_finite() || full_scale <= *zero)
+                && (!full_scale.is_finite() || full_scale == *zero)
             {
-                let allowed = format!("a number above the zero, {zero}");
+                let allowed = format!("a number other than the zero, {zero}");
                 return refuse(&key("full_scale"), full_scale.to_string(), &allowed);
             }
         }

@@ -71,7 +71,7 @@ impl RecognitionStudy {
         }
         let n_masked = self.first().touched.n_masked();
         if n_masked.0 > 0 {
-            let meaning = "they are missing (NaN) in at least 10 % of the frames and read recorded.zero in all";
+            let meaning = "they are missing (NaN) in at least 10 % of the frames, or read one number other than recorded.zero in all; they are taken as absent";
             limits.push(limit("taxels that are masked", n_masked, meaning));
         }
         limits

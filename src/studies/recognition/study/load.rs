@@ -121,6 +121,7 @@ impl RecognitionStudy {
                 .tested
                 .as_deref()
                 .map_or(Ok(touched.clone()), &mut draw)?;
+            let plan = plan.without_taxels(touched.absent());
             Ok((variant, plan, [touched, tested]))
         });
         let variants = variants.collect::<Result<Vec<_>>>()?;

@@ -1,7 +1,7 @@
 //! Text of a robot's file: decodes bytes, and repairs the text for a strict XML parser without changing line numbers.
 //!
 //! Many public files are not well-formed XML, although other tools accept them. Examples are comments or spaces before `<?xml`, `--` inside
-//! a comment, undeclared namespace prefixes, and NUL bytes at the end.
+//! a comment, undeclared namespace prefixes, a second end tag of the root, and NUL bytes at the end.
 
 use super::xml::Lines;
 use crate::error::Error as InputError;
@@ -63,7 +63,23 @@ pub(super) fn repaired(place: &str, text: &str, lines: &Lines) -> String {
         };
         repaired.insert_str(end, &format!(" xmlns:{prefix}=\"{prefix}\""));
     }
-    repaired
+    without_second_end(repaired, place, lines)
+}
+
+/// Returns the text without end tags of the root element that follow the end of the root element.
+fn without_second_end(mut text: String, place: &str, lines: &Lines) -> String {
+    let end_tag = format!("</{}>", root_name(&text).unwrap_or_default());
+    if parsed(&text).is_err() {
+        while let Some(before) = text.trim_end().strip_suffix(&end_tag)
+            && before.trim_end().ends_with(&end_tag)
+        {
+            text.truncate(before.len());
+            lines.note(format!(
+                "{place}: a second {end_tag} at the end: not well-formed XML, read all the same"
+            ));
+        }
+    }
+    text
 }
 
 /// Parses the XML text; document type declarations are ignored.

@@ -513,3 +513,22 @@ fn a_missing_link_that_carries_the_whole_robot_is_its_base() {
         "{wrong}"
     );
 }
+
+#[test]
+fn a_second_end_tag_of_the_root_is_read_with_a_note() {
+    let text = "<robot name='r'><link name='a'/></robot>\n";
+    for end in ["</robot>", "</robot>\n<!-- end --> </robot>\n"] {
+        let robot = read(&format!("{text}{end}"));
+        assert_eq!(robot.links().len(), 1);
+        has_note(&robot, "a second </robot>");
+    }
+    let mjcf =
+        "<mujoco><worldbody><body name='b'><geom size='0.1'/></body></worldbody></mujoco></mujoco>";
+    let robot = Robot::from_mjcf("r.xml", mjcf).unwrap();
+    assert!(
+        robot
+            .notes()
+            .iter()
+            .any(|note| note.contains("a second </mujoco>"))
+    );
+}
