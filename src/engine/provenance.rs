@@ -146,6 +146,12 @@ impl Manifest {
         serde_json::from_value(json).map(Some).map_err(not_ours)
     }
 
+    /// Returns the name and the SHA-256 hash of each table, chart, picture and page in the folder.
+    pub fn files(&self) -> impl Iterator<Item = (&String, &String)> {
+        let tables = self.tables_sha256.iter().chain(&self.times_sha256);
+        tables.chain(self.files_sha256.iter().flatten())
+    }
+
     /// Returns the wall-clock time of the last run, seconds; `None` if its start or end is not a valid time.
     pub fn wall_s(&self) -> Option<f64> {
         let time = |text: &str| DateTime::parse_from_rfc3339(text).ok();

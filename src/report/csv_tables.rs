@@ -15,6 +15,8 @@ pub const FAILURES_FILE: &str = "failures.csv";
 pub const LIMITS_FILE: &str = "limits.csv";
 /// Name of the row in [`LIMITS_FILE`] that counts the touches without any touched taxel.
 pub const MISSED_TOUCHES: &str = "touches that met nothing";
+/// Name of the row in [`LIMITS_FILE`] that counts the trained classifiers whose solver stopped at its iteration cap.
+pub const CAPPED_FITS: &str = "fits stopped at the solver's iteration cap";
 
 /// Description of a valid table file, for error messages.
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";

@@ -1,6 +1,7 @@
 //! Files of a result folder except the tables: charts, pictures and the page.
 
 use crate::error::Result;
+use crate::inputs::content_hash::short_hash;
 use crate::report::chart;
 pub use crate::report::chart_format::ChartFormat;
 use crate::report::folder::NamedFile;
@@ -9,6 +10,7 @@ pub use crate::report::study_content::{Beyond, Found, NamedPicture};
 use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
+use std::collections::HashSet;
 
 /// Maximum number of charts on the page; also the maximum number of drawn charts, unless all charts are requested. With a larger value, the page is too large
 /// for a phone and drawing takes minutes.
@@ -26,7 +28,7 @@ pub fn files_with(
 ) -> Result<Vec<NamedFile>> {
     let mut beside = Beside::default();
     let mut charts = Vec::new();
-    for spec in found.charts {
+    for spec in &with_file_names(found.charts) {
         if charts.len() >= MAX_CHARTS && !about.all_charts {
             beside.left_out.push(spec.name.clone());
         } else if !chart::places(spec, found.tables)?.is_empty() {
@@ -63,6 +65,45 @@ pub fn files_with(
     Ok(files)
 }
 
+/// Maximum length of a chart's file name without extension, bytes. File systems allow 255 bytes, of which the name of the temporary file needs about 40.
+const MAX_NAME: usize = 200;
+
+/// Number of hexadecimal digits of the hash that ends a shortened name. With fewer digits, two long names may become equal.
+const NAME_DIGITS: usize = 12;
+
+/// Returns the charts with names that are distinct file names, also if the file system ignores case. The end of a long name is replaced by a hash of the name;
+/// a repeated name gets a number. Other names are unchanged.
+fn with_file_names(charts: &[ChartSpec]) -> Vec<ChartSpec> {
+    let names = charts.iter().map(|chart| short_name(&chart.name));
+    let names: Vec<String> = names.collect();
+    let given: HashSet<String> = names.iter().map(|name| name.to_lowercase()).collect();
+    let mut known = HashSet::new();
+    let named = charts.iter().zip(names).map(|(chart, name)| {
+        let numbered = (2..).map(|n| format!("{name}_{n}"));
+        let mut numbered = numbered.filter(|name| !given.contains(&name.to_lowercase()));
+        let mut candidates = std::iter::once(name.clone()).chain(&mut numbered);
+        let name = candidates.find(|name| known.insert(name.to_lowercase()));
+        ChartSpec {
+            name: name.expect("numbers do not end"),
+            ..chart.clone()
+        }
+    });
+    named.collect()
+}
+
+/// Returns a name of at most [`MAX_NAME`] bytes, which ends in a hash of the given name if that is longer.
+fn short_name(name: &str) -> String {
+    if name.len() <= MAX_NAME {
+        return name.to_owned();
+    }
+    let start = name.chars().scan(0, |end, letter| {
+        *end += letter.len_utf8();
+        (*end + NAME_DIGITS < MAX_NAME).then_some(letter)
+    });
+    let start: String = start.collect();
+    format!("{start}_{}", short_hash(name, NAME_DIGITS))
+}
+
 /// Returns only the HTML page of a result folder, without other files.
 ///
 /// # Errors
@@ -97,4 +138,35 @@ pub fn first_found(tables: &[Table]) -> Option<&Table> {
     let is_found = |role: Role| matches!(role, Role::Value(_) | Role::Outcome);
     let mut tables = tables.iter().filter(|table| table.n_rows > 0);
     tables.find(|table| table.columns.iter().any(|column| is_found(column.role)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chart_files_have_distinct_names_that_a_file_system_takes() {
+        let long = |end: &str| format!("{}{end}", "accuracy_by_long_setting_".repeat(12));
+        let given = [
+            "confusion".to_owned(),
+            "Confusion".to_owned(),
+            "confusion".to_owned(),
+            "confusion_2".to_owned(),
+            long("a"),
+            long("b"),
+            long("a"),
+        ];
+        let charts = given.clone().map(|name| ChartSpec {
+            name,
+            ..ChartSpec::default()
+        });
+        let named = with_file_names(&charts);
+        let names: Vec<&str> = named.iter().map(|chart| &chart.name[..]).collect();
+        assert_eq!(names[0], "confusion");
+        assert_eq!(names[1..4], ["Confusion_3", "confusion_4", "confusion_2"]);
+        let lower: HashSet<String> = names.iter().map(|name| name.to_lowercase()).collect();
+        assert_eq!(lower.len(), names.len());
+        let temporary = ".svg.4194304.1000000.partial";
+        assert!(names.iter().all(|name| name.len() + temporary.len() <= 255));
+    }
 }

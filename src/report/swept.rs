@@ -96,12 +96,21 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Returns one row for each distinct value of the setting: numbers ascending, texts in the order of first occurrence.
+    /// Returns the value of the setting in a row as a position among numbers. Returns `None` for a text, an absent value, and a number with a name, such as
+    /// 0 bits for "no converter".
+    pub fn position(&self, row: usize) -> Option<f64> {
+        match self.data.value(row)? {
+            Value::Number(number) => (!self.column.is_named(number)).then_some(number),
+            Value::Word(_) => None,
+        }
+    }
+
+    /// Returns one row for each distinct value of the setting: numbers ascending, then values that have no position among numbers, in the order of first
+    /// occurrence.
     pub fn levels(&self, rows: &[usize]) -> Vec<usize> {
         let mut firsts = rows.to_vec();
-        if let Data::Numbers(numbers) = self.data {
-            firsts.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b]));
-        }
+        let position = |row: &usize| self.position(*row).unwrap_or(f64::INFINITY);
+        firsts.sort_by(|a, b| position(a).total_cmp(&position(b)));
         let mut known = HashSet::new();
         firsts.retain(|&row| known.insert(self.data.key(row)));
         firsts

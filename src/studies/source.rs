@@ -51,8 +51,18 @@ impl Source {
     }
 
     /// Returns the seed from the command line if it is given, otherwise the seed of the study, `of_study`.
-    pub fn seed(&self, of_study: u64) -> u64 {
-        self.seed.unwrap_or(of_study)
+    ///
+    /// # Errors
+    /// If the seed is no integer of TOML, because the resolved study could not be read again.
+    pub fn seed(&self, of_study: u64) -> Result<u64> {
+        match self.seed {
+            Some(seed) if i64::try_from(seed).is_err() => Err(Error::input(
+                "--seed",
+                seed,
+                "a number below 2⁶³, as in a study file",
+            )),
+            seed => Ok(seed.unwrap_or(of_study)),
+        }
     }
 
     /// Replaces the objects of a study if a command-line option gives other objects.

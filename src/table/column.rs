@@ -143,6 +143,11 @@ impl Column {
         names.find_map(|(known, name)| (*known == code).then_some(*name))
     }
 
+    /// Returns whether a number of the column has a name, such as `none` for 0 bits. Such a number has no position between other numbers.
+    pub fn is_named(&self, number: f64) -> bool {
+        self.name_of(&short_number(number)).is_some()
+    }
+
     /// Returns whether the numbers of the column are times on a logarithmic scale.
     fn is_time(&self) -> bool {
         self.scale == Scale::Log && matches!(self.unit.as_ref(), "s" | "ms" | "us" | "µs")
@@ -169,7 +174,7 @@ impl Column {
         let tick = self.tick(number);
         match self.unit.as_ref() {
             "" | ":1" => tick,
-            _ if self.is_time() || self.name_of(&short_number(number)).is_some() => tick,
+            _ if self.is_time() || self.is_named(number) => tick,
             "bits" if number == 1.0 => format!("{tick} bit"),
             unit => format!("{tick} {unit}"),
         }

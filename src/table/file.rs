@@ -2,6 +2,7 @@
 
 use super::{Column, Columns, Table};
 use crate::error::{Error, Result};
+use crate::files::has_table;
 use serde::Serialize;
 use std::marker::PhantomData;
 use std::path::Path;
@@ -111,12 +112,12 @@ impl<R: Columns> File<R> {
         self.parse(columns, &path, csv)
     }
 
-    /// Reads an optional table of a study from its CSV file in a folder. Returns `None` if the file does not exist.
+    /// Reads an optional table of a study from its CSV file in a folder. Returns `None` if the file does not exist or is no table of the folder's last run.
     ///
     /// # Errors
     /// If the file cannot be read, or has other columns or invalid values.
     pub fn read_if_there(&self, folder: &Path) -> Result<Option<Table>> {
-        let is_there = folder.join(self.name).exists();
+        let is_there = has_table(folder, self.name);
         is_there.then(|| self.read(folder)).transpose()
     }
 

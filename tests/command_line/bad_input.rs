@@ -627,8 +627,16 @@ fn a_published_accuracy_is_shown_beside_ours_and_kept_in_a_table() {
 }
 
 #[test]
-fn a_seed_of_the_command_line_may_be_larger_than_any_of_a_file() {
+fn a_seed_of_the_command_line_is_one_that_a_file_may_have() {
     let case = Case::new();
     case.file("study.toml", STUDY);
-    case.succeeds(&["plan", "study.toml", "--seed", &u64::MAX.to_string()]);
+    let plan = |seed: u64| case.run(&["plan", "study.toml", "--seed", &seed.to_string()]);
+    assert!(plan(i64::MAX as u64).status.success());
+    let refused = plan(i64::MAX as u64 + 1);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(
+        said.contains("--seed: 9223372036854775808; a number below 2⁶³"),
+        "{said}"
+    );
 }

@@ -345,6 +345,98 @@ fn the_page_is_not_drawn_over_from_tables_that_were_changed_or_are_gone() {
 }
 
 #[test]
+fn a_run_removes_the_results_that_it_no_longer_makes() {
+    let case = Case::new();
+    let swept = STUDY.replace("= 0.05", "= [0.0, 0.05, 0.4, 1.0]");
+    let run = |folder: &str, text: &str| {
+        case.file("edited.toml", text);
+        case.succeeds(&["run", "edited.toml", "--out", folder]);
+    };
+    run("found", &swept);
+    run("kept", &swept);
+    let robustness = case.path("kept/robustness.csv");
+    let changed = fs::read_to_string(&robustness).unwrap() + "a note of the user\n";
+    fs::write(&robustness, &changed).unwrap();
+    let made = chart_files(&case.path("found"));
+    run("found", STUDY);
+    run("kept", STUDY);
+    run("fresh", STUDY);
+    // No table and no chart of the first version is left, and no command reads the table that the user changed.
+    assert!(!case.path("found/robustness.csv").exists());
+    let left = chart_files(&case.path("found"));
+    assert!(left.len() < made.len() && left == chart_files(&case.path("fresh")));
+    assert_eq!(fs::read_to_string(&robustness).unwrap(), changed);
+    for folder in ["found", "kept"] {
+        case.succeeds(&["verify", folder]);
+        case.succeeds(&["report", folder]);
+        let page = fs::read_to_string(case.path(folder).join("report.html")).unwrap();
+        assert!(!page.contains("half-way at"), "{folder}");
+        let (said, _) = case.succeeds(&["compare", folder, "fresh"]);
+        assert!(!said.contains("robustness.csv"), "{said}");
+    }
+    // A command does not replace the file of the user.
+    case.file("edited.toml", &swept);
+    let refused = case.run(&["run", "edited.toml", "--out", "kept"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert_eq!(fs::read_to_string(&robustness).unwrap(), changed);
+}
+
+#[test]
+fn objects_that_changed_after_the_run_are_refused() {
+    let case = Case::new();
+    let tetrahedron = |size: f64| {
+        format!(
+            "v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nv 0 0 {size}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+        )
+    };
+    fs::create_dir(case.path("meshes")).unwrap();
+    case.file("meshes/large.obj", tetrahedron(0.06));
+    case.file("meshes/small.obj", tetrahedron(0.03));
+    let sets = "sets = [\"household\"]\nnames = [\"mug\", \"banana\", \"scissors\"]";
+    case.file("meshes.toml", STUDY.replace(sets, "meshes = \"meshes\""));
+    case.succeeds(&["run", "meshes.toml", "--out", "found"]);
+    case.succeeds(&["verify", "found"]);
+    let page = fs::read(case.path("found/report.html")).unwrap();
+    let refused = |wanted: &str| {
+        for command in ["verify", "report"] {
+            let output = case.run(&[command, "found"]);
+            let said = String::from_utf8(output.stderr).unwrap();
+            assert!(
+                output.status.code() == Some(2) && said.contains(wanted),
+                "{said}"
+            );
+        }
+        assert!(fs::read(case.path("found/report.html")).unwrap() == page);
+    };
+    case.file("meshes/small.obj", tetrahedron(0.031));
+    refused("found: object small: was changed after the run");
+    case.file("meshes/small.obj", tetrahedron(0.03));
+    case.file("meshes/third.obj", tetrahedron(0.05));
+    refused("found: object third: is not in the run");
+    fs::remove_file(case.path("meshes/third.obj")).unwrap();
+    case.succeeds(&["report", "found"]);
+}
+
+#[test]
+fn noise_in_mm_is_not_noise_in_full_scale() {
+    let case = Case::new();
+    let study = include_str!("../fixtures/kinds/reconstruction.toml");
+    for (name, key) in [("share", "noise_std_full_scale"), ("mm", "noise_std_mm")] {
+        let file = format!("{name}.toml");
+        case.file(&file, study.replace("noise_std_full_scale", key));
+        case.succeeds(&["run", &file, "--out", name]);
+    }
+    let (said, _) = case.succeeds(&["compare", "share", "mm"]);
+    let said = said.replace('\n', " ");
+    assert!(
+        said.contains("reconstruction.csv: 0 rows are in both runs"),
+        "{said}"
+    );
+    let (said, _) = case.succeeds(&["compare", "mm", "mm"]);
+    assert!(!said.contains("0 rows are in both runs"), "{said}");
+}
+
+#[test]
 fn with_too_few_trials_there_is_no_p_value_and_with_enough_there_is() {
     let case = Case::new();
     for (name, trials, status) in [("few", 2, "too_few_trials"), ("many", 4, "tested")] {

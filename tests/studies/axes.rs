@@ -55,18 +55,21 @@ fn scores(outcome: &Tables) -> Vec<TrialScore> {
 #[test]
 fn each_combination_scores_what_the_study_with_its_values_scores() {
     let axes = "touches.depth_mm = [1.0, 3.0]\nskin.stroke_mm = [2.0, 5.0]\n\
-                recognition.classifier = [\"linear_svm\", \"k_nearest\"]\nrecognition.n_neighbours = [1, 3]\nseed = [7, 2018]";
+                recognition.classifier = [\"linear_svm\", \"k_nearest\"]\nrecognition.n_neighbours = [1, 3]\ntouches.yaw_deg = [0.0, 40.0]";
     let outcome = run(&laid_out(&with_axes(axes)));
     let mut expected = Vec::new();
     for depth in [1.0, 3.0] {
         for stroke in [2.0, 5.0] {
             for neighbours in [1, 3] {
-                for seed in [7, 2018] {
+                for yaw in [0.0, 40.0] {
                     let rest = REST
                         .replace("taxels = 8", &format!("taxels = 8\nstroke_mm = {stroke:?}"))
-                        .replace("per_object", &format!("depth_mm = {depth:?}\nper_object"));
+                        .replace(
+                            "per_object",
+                            &format!("depth_mm = {depth:?}\nyaw_deg = {yaw:?}\nper_object"),
+                        );
                     let text = format!(
-                        "seed = {seed}\n{HEAD}{rest}{LEARNING}classifier = [\"linear_svm\", \"k_nearest\"]\nn_neighbours = {neighbours}\n"
+                        "{HEAD}{rest}{LEARNING}classifier = [\"linear_svm\", \"k_nearest\"]\nn_neighbours = {neighbours}\n"
                     );
                     expected.extend(scores(&Study::new(&text).run()));
                 }
@@ -83,7 +86,10 @@ fn each_combination_scores_what_the_study_with_its_values_scores() {
             .iter()
             .map(|v| &v.column.name[..]);
         let columns: Vec<&str> = columns.collect();
-        assert_eq!(columns, ["depth_mm", "stroke_mm", "n_neighbours", "seed"]);
+        assert_eq!(
+            columns,
+            ["depth_mm", "stroke_mm", "n_neighbours", "yaw_deg"]
+        );
     }
 }
 
@@ -175,14 +181,45 @@ fn a_combination_that_a_check_refuses_is_told_with_its_axis() {
 }
 
 #[test]
-fn the_seed_of_the_command_and_an_axis_of_seeds_exclude_each_other() {
+fn a_fit_is_counted_once_for_all_its_decisions_and_only_if_its_solver_has_a_cap() {
+    let axes = "touches.depth_mm = [1.0]\nskin.stroke_mm = [5.0]\n\
+                recognition.classifier = [\"linear_svm\", \"k_nearest\"]\n\
+                recognition.touches_per_decision = [1, 2, 3]\nrecognition.c = [1.0, 10.0]";
+    let limits = run(&laid_out(&with_axes(axes))).limits;
+    let fits = limits
+        .iter()
+        .find(|row| row.limit.starts_with("fits stopped"));
+    // Two trials, two ratios and two values of C of the SVM.
+    assert_eq!(fits.unwrap().total, 2 * 2 * 2);
+}
+
+#[test]
+fn a_seed_is_no_axis_because_trials_repeat_a_configuration() {
+    for axis in ["seed = [1, 2]", "\"seed\" = [1]", "trials = [1, 2]"] {
+        let text = with_axes(axis).replace("trials = 2\n", "");
+        let said = StudySpec::parse("s.toml", &text).unwrap_err().to_string();
+        let wanted =
+            "as an axis; one value: trials = N repeats each configuration with other random draws";
+        assert!(
+            said.starts_with("s.toml:") && said.contains(wanted),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn objects_of_the_command_and_an_axis_of_objects_exclude_each_other() {
     let case = Case::new();
-    let axes = "touches.depth_mm = [1.0]\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]\nseed = [1, 2]";
-    case.file("seeds.toml", with_axes(axes));
-    let output = case.run(&["plan", "seeds.toml", "--seed", "3"]);
+    let axes = "objects.sets = [[\"balls\"], [\"balls\", \"cans\"]]\ntouches.depth_mm = [1.0]\n\
+                skin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]";
+    let rest = REST.replace("sets = [\"balls\"]\n", "");
+    case.file("sets.toml", format!("{HEAD}{rest}{LEARNING}[axes]\n{axes}"));
+    case.succeeds(&["plan", "sets.toml"]);
+    let output = case.run(&["plan", "sets.toml", "--objects", "own.toml"]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("--seed: 3;"), "{said}");
+    let wanted = "--objects: own.toml; no such option: objects.sets is an axis of the study";
+    assert!(said.contains(wanted), "{said}");
 }
 
 #[test]

@@ -472,6 +472,17 @@ fn a_taxel_that_is_often_nan_is_masked_and_another_is_refused_with_the_rule() {
             (&last.limit[..], last.count, last.total),
             ("taxels that are masked", 1, 64)
         );
+        // Masked taxels are counted over all values of an axis.
+        write_npy(&case.path("whole.npy"), &self::frames()).unwrap();
+        let files = ["whole.npy", "nan.npy"].map(|name| folder.join(name).display().to_string());
+        let axis = format!("[axes]\nrecorded.frames = {files:?}\n");
+        let keys_of_axis = key(folder, "labels", "labels.npy");
+        let swept = laid_out(&format!(
+            "question = \"?\"\ntrials = 2\n[recorded]\n{keys_of_axis}\n{REST}\n{axis}"
+        ));
+        let limits = swept.unwrap().run(&Silent).unwrap().limits;
+        let last = limits.last().unwrap();
+        assert_eq!((last.count, last.total), (1, 128));
         // With zeros at these taxels, the touches are the same.
         frames.slice_mut(ndarray::s![.., 3, 4]).fill(0.0);
         write_npy(&case.path("zero.npy"), &frames).unwrap();

@@ -3,7 +3,7 @@
 use crate::command::terminal::output::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};
 use bubbletouch::study::file_content;
-use bubbletouch::study::provenance::Manifest;
+use bubbletouch::study::provenance::{Manifest, SOURCE};
 use bubbletouch::{Error, Result};
 use std::path::Path;
 
@@ -41,17 +41,36 @@ fn check(path: &Path, hash: &str) -> Result<()> {
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// Loads the study of a result folder, with a limit of its memory in bytes. Without a manifest, paths in it are relative to the folder.
+/// Loads the study of a result folder, with a limit of its memory in bytes, and checks that its objects are those of the run. Without a manifest, paths in it
+/// are relative to the folder.
 pub fn load_study(
     folder: &Path,
     manifest: Option<&Manifest>,
     memory: Option<u64>,
 ) -> Result<Box<dyn AnyStudy>> {
-    kinds::load(&Source {
+    let study = kinds::load(&Source {
         folder: manifest.map_or(folder, |of| &of.paths_from).to_owned(),
         packings: Some(packings_beside(folder)),
         results: folder.to_owned(),
         memory,
         ..Source::of_results(folder)?
-    })
+    })?;
+    let objects = &study.identity().objects;
+    // Other versions of the program may hash built-in objects in another way.
+    let comparable = manifest.filter(|of| of.source == SOURCE);
+    let of_run = comparable.map_or(objects, |of| &of.objects_sha256);
+    let mut names = of_run.keys().chain(objects.keys());
+    match names.find(|name| of_run.get(*name) != objects.get(*name)) {
+        None => Ok(study),
+        Some(name) => {
+            let given = match (of_run.get(name), objects.get(name)) {
+                (None, _) => "is not in the run",
+                (_, None) => "is missing",
+                _ => "was changed after the run",
+            };
+            let allowed = "the object that manifest.json names by its SHA-256";
+            let place = format!("{}: object {name}", folder.display());
+            Err(Error::input(place, given, allowed))
+        }
+    }
 }

@@ -56,9 +56,10 @@ impl StudyAxis {
 
     pub(super) fn check(&self, place: &str, known: &[KeyAbout]) -> Result<()> {
         let keys = self.keys();
-        let refused = keys
-            .iter()
-            .find(|key| find_key(known, key).is_some_and(|about| about.axis == AxisPlace::Never));
+        let refused = keys.iter().find_map(|key| {
+            let about = find_key(known, key)?;
+            (about.axis == AxisPlace::Never).then_some((key, about))
+        });
         let is_path =
             |key: &String| !key.split('.').any(str::is_empty) && !key.contains(['{', '}']);
         let twice = self.values.iter().enumerate().find(|(place, value)| {
@@ -67,9 +68,14 @@ impl StudyAxis {
         });
         let n = self.values.len();
         let (given, allowed) = match (refused, twice) {
-            (Some(key), _) => (
+            (Some((key, about)), _) => (
                 format!("{key} as an axis"),
-                "a key that may differ within a study",
+                match about.role {
+                    Role::Subject => {
+                        "one value: trials = N repeats each configuration with other random draws"
+                    }
+                    _ => "a key that may differ within a study",
+                },
             ),
             _ if !keys.iter().all(is_path) => (
                 "no path".to_owned(),

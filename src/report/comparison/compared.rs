@@ -249,7 +249,12 @@ fn outcome_words(file: &str, entries: &ColumnEntries) -> String {
 
 /// Returns a sentence about the differences in a cost column, such as `time to train: median 1.02 times that of the first run, 0.9 to 1.1 times.`
 fn cost_words(one: &ColumnDifferences) -> String {
-    let mut ratios: Vec<f64> = one.rows.iter().map(|row| row.second / row.first).collect();
+    // Equal costs may be zero, such as the spheres of a mesh.
+    let ratio = |row: &Difference| match row.difference == 0.0 {
+        true => 1.0,
+        false => row.second / row.first,
+    };
+    let mut ratios: Vec<f64> = one.rows.iter().map(ratio).collect();
     let [middle, least, most] = [0.5, 0.0, 1.0].map(|q| short_number(quantile(&mut ratios, q)));
     let words = &one.column.words;
     let n_changed = one.rows.iter().filter(|row| row.difference != 0.0).count();

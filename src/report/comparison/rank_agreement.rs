@@ -27,8 +27,8 @@ pub struct RankAgreement {
     pub tau: f64,
     /// Bootstrap confidence interval of the rank correlation over designs.
     pub interval: Interval,
-    /// Description of each choice, with two counts of pairs of designs that differ only in this choice. The first is the number of pairs that both studies
-    /// order alike; the second is the number of all pairs without a tie.
+    /// Description of each choice, with two counts of pairs of designs that differ only in this choice, and in choices that apply to one of its two values
+    /// alone. The first is the number of pairs that both studies order alike; the second is the number of all pairs without a tie.
     pub choices: Vec<(String, usize, usize)>,
 }
 
@@ -223,24 +223,41 @@ fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
 }
 
 /// Counts pairs of designs that differ only in one choice and have no tie. Returns the number of pairs with the same order in both studies, and the number of
-/// all pairs.
+/// all pairs. A choice that applies to one of the two values alone is no further difference, such as C beside a classifier without C.
 fn in_order(designs: &[(&Design, [f64; 2])], choice: usize) -> (usize, usize) {
-    let without = |design: &Design| {
-        let mut others = design.clone();
-        others.remove(choice);
-        others
+    let n_choices = designs.first().map_or(0, |(design, _)| design.len());
+    let others = (0..n_choices).filter(|&other| other != choice);
+    let others: Vec<(usize, bool)> = others
+        .map(|other| (other, decides(designs, choice, other)))
+        .collect();
+    let differ_in_it_alone = |a: &Design, b: &Design| {
+        let mut others = others.iter();
+        others.all(|&(other, is_decided)| {
+            let applies_to_one = a[other].is_empty() != b[other].is_empty();
+            a[other] == b[other] || (is_decided && applies_to_one)
+        })
     };
     let (mut same, mut all) = (0, 0);
     for (place, (design, own)) in designs.iter().enumerate() {
         for (other, its) in &designs[..place] {
             let order = (own[0] - its[0]) * (own[1] - its[1]);
-            if order != 0.0 && without(design) == without(other) {
+            if order != 0.0 && design[choice] != other[choice] && differ_in_it_alone(design, other)
+            {
                 all += 1;
                 same += usize::from(order > 0.0);
             }
         }
     }
     (same, all)
+}
+
+/// Returns whether the value of one choice decides whether another choice applies: each value has it in all designs or in none.
+fn decides(designs: &[(&Design, [f64; 2])], choice: usize, other: usize) -> bool {
+    let mut applies: HashMap<&str, bool> = HashMap::new();
+    designs.iter().all(|(design, _)| {
+        let is_there = !design[other].is_empty();
+        *applies.entry(&design[choice]).or_insert(is_there) == is_there
+    })
 }
 
 #[cfg(test)]
@@ -309,6 +326,34 @@ mod tests {
         assert_eq!(found.choices[0], ("ensemble".to_owned(), 5, 6));
         let reversed = rank_agreement(&table(4096, REAL.map(|a| -a), &[0.1, 0.1]), &real);
         assert_eq!(reversed.unwrap().tau, -1.0);
+    }
+
+    #[test]
+    fn a_choice_counts_although_another_applies_to_one_of_its_values_alone() {
+        let design =
+            |words: [&str; 3], accuracy: f64| (words.map(str::to_owned).to_vec(), [accuracy; 2]);
+        let designs = [
+            design(["svm", "1", "4"], 0.9),
+            design(["svm", "10", "4"], 0.8),
+            design(["k_nearest", "", "4"], 0.7),
+            design(["svm", "1", "16"], 0.6),
+            design(["svm", "10", "16"], 0.5),
+            design(["k_nearest", "", "16"], 0.4),
+        ];
+        let designs: Vec<(&Design, [f64; 2])> = designs.iter().map(|(d, a)| (d, *a)).collect();
+        // Classifier: each k-NN beside both SVMs of its ratio. C: the SVMs alone. Ratio: three pairs.
+        assert_eq!(
+            [0, 1, 2].map(|choice| in_order(&designs, choice).1),
+            [4, 2, 3]
+        );
+        // An axis that one configuration alone varies does not apply to the others, but no choice decides this.
+        let designs = [
+            design(["4", "", "svm"], 0.9),
+            design(["16", "", "svm"], 0.8),
+            design(["4", "0.5", "svm"], 0.7),
+        ];
+        let designs: Vec<(&Design, [f64; 2])> = designs.iter().map(|(d, a)| (d, *a)).collect();
+        assert_eq!([0, 1].map(|choice| in_order(&designs, choice).1), [1, 1]);
     }
 
     #[test]

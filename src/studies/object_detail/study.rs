@@ -123,7 +123,7 @@ impl Study for ObjectDetailStudy {
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;
-        spec.seed = source.seed(spec.seed);
+        spec.seed = source.seed(spec.seed)?;
         source.replace_objects(&mut spec.objects);
         let plan = ObjectDetailPlan::new(&source.place, spec)?;
         let meshes = load_named_meshes(&plan.meshes, &plan.spec.objects)?;

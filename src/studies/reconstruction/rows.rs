@@ -22,7 +22,7 @@ pub struct ReconstructionConfiguration {
     /// Noise standard deviation of each taxel's reading, in `noise_unit`.
     noise_std: f64 => Condition "noise": Linear;
     /// Unit of `noise_std`: fraction of full scale, mm or N.
-    noise_unit: NoiseUnit => Note;
+    noise_unit: NoiseUnit => Condition "noise unit";
     /// Ensemble from which the measurement matrix is drawn.
     ensemble: Ensemble => Choice named ENSEMBLES;
     /// Number m of measurements per frame.

@@ -86,7 +86,7 @@ impl Study for ReconstructionStudy {
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = ReconstructionStudySpec::parse(&source.place, &source.text)?;
-        spec.seed = source.seed(spec.seed);
+        spec.seed = source.seed(spec.seed)?;
         source.replace_objects(&mut spec.objects);
         let plan = ReconstructionPlan::new(&source.place, spec)?;
         let objects = load_objects(&plan.spec.objects, source.packings.as_deref())?;

@@ -77,7 +77,7 @@ impl Study for WholeBodyPlan {
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a whole body is touched by the objects that its study names")?;
         let mut spec = WholeBodyStudySpec::parse(&source.place, &source.text)?;
-        spec.seed = source.seed(spec.seed);
+        spec.seed = source.seed(spec.seed)?;
         let plan = Self::new(&source.place, &source.folder, spec)?;
         Ok(Self {
             size: plan.body_size()?,

@@ -21,5 +21,5 @@ pub use file_path::{
 pub use inputs::{
     check_content, check_output, input_within, open, protect_inputs, read, read_to_string,
 };
-pub use owned::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN, check_single_output};
+pub use owned::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN, check_single_output, has_table};
 pub use whole_file::{WholeFile, write_bytes, write_whole};

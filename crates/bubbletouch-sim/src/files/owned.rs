@@ -133,6 +133,19 @@ impl OwnedFiles {
     }
 }
 
+/// Returns whether a result folder contains a table of its last run. The manifest of a run lists all tables of the run. In a folder without such a manifest,
+/// each file counts.
+pub fn has_table(folder: &Path, name: &str) -> bool {
+    let manifest = fs::read(folder.join(MANIFEST_FILE)).unwrap_or_default();
+    let manifest: Value = serde_json::from_slice(&manifest).unwrap_or_default();
+    let lists: Vec<&Value> = LISTS[..2]
+        .iter()
+        .filter_map(|list| manifest.get(list))
+        .collect();
+    let is_listed = lists.is_empty() || lists.iter().any(|list| list.get(name).is_some());
+    is_listed && folder.join(name).exists()
+}
+
 /// Returns an error unless a single output file can be written. The file must not be an input of this command, nor belong to an output folder of another
 /// command.
 ///

@@ -1,7 +1,7 @@
 //! Findings of a recognition study as sentences, derived from its tables.
 
 use crate::report::advice::{Candidate, Candidates, Requirement};
-use crate::report::csv_tables::{LIMITS_FILE, MISSED_TOUCHES};
+use crate::report::csv_tables::{CAPPED_FITS, LIMITS_FILE, MISSED_TOUCHES};
 use crate::report::study_folder::words_of;
 use crate::report::swept::{Setting, Swept, without};
 use crate::report::terminal::paragraph;
@@ -49,12 +49,17 @@ pub fn words(tables: &[Table], width: usize) -> String {
 
 /// Returns a note on the number of touches without any deflected taxel; `None` if there are none.
 fn missed(tables: &[Table]) -> Option<String> {
+    limit_words(tables, MISSED_TOUCHES)
+}
+
+/// Returns a sentence on the number of times that a limit of `limits.csv` was reached; `None` if it was not reached.
+fn limit_words(tables: &[Table], limit: &str) -> Option<String> {
     let limits = filled(tables, LIMITS_FILE)?;
-    let row = (0..limits.n_rows).find(|&row| limits.word("limit", row) == MISSED_TOUCHES)?;
+    let row = (0..limits.n_rows).find(|&row| limits.word("limit", row) == limit)?;
     let (count, of) = (limits.number("count", row), limits.number("total", row));
     let share = short_number(100.0 * count / of);
     let meaning = limits.word("meaning", row);
-    (count > 0.0).then(|| format!("{count} of {of} {MISSED_TOUCHES} ({share} %): {meaning}."))
+    (count > 0.0).then(|| format!("{count} of {of} {limit} ({share} %): {meaning}."))
 }
 
 /// Returns sentences on the best configuration for each condition, which is a combination of external settings such as noise. If there are many conditions,
@@ -123,23 +128,30 @@ fn effects(configurations: &Table) -> Option<Vec<String>> {
         let complete = alike.iter().filter(|rows| rows.len() == levels.len());
         let n_complete = complete.clone().count();
         let complete: Vec<usize> = complete.flatten().copied().collect();
-        let said = |&level: &usize| {
+        let mean = |&level: &usize| {
             let is_at = |row: &&usize| setting.data.key(**row) == setting.data.key(level);
-            let sum: f64 = complete
-                .iter()
-                .filter(is_at)
-                .map(|&row| accuracy[row])
-                .sum();
-            format!("{:.2} ({})", sum / n_complete as f64, setting.label(level))
+            let at_level = complete.iter().filter(is_at);
+            let sum: f64 = at_level.map(|&row| accuracy[row]).sum();
+            sum / n_complete as f64
         };
-        let said: Vec<String> = levels.iter().map(said).collect();
+        let said = |level: &usize| format!("{:.2} ({})", mean(level), setting.label(*level));
         let name = &setting.column.words;
-        (n_complete > 0).then(|| match &said[..] {
-            [first, .., last] if said.len() > MAX_LISTED => {
-                let n = said.len();
+        (n_complete > 0).then(|| match levels.len() > MAX_LISTED {
+            true => {
+                // The ends of a range are numbers, or the words with the lowest and the highest accuracy.
+                let mut ends = levels.clone();
+                match setting.is_number() {
+                    true => ends.retain(|&level| setting.position(level).is_some()),
+                    false => ends.sort_by(|a, b| mean(a).total_cmp(&mean(b))),
+                }
+                let [first, last] = [0, ends.len() - 1].map(|end| said(&ends[end]));
+                let n = ends.len();
                 format!("Mean accuracy by {name}, {n} values: from {first} to {last}.")
             }
-            _ => format!("Mean accuracy by {name}: {}.", said.join(", ")),
+            false => {
+                let said: Vec<String> = levels.iter().map(said).collect();
+                format!("Mean accuracy by {name}: {}.", said.join(", "))
+            }
         })
     };
     Some(swept.free.iter().filter_map(effect).collect())
@@ -186,7 +198,6 @@ fn remarks(tables: &[Table]) -> Vec<String> {
     };
     let n_left_out = numbers("accuracy.csv", "n_left_out").iter();
     let n_left_out = n_left_out.copied().fold(0.0, f64::max);
-    let n_capped: f64 = numbers(CONFIGURATIONS, "n_capped").iter().sum();
     let too_few = Value::from("too_few_trials");
     let is_short = |row| {
         filled(tables, "comparison.csv").is_some_and(|t| t.has_setting("p_status", row, &too_few))
@@ -199,10 +210,57 @@ fn remarks(tables: &[Table]) -> Vec<String> {
         (n_left_out > 0.0).then(|| format!(
             "Up to {n_left_out} test touches of a trial are left out, because they do not fill a whole decision."
         )),
-        (n_capped > 0.0).then(|| format!(
-            "{n_capped} binary SVMs stopped at the iteration cap: their configurations may do better with more iterations or a smaller C."
-        )),
+        limit_words(tables, CAPPED_FITS)
+            .map(|said| said + " Their configurations may do better with more iterations or a smaller C."),
         n_needed.map(|(_, n)| format!("No p-values where trials are too few: {n} are needed.")),
     ];
     said.into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row;
+    use crate::table::File;
+
+    const BITS: &[(&str, &str)] = &[("0", "none")];
+
+    row! {
+    /// Row of a test table: a configuration and its accuracy.
+    pub struct Swept {
+        /// Setting of test touches that is absent in the base configuration.
+        noise: Option<f64> => Condition: Linear;
+        /// Setting with a named number.
+        bits: usize => Condition in "bits": Linear named BITS;
+        /// Setting with words.
+        features: String => Choice;
+        /// Accuracy of the configuration.
+        accuracy: f64 => Value(More): Share;
+    } }
+
+    #[test]
+    fn the_range_of_a_setting_has_numbers_at_its_ends() {
+        let row = |noise, bits, features: &str, accuracy| Swept {
+            noise,
+            bits,
+            features: features.to_owned(),
+            accuracy,
+        };
+        let noises = (0..9).rev().map(|step| {
+            let noise = f64::from(step);
+            row(Some(noise), 0, "raw", 0.9 - 0.1 * noise)
+        });
+        let bits = (1..10).map(|bits| row(None, bits, "raw", 0.05 * bits as f64));
+        let words =
+            (1..9).map(|n| row(None, 0, &format!("kind {n}"), 0.1 * f64::from((n * 5) % 9)));
+        let base = row(None, 0, "raw", 0.91);
+        let rows = std::iter::once(base).chain(noises).chain(bits).chain(words);
+        let table = File::new(CONFIGURATIONS, "", "").table(&rows.collect::<Vec<_>>());
+        let expected = [
+            "Mean accuracy by noise, 9 values: from 0.90 (0) to 0.10 (8).",
+            "Mean accuracy by bits, 9 values: from 0.05 (1 bit) to 0.45 (9 bits).",
+            "Mean accuracy by features, 9 values: from 0.10 (kind 2) to 0.91 (raw).",
+        ];
+        assert_eq!(effects(&table.unwrap()).unwrap(), expected);
+    }
 }

@@ -5,15 +5,18 @@
 //! (a₀ − chance) / 2. Between two values the accuracy is interpolated linearly over the scale of the condition.
 //!
 //! The interval is simulated. Each mean accuracy a of n independent test rows is drawn from Beta(a n + ½, (1 − a) n + ½), and the value is computed again. The
-//! interval contains the middle 95 % of the results. The number n is chosen so that a Wilson interval of n rows is as wide as the interval in `summary.csv`.
-//! Folds and held-out groups therefore count as in that table.
+//! interval contains the middle 95 % of the results, and lies between the value of a₀ and the last value. The number n is chosen so that a Wilson interval of n
+//! rows is as wide as the interval in `summary.csv`. Folds and held-out groups therefore count as in that table.
+//!
+//! A draw in which a₀ is at most chance has no result. A design has no result if more than 2.5 % / k of the draws have none, where k is the number of values
+//! from which a₀ is chosen (Bonferroni's correction): its accuracy may be chance at all values.
 
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::report::swept::{Setting, Swept};
 use crate::row;
 use crate::statistics::p_status::CONFIDENCE;
-use crate::table::{Data, File, Role, Table, Value, short_number};
+use crate::table::{Data, File, Role, Table, Value};
 use rand_distr::{Beta, Distribution};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -49,9 +52,9 @@ pub struct Robustness {
     status: HalfStatus => Outcome "half-way is";
     /// Value of the condition at which the accuracy falls to `half_accuracy`, in its unit; empty if the accuracy stays above.
     half_accuracy_at: Option<f64> => Value(Neither) "half-way at": Linear between [half_accuracy_at_low, half_accuracy_at_high];
-    /// Lower end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it exceeds the last value of the condition.
+    /// Lower end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it lies beyond the last value of the condition.
     half_accuracy_at_low: Option<f64> => Note "95 % interval of the place, lower end": Linear;
-    /// Upper end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it exceeds the last value of the condition.
+    /// Upper end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it lies beyond the last value of the condition.
     half_accuracy_at_high: Option<f64> => Note "95 % interval of the place, upper end": Linear;
     /// Last value of the condition in the direction of `direction`, in the unit of the condition.
     end: f64 => Note "last value": Linear;
@@ -77,7 +80,7 @@ pub enum HalfStatus {
     Found,
     /// The accuracy does not fall to half-way between its maximum and chance within the swept values.
     BeyondTheLastValue,
-    /// The highest accuracy over all values of the condition is not above chance.
+    /// The highest accuracy over all values of the condition is not above chance, or chance explains it.
     AllAtChance,
 }
 
@@ -152,9 +155,9 @@ impl Curve {
         }
     }
 
-    /// Returns the value of the condition at which half of the accuracy above chance is lost, and the two ends of its interval. A result is `None` if it lies
-    /// beyond the last value of the condition.
-    fn half(&self, direction: Direction, seed: &Seed) -> [Option<f64>; 3] {
+    /// Returns whether half of the accuracy above chance is lost, the value of the condition at which it is lost, and the two ends of the value's interval. A
+    /// number is `None` if it lies beyond the last value of the condition, or if the design is at chance.
+    fn half(&self, direction: Direction, seed: &Seed) -> (HalfStatus, [Option<f64>; 3]) {
         let places: Vec<f64> = self.values.iter().map(|&value| self.place(value)).collect();
         let outwards = self.outwards(direction);
         let beyond = match direction {
@@ -162,15 +165,16 @@ impl Curve {
             Direction::Larger => f64::INFINITY,
         };
         let crossing = |accuracy: &[f64]| {
-            let half = self.half_accuracy(accuracy[outwards[0]]);
+            let highest = accuracy[outwards[0]];
+            let half = self.half_accuracy(highest);
             let mut steps = outwards.windows(2);
-            let found = steps.find_map(|step| {
+            // The start is above half-way, and so is the accuracy before the first one that is not.
+            let found = steps.find(|step| accuracy[step[1]] <= half).map(|step| {
                 let (before, after) = (accuracy[step[0]], accuracy[step[1]]);
                 let fraction = (before - half) / (before - after);
-                let length = places[step[1]] - places[step[0]];
-                (after <= half && before > after).then(|| places[step[0]] + fraction * length)
+                places[step[0]] + fraction * (places[step[1]] - places[step[0]])
             });
-            found.unwrap_or(beyond)
+            (highest > self.chance).then(|| found.unwrap_or(beyond))
         };
         let pairs = self.accuracy.iter().zip(&self.n_test);
         let betas = pairs.map(|(accuracy, n)| {
@@ -183,15 +187,21 @@ impl Curve {
             let drawn = betas.iter().map(|beta| beta.sample(&mut rng));
             crossing(&drawn.collect::<Vec<_>>())
         };
-        let mut draws: Vec<f64> = (0..N_DRAWS).map(|_| draw()).collect();
+        let mut draws: Vec<f64> = (0..N_DRAWS).filter_map(|_| draw()).collect();
         draws.sort_by(f64::total_cmp);
-        let tail = (0.5 * (1.0 - CONFIDENCE) * N_DRAWS as f64) as usize;
-        let ends = [
-            crossing(&self.accuracy),
-            draws[tail],
-            draws[N_DRAWS - 1 - tail],
-        ];
-        ends.map(|place| place.is_finite().then(|| self.value(place)))
+        let tail = |n: usize| (0.5 * (1.0 - CONFIDENCE) * n as f64) as usize;
+        let n_at_chance = (N_DRAWS - draws.len()) * self.values.len();
+        let found = crossing(&self.accuracy).filter(|_| n_at_chance <= tail(N_DRAWS));
+        let Some(place) = found else {
+            return (HalfStatus::AllAtChance, [None; 3]);
+        };
+        let tail = tail(draws.len());
+        let ends = [place, draws[tail], draws[draws.len() - 1 - tail]];
+        let values = ends.map(|place| place.is_finite().then(|| self.value(place)));
+        match values[0] {
+            Some(_) => (HalfStatus::Found, values),
+            None => (HalfStatus::BeyondTheLastValue, values),
+        }
     }
 }
 
@@ -224,16 +234,15 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
     let all: Vec<usize> = (0..summary.n_rows).collect();
     let mut curves = Vec::new();
     for condition in summary.of_role(Role::Condition) {
-        let Some((column, Data::Numbers(values))) = summary.column(condition) else {
+        let Some((column, data @ Data::Numbers(values))) = summary.column(condition) else {
             continue;
         };
-        // Named numbers, such as 0 bits for "no converter", have no position between other values.
-        let is_named = |value: f64| column.word(&short_number(value)) != short_number(value);
+        let setting = Setting { column, data };
         let others = [Role::Choice, Role::Condition].map(|role| summary.of_role(role));
         let mut others = others.concat();
         others.retain(|column| *column != condition);
         for mut along in summary.groups(&others, all.iter().copied()) {
-            along.retain(|&row| values[row].is_finite() && !is_named(values[row]));
+            along.retain(|&row| setting.position(row).is_some_and(f64::is_finite));
             along.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
             let repeats = |pair: &[usize]| values[pair[0]] == values[pair[1]];
             if along.len() >= MIN_VALUES && !along.windows(2).any(repeats) {
@@ -301,12 +310,8 @@ fn both_sides(
     let side = |direction: Direction| {
         let outwards = curve.outwards(direction);
         let end = *outwards[1..].last()?;
-        let halves = curve.half(direction, &seed.numbered(direction as u64));
-        let (status, [at, low, high]) = match halves {
-            _ if clean <= curve.chance => (HalfStatus::AllAtChance, [None; 3]),
-            [None, ..] => (HalfStatus::BeyondTheLastValue, halves),
-            _ => (HalfStatus::Found, halves),
-        };
+        let seed = seed.numbered(direction as u64);
+        let (status, [at, low, high]) = curve.half(direction, &seed);
         Some(Robustness {
             configuration: configuration as usize,
             design: design.clone(),
@@ -371,12 +376,13 @@ fn sentences(summary: &Table, table: &Table) -> Vec<String> {
     let sentence = |rows: &Vec<usize>| {
         let (column, _) = summary.column(table.word("condition", rows[0]))?;
         let at = |row: usize| table.number("half_accuracy_at", row);
-        let found: Vec<usize> = rows
-            .iter()
-            .copied()
-            .filter(|&row| !at(row).is_nan())
-            .collect();
-        let n_kept = rows.len() - found.len();
+        let with_status = |status: &str| -> Vec<usize> {
+            let rows = rows.iter().copied();
+            rows.filter(|&row| table.word("status", row) == status)
+                .collect()
+        };
+        let found = with_status("found");
+        let n_of = |status: &str| format!("{} of {}", with_status(status).len(), rows.len());
         let sign = match table.word("direction", rows[0]) {
             "smaller" => -1.0,
             _ => 1.0,
@@ -392,16 +398,22 @@ fn sentences(summary: &Table, table: &Table) -> Vec<String> {
             "" => String::new(),
             design => format!(" with {design}"),
         };
-        let kept = match n_kept {
-            0 => String::new(),
-            n => format!(
-                "; {n} of {} configurations keep more than half up to the last value",
-                rows.len()
+        let others = [
+            (
+                "beyond_the_last_value",
+                "keep more than half up to the last value",
             ),
-        };
+            ("all_at_chance", "are at chance"),
+        ];
+        let others = others
+            .iter()
+            .filter(|(status, _)| !with_status(status).is_empty());
+        let others =
+            others.map(|(status, words)| format!("; {} configurations {words}", n_of(status)));
+        let others: String = others.collect();
         let place = column.phrase(&Value::Number(three_digits(at(furthest))));
         Some(format!(
-            "Half of the accuracy above chance is lost at {place} ({low} to {high}){design}{kept}."
+            "Half of the accuracy above chance is lost at {place} ({low} to {high}){design}{others}."
         ))
     };
     conditions.iter().filter_map(sentence).collect()
@@ -409,7 +421,10 @@ fn sentences(summary: &Table, table: &Table) -> Vec<String> {
 
 /// Rounds an interpolated value to three significant digits.
 fn three_digits(value: f64) -> f64 {
-    let digits = 10f64.powi(2 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32);
+    if value == 0.0 {
+        return value;
+    }
+    let digits = 10f64.powi(2 - value.abs().log10().floor() as i32);
     (value * digits).round() / digits
 }
 
@@ -526,7 +541,7 @@ mod tests {
         let said = robustness_words(&[summary, table]);
         let start = "Half of the accuracy above chance is lost at noise 40 % (3";
         assert!(said.len() == 1 && said[0].starts_with(start), "{said:?}");
-        let end = "with C = 1; 2 of 3 configurations keep more than half up to the last value.";
+        let end = "with C = 1; 1 of 3 configurations keep more than half up to the last value; 1 of 3 configurations are at chance.";
         assert!(said[0].ends_with(end), "{said:?}");
         // Two values do not determine a curve.
         assert_eq!(tables_of(&planted[..2]).1, None);
@@ -536,19 +551,61 @@ mod tests {
     fn half_way_lies_on_a_line_between_two_values_on_the_scale_of_the_condition() {
         // Half-way from 0.9 to chance 0.1 is 0.5.
         let log = curve(&[0.01, 0.1, 1.0, 10.0], &[0.9, 0.7, 0.3, 0.1], 1e6, 0.1);
-        let [at, low, high] = log
-            .half(Direction::Larger, &Seed::new(1))
-            .map(Option::unwrap);
+        let half = |curve: &Curve, direction| curve.half(direction, &Seed::new(1));
+        let [at, low, high] = half(&log, Direction::Larger).1.map(Option::unwrap);
         assert!((at - 10f64.powf(-0.5)).abs() < 1e-9, "{at}");
         assert!(low < at && at < high && high < 1.05 * low);
         let linear = curve(&[1.0, 2.0, 3.0], &[0.1, 0.9, 0.7], 1e6, 0.1);
-        let [at, ..] = linear.half(Direction::Smaller, &Seed::new(1));
+        let (status, [at, ..]) = half(&linear, Direction::Smaller);
+        assert_eq!(status, HalfStatus::Found);
         assert!((at.unwrap() - 1.5).abs() < 1e-9);
-        assert_eq!(linear.half(Direction::Larger, &Seed::new(1)), [None; 3]);
+        let beyond = (HalfStatus::BeyondTheLastValue, [None; 3]);
+        assert_eq!(half(&linear, Direction::Larger), beyond);
         // With few test rows the lower end may exist although the value itself does not.
         let unsure = curve(&[0.0, 1.0, 2.0], &[0.9, 0.8, 0.55], 12.0, 0.1);
-        let [at, low, high] = unsure.half(Direction::Larger, &Seed::new(1));
+        let (_, [at, low, high]) = half(&unsure, Direction::Larger);
         assert!(at.is_none() && low.unwrap() < 2.0 && high.is_none());
+    }
+
+    #[test]
+    fn every_end_lies_between_the_start_and_the_last_value_or_is_empty() {
+        let mut n_found = 0;
+        for case in 0..300 {
+            let mut rng = Seed::new(7).numbered(case).rng();
+            // Few test rows near chance: many draws are below chance at the start. Half of the sweeps have a zero, some are logarithmic or negative.
+            let shift = [0.0, 1.0, -2.5, 1e-3][case as usize % 4];
+            let values = [0.0, 0.5, 2.0, 3.0, 40.0].map(|value| value + shift);
+            let accuracy =
+                values.map(|_| Binomial::new(20, 0.3).unwrap().sample(&mut rng) as f64 / 20.0);
+            let curve = curve(&values, &accuracy, 20.0, 0.1);
+            for direction in [Direction::Larger, Direction::Smaller] {
+                let outwards = curve.outwards(direction);
+                let ends = [outwards[0], outwards[outwards.len() - 1]];
+                let ends = ends.map(|place| curve.values[place]);
+                let range = ends[0].min(ends[1]) - 1e-9..=ends[0].max(ends[1]) + 1e-9;
+                let (status, found) = curve.half(direction, &Seed::new(case));
+                n_found += usize::from(status == HalfStatus::Found);
+                for value in found.into_iter().flatten() {
+                    assert!(range.contains(&value), "{value} {ends:?} {accuracy:?}");
+                }
+            }
+        }
+        assert!(n_found > 50, "{n_found}");
+    }
+
+    #[test]
+    fn designs_that_guess_are_at_chance() {
+        let n_cases = 200;
+        let is_said = |case: &u64| {
+            let mut rng = Seed::new(8).numbered(*case).rng();
+            let guesses =
+                [0.0; 11].map(|_| Binomial::new(100, 0.1).unwrap().sample(&mut rng) as f64 / 100.0);
+            let values: Vec<f64> = (0..11).map(f64::from).collect();
+            let curve = curve(&values, &guesses, 100.0, 0.1);
+            curve.half(Direction::Larger, &Seed::new(*case)).0 != HalfStatus::AllAtChance
+        };
+        let n_said = (0..n_cases).filter(is_said).count();
+        assert!(n_said <= 10, "{n_said} of {n_cases} designs");
     }
 
     #[test]
@@ -559,7 +616,7 @@ mod tests {
         let n = 400;
         let half = |accuracy: &[f64], seed| {
             let curve = curve(&values, accuracy, n as f64, 0.1);
-            let half = curve.half(Direction::Larger, &Seed::new(seed));
+            let (_, half) = curve.half(Direction::Larger, &Seed::new(seed));
             half.map(|place| place.unwrap_or(f64::INFINITY))
         };
         let [exact, ..] = half(&truth, 0);

@@ -1,6 +1,7 @@
 //! Tables of a recognition study, and a combined table of all results of each configuration.
 
 use crate::error::{Error, Result};
+use crate::files::has_table;
 use crate::learning::classifiers::ClassifierKind;
 use crate::report::csv_tables::LIMITS_FILE;
 use crate::statistics::bootstrap::coverage_of_95;
@@ -151,7 +152,7 @@ impl From<'_> {
         // Tables that only some studies have.
         let has = |name: &str, is_filled: fn(&Tables) -> bool| match self {
             Self::Rows(tables) => is_filled(tables),
-            Self::Folder(folder) => folder.join(name).exists(),
+            Self::Folder(folder) => has_table(folder, name),
         };
         if has(VARIANCE.name(), |tables| !tables.variance.is_empty()) {
             tables.push(self.table(&VARIANCE, |tables| &tables.variance, &[])?);

@@ -52,12 +52,10 @@ impl Check<'_> {
             return Err(self.error("test.touches", given, "other tables of [test]"));
         }
         let mut study = Table::try_from(StudySpec {
-            // TOML integers have 63 bits; a seed from the command line may be larger.
-            seed: 0,
             test: Table::new(),
             ..spec.clone()
         })
-        .expect("every other field of a study has a TOML form");
+        .expect("every field of a study has a TOML form");
         for (name, keys) in &spec.test {
             let Value::Table(keys) = keys else {
                 let allowed = format!("a table: {}", tables.join(", "));
@@ -88,8 +86,7 @@ impl Check<'_> {
             let said = error.message().trim().replace('\n', " ");
             self.error("test", said, "keys and values of the study")
         })?;
-        let seed = spec.seed;
-        let tested = Plan::with_any_keys(self.place, StudySpec { seed, ..tested });
+        let tested = Plan::with_any_keys(self.place, tested);
         let tested = tested.map_err(|error| self.under_test(error, &spec.test))?;
         self.check_alike(plan, &tested)?;
         Ok(Some(Arc::new(tested)))

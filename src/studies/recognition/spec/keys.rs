@@ -53,7 +53,7 @@ const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
 const KEYS: &[KeyAbout] = keys! {
     "question": Never, Note, Unchecked;
     "expected": Never, Note, Unchecked;
-    "seed": Axes, Subject, Unchecked;
+    "seed": Never, Subject, Unchecked;
     "trials": Never, Subject, Count(1, MAX_TRIALS);
     "projections_per_split": Never, Note, Count(2, MAX_TRIALS);
 

@@ -342,13 +342,7 @@ impl StudySpec {
 
     /// Returns the number of values of each key that is an axis. Keys of the signal are excluded, because they may be combined differently.
     pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        // TOML integers have 63 bits; a seed from the command line may be larger.
-        let without_seed = Self {
-            seed: 0,
-            ..self.clone()
-        };
-        let table = toml::Table::try_from(without_seed);
-        let table = table.expect("every other field of a study has a TOML form");
+        let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
         let keys = recognition_keys().iter();
         let keys = keys.filter(|key| key.axis == AxisPlace::Table);
         let is_condition = |path: &str| path.starts_with("signal.") && path != "signal.test_sensor";

@@ -1,23 +1,23 @@
 //! Numbers of touches and trained classifiers that reached a limit of the simulation or of the solver.
 
-use crate::report::csv_tables::MISSED_TOUCHES;
+use crate::report::csv_tables::{CAPPED_FITS, MISSED_TOUCHES};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{Limit, TrialScore};
 use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::study::rows::TouchRow;
+use std::collections::HashSet;
 
 impl RecognitionStudy {
-    /// Returns how often touches reached a limit of the simulation, and how often training reached a limit of the solver, over all arrays.
+    /// Returns how often touches reached a limit of the simulation, and how often training reached a limit of the solver, over all arrays and all values of
+    /// `[axes]`.
     pub(crate) fn limits(
         &self,
-        fits: &[(Configuration, TrialScore)],
+        scores: &[(Configuration, TrialScore)],
         rows: &[TouchRow],
     ) -> Vec<Limit> {
         // The deepest frame is equal for any number of frames per touch.
-        let is_counted = |row: &&TouchRow| {
-            let (_, _, n_frames) = self.on(row.on);
-            row.is_made && n_frames == self.first_frames(row.on)
-        };
+        let is_first = |&touches: &usize| self.on(touches).2 == self.first_frames(touches);
+        let is_counted = |row: &&TouchRow| row.is_made && is_first(&row.on);
         let made: Vec<&TouchRow> = rows.iter().filter(is_counted).collect();
         let sum = |count: fn(&TouchRow) -> usize| made.iter().map(|row| count(row)).sum();
         let n_touches = sum(|row| row.n_touches);
@@ -26,7 +26,7 @@ impl RecognitionStudy {
             touched.n_deeper_than(array.taxel().stroke)
         });
         let n_deeper: usize = deeper.sum();
-        let n_capped = fits.iter().filter(|(_, score)| score.n_capped > 0).count();
+        let fits = self.capped_fits(scores);
         let spec = &self.first().plan.spec;
         let missed = match (&spec.human_touch, &spec.recorded) {
             (Some(_), _) => {
@@ -56,8 +56,8 @@ impl RecognitionStudy {
                 },
             ),
             limit(
-                "fits stopped at the solver's iteration cap",
-                (n_capped, fits.len()),
+                CAPPED_FITS,
+                fits,
                 "at least one of their SVMs is short of its tolerance",
             ),
             limit(
@@ -69,11 +69,27 @@ impl RecognitionStudy {
         if n_deeper == 0 {
             limits.pop();
         }
-        let n_masked = self.first().touched.n_masked();
+        let sets = (0..self.touch_sets.len()).filter(is_first);
+        let masked = sets.map(|touches| self.on(touches).0.n_masked());
+        let n_masked = masked.fold((0, 0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
         if n_masked.0 > 0 {
             let meaning = "they are missing (NaN) in at least 10 % of the frames, or read one number other than recorded.zero in all; they are taken as absent";
             limits.push(limit("taxels that are masked", n_masked, meaning));
         }
         limits
+    }
+
+    /// Returns the number of fits in which a solver stopped at its iteration cap, and the number of all fits by solvers that have a cap. Configurations that
+    /// differ only in their decisions share a fit.
+    fn capped_fits(&self, scores: &[(Configuration, TrialScore)]) -> (usize, usize) {
+        let families = (0..self.families.len()).map(|family| self.family(family).1);
+        let fits = families.flat_map(|family| family.chunk_by(|a, b| a.c == b.c));
+        let capped = fits.filter(|fit| fit[0].classifier.has_c());
+        let numbers: HashSet<usize> = capped.map(|fit| fit[0].configuration).collect();
+        let scores = scores.iter();
+        let fits =
+            scores.filter(|(configuration, _)| numbers.contains(&configuration.configuration));
+        let n_capped = fits.clone().filter(|(_, score)| score.n_capped > 0);
+        (n_capped.count(), fits.count())
     }
 }

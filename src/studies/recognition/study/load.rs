@@ -33,13 +33,11 @@ pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
     // With `--objects`, the files of the study are in another folder.
     let mut folder = source.objects.is_none().then(|| source.folder.clone());
     let mut spec = with_folder(folder.clone(), parse)?;
-    if let Some(seed) = source.seed
-        && spec.axes.has("seed")
-    {
-        let allowed = "no such option: the seed is an axis of the study";
-        return Err(Error::input("--seed", seed, allowed));
+    let replaced = ["objects.sets", "objects.meshes"];
+    if let Some(key) = replaced.into_iter().find(|key| spec.axes.has(key)) {
+        source.refuse_objects(&format!("{key} is an axis of the study"))?;
     }
-    spec.seed = source.seed(spec.seed);
+    spec.seed = source.seed(spec.seed)?;
     match &mut spec.recorded {
         Some(recorded) => folder = source.replace_recorded(recorded).or(folder),
         None => source.replace_objects(&mut spec.objects),
