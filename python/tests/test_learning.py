@@ -106,6 +106,15 @@ def test_groups_are_kept_together(data) -> None:  # type: ignore[no-untyped-def]
     assert piped.score(features, labels) > 0.7
 
 
+def test_the_score_is_the_mean_over_folds_of_any_size(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    folds = [(np.arange(100, 600), np.arange(20)), (np.arange(400), np.arange(400, 600))]
+    search = GridSearch(SVC(gamma=0.05, tol=1e-6), C=[0.01, 1.0], cv=folds).fit(features, labels)
+    for one in search.results_:
+        theirs = svm.SVC(gamma=0.05, tol=1e-6, C=one["C"])
+        assert one["accuracy"] == pytest.approx(cross_val_score(theirs, features, labels, cv=folds).mean(), abs=1e-9)
+
+
 def test_a_solver_that_stops_early_says_so(data) -> None:  # type: ignore[no-untyped-def]
     features, labels = data
     with pytest.warns(ConvergenceWarning, match="stopped at max_iter = 1 before"):

@@ -294,6 +294,18 @@ def test_decisions_on_several_touches_add_probabilities_or_votes() -> None:
         assert 0.5 < one < three, (kind, one, three)
 
 
+def test_the_prior_of_probabilities_is_not_subtracted() -> None:
+    linear_model = pytest.importorskip("sklearn.linear_model")
+    # With equal priors in the probabilities, an imbalance of the training touches must not favour the rare objects.
+    study = with_keys(classifier="linear_svm", touches_per_decision=[1, 3], class_imbalance=8.0)
+    study["touches"] |= {"per_object": 48}
+    mine = {"balanced": linear_model.LogisticRegression(class_weight="balanced")}
+    accuracy = bt.run(study, classifiers=mine)["accuracy"]
+    kinds, k, found = (np.asarray(accuracy[name]) for name in ("classifier", "touches_per_decision", "accuracy"))
+    one, three = (found[(kinds == "balanced") & (k == n)].mean() for n in (1, 3))
+    assert one < three, (one, three)
+
+
 def test_a_function_of_frames_makes_features() -> None:
     def sums(frames: Any) -> Any:
         images = frames.reshape(len(frames), 16, 16)

@@ -20,13 +20,15 @@ pub struct Comparison {
     pub n_trials: usize,
 }
 
-/// Numbers of training and test rows of a trial.
+/// Numbers of training rows, test rows and decisions of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrialSize {
     /// Number of training rows of the trial.
     pub n_train: usize,
     /// Number of test rows of the trial.
     pub n_test: usize,
+    /// Number of decisions on test rows, each of which is right or wrong; at most `n_test`.
+    pub n_decisions: usize,
 }
 
 /// Tests whether the scores (accuracy or macro-F1) of two configurations differ, using the trials that both have. Returns `None` for fewer than two trials.
@@ -40,8 +42,8 @@ pub struct TrialSize {
 /// single size for all trials.
 ///
 /// All trials split one set of touches, so their scores are not independent. The plain paired t-test (1/J alone) would find differences that do not exist.
-/// Scores are multiples of about 1/n_test, so s² is at least the variance of such rounding, `1/(12 n_test²)`. Equal differences in a few trials are therefore
-/// not significant.
+/// Scores are multiples of about 1/n_decisions, so s² is at least the variance of such rounding, `1/(12 n_decisions²)`. Equal differences in a few trials are
+/// therefore not significant.
 ///
 /// # Errors
 /// If `a` and `b` differ in length, or a score is not finite. If a trial has no training or no test rows, or the confidence is outside 0..1.
@@ -158,11 +160,11 @@ fn overlap(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| size.n_test as f64 / size.n_train as f64)
 }
 
-/// Returns the variance, averaged over trials, that a score gains by rounding to multiples of 1 / (number of test rows).
+/// Returns the variance, averaged over trials, that a score gains by rounding to multiples of 1 / (number of decisions).
 fn rounding(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| {
-        let n_test = size.n_test as f64;
-        1.0 / (12.0 * n_test * n_test)
+        let n_decisions = size.n_decisions as f64;
+        1.0 / (12.0 * n_decisions * n_decisions)
     })
 }
 
@@ -217,7 +219,7 @@ fn check(a: &[f64], b: &[f64], sizes: &[TrialSize]) -> Result<()> {
             "finite scores are needed",
         ));
     }
-    let is_empty = |size: &&TrialSize| size.n_train == 0 || size.n_test == 0;
+    let is_empty = |size: &&TrialSize| [size.n_train, size.n_test, size.n_decisions].contains(&0);
     let given = match sizes.iter().find(is_empty) {
         Some(size) => format!("{} training and {} test rows", size.n_train, size.n_test),
         None if sizes.is_empty() => "no sizes of trials".to_owned(),
@@ -237,6 +239,7 @@ mod tests {
     const SIZE: TrialSize = TrialSize {
         n_train: 300,
         n_test: 100,
+        n_decisions: 100,
     };
 
     #[test]
@@ -273,6 +276,7 @@ mod tests {
             let size = TrialSize {
                 n_train,
                 n_test: 100,
+                n_decisions: 100,
             };
             assert_eq!(trials_needed(&[size], 0.95).unwrap(), Some(needed));
             assert!(of_trials(needed, size), "{needed} of {n_train}");
@@ -281,8 +285,24 @@ mod tests {
         let size = TrialSize {
             n_train: 100,
             n_test: 300,
+            n_decisions: 300,
         };
         assert_eq!(trials_needed(&[size], 0.95).unwrap(), None);
+    }
+
+    #[test]
+    fn the_rounding_of_a_score_is_that_of_its_decisions() {
+        // Equal differences: the variance is that of rounding, 1/(12 · 20²), and the overlap counts touches.
+        let size = TrialSize {
+            n_decisions: 20,
+            ..SIZE
+        };
+        let test = compare(&[0.6; 4], &[0.55; 4], &[size], 0.95)
+            .unwrap()
+            .unwrap();
+        let error = ((1.0 / 4.0 + 1.0 / 3.0) / (12.0 * 400.0_f64)).sqrt();
+        let expected = 2.0 * student(3.0).unwrap().sf(0.05 / error);
+        assert!((test.p_value - expected).abs() < 1e-9, "{}", test.p_value);
     }
 
     #[test]
@@ -330,6 +350,7 @@ mod tests {
         let size = TrialSize {
             n_train: 1_000_000,
             n_test: 100,
+            n_decisions: 100,
         };
         let mut rng = crate::random::Seed::new(6).rng();
         for [split, projection, rest] in [[0.02, 0.02, 0.01], [0.02, 0.0, 0.01], [0.0, 0.02, 0.01]]
@@ -372,7 +393,11 @@ mod tests {
 
     #[test]
     fn trials_of_unequal_sizes_overlap_by_the_mean_of_their_ratios() {
-        let size = |n_train, n_test| TrialSize { n_train, n_test };
+        let size = |n_train, n_test| TrialSize {
+            n_train,
+            n_test,
+            n_decisions: n_test,
+        };
         let (a, b) = ([0.9, 0.8, 0.85, 0.95], [0.8, 0.75, 0.85, 0.85]);
         let test = |sizes: &[TrialSize]| compare(&a, &b, sizes, 0.95).unwrap().unwrap();
         // Ratios of 1/9, 1, 1/4 and 1/4.
@@ -417,6 +442,7 @@ mod tests {
         let none = TrialSize {
             n_train: 0,
             n_test: 1,
+            n_decisions: 1,
         };
         assert!(compare(&[0.9, 0.8], &[0.8, 0.8], &[none], 0.95).is_err());
     }

@@ -96,8 +96,13 @@ impl Paired {
     /// Creates pairs of trials of two configurations that have equal trial numbers.
     pub fn new(all_ours: &[Repeat], theirs: &[Repeat]) -> Self {
         let pairs = all_ours.iter().filter_map(|ours| {
-            let theirs = theirs.iter().find(|theirs| theirs.trial == ours.trial);
-            Some((*ours, *theirs?))
+            let theirs = theirs.iter().find(|theirs| theirs.trial == ours.trial)?;
+            let mut ours = *ours;
+            // The score of fewer decisions has the coarser steps.
+            if let (Some(size), Some(other)) = (&mut ours.size, theirs.size) {
+                size.n_decisions = size.n_decisions.min(other.n_decisions);
+            }
+            Some((ours, *theirs))
         });
         let (ours, theirs): (Vec<Repeat>, Vec<Repeat>) = pairs.unzip();
         let n_places = |trials: &[Repeat]| {
@@ -222,6 +227,7 @@ mod tests {
             size: Some(TrialSize {
                 n_train: 300,
                 n_test: 100,
+                n_decisions: 100,
             }),
         };
         let of = |n: usize, scores: [f64; 2]| -> Vec<Repeat> {

@@ -437,7 +437,7 @@ fn groups_that_do_not_fit_the_rows_or_the_split_are_refused() {
     with(
         groups(),
         &["--c-grid", "1,10"],
-        &["folds: 5", "number of groups, 3"],
+        &["folds: 5", "at most 3 with these groups"],
     );
     write_npy(
         case.path("groups.npy"),

@@ -7,14 +7,17 @@ use bubbletouch::kinds::recognition::recognition_scale;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost, TrainedClassifier};
-use bubbletouch::recognition::data::dataset::dataset;
+use bubbletouch::recognition::classifiers::foreign::{Foreign, ForeignClassifier, ForeignModel};
+use bubbletouch::recognition::data::dataset::{Dataset, dataset};
 use bubbletouch::recognition::evaluation::fusion::fuse_rows;
 use bubbletouch::recognition::features::Features;
+use bubbletouch::recognition::svm;
 use bubbletouch::sensing::Projection;
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, SignalStep, SignalWorkspace};
 use bubbletouch::study::table::{Configuration, Tables, TrialScore};
-use ndarray::{Array1, Array2, Axis};
+use ndarray::{Array1, Array2, ArrayView2, Axis};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 const STUDY: &str = r#"
 question = "What is a touch read by?"
@@ -340,4 +343,89 @@ fn keys_of_trees_and_neighbours_reach_them() {
     let all = accuracy("k_nearest", "n_neighbours = 120");
     assert!((all - 1.0 / 6.0).abs() < 1e-12, "{all}");
     assert!(accuracy("k_nearest", "") > 2.0 / 6.0);
+}
+
+/// Classifier whose labels are never the most probable ones: it predicts the nearest mean, and its probabilities favour the farthest.
+struct Contrary;
+
+struct ContraryModel(TrainedClassifier);
+
+impl ForeignClassifier for Contrary {
+    fn fit(&self, rows: &Dataset, _: u32) -> Result<Box<dyn ForeignModel>, svm::Error> {
+        let nearest = Classifier::new(ClassifierKind::NearestCentroid);
+        Ok(Box::new(ContraryModel(nearest.train(rows, &0_u64)?)))
+    }
+}
+
+impl ForeignModel for ContraryModel {
+    fn predict(&self, rows: ArrayView2<f64>) -> Result<Vec<usize>, svm::Error> {
+        Ok(self.0.labels(rows)?.to_vec())
+    }
+
+    fn log_probabilities(&self, rows: ArrayView2<f64>) -> Result<Option<Array2<f64>>, svm::Error> {
+        Ok(Some(-self.0.scores(rows)?))
+    }
+}
+
+#[test]
+fn one_touch_is_always_predict() {
+    let contrary = Foreign::new("contrary", "1").unwrap();
+    let _provided = contrary.provide(Arc::new(Contrary));
+    let accuracies = |k: &str| {
+        let classifiers = "classifier = [\"contrary\", \"nearest_centroid\"]";
+        let text = with("", &format!("touches_per_decision = {k}"));
+        let text = text.replace("classifier = \"linear_svm\"", classifiers);
+        let rows = Study::new(&text).run().accuracy;
+        let of_one = rows.iter().filter(|(of, _)| of.touches_per_decision == 1);
+        of_one
+            .map(|(_, score)| score.accuracy)
+            .collect::<Vec<f64>>()
+    };
+    let alone = accuracies("1");
+    assert_eq!(alone[..2], alone[2..], "the labels of the nearest mean");
+    assert_eq!(accuracies("[1, 3]"), alone);
+}
+
+#[test]
+fn a_plan_refuses_what_training_would_refuse() {
+    let classified = |keys: &str| {
+        let text = with("", keys);
+        let kind = if keys.contains("neighbours") {
+            "k_nearest"
+        } else {
+            "linear_svm"
+        };
+        let text = text.replace(
+            "classifier = \"linear_svm\"",
+            &format!("classifier = \"{kind}\""),
+        );
+        text.replace("test_fraction = 0.375\n", "")
+    };
+    // 20 of 32 touches of each object train.
+    for (keys, said) in [
+        (
+            "test_fraction = 0.375\nn_neighbours = 121",
+            "key recognition.n_neighbours: 121; at most 120, the training rows",
+        ),
+        (
+            "test_fraction = 0.375\ntrain_touches = 2\nn_neighbours = 13",
+            "key recognition.n_neighbours: 13; at most 12",
+        ),
+        // Yaws of an object that are nearer than 2° are one group.
+        (
+            "test_fraction = 0.375\ngroup_by = \"yaw\"\ngroup_by_deg = 2.0\ncv_folds = 20\nc_grid = [1.0, 10.0]",
+            "key recognition.cv_folds: folds: 20, but class",
+        ),
+        (
+            "test_fraction = 0.375\nmislabelled_fraction = 0.8\ncv_folds = 20\nc_grid = [1.0, 10.0]",
+            "key recognition.cv_folds: labels, class",
+        ),
+    ] {
+        let error = Study::error(&classified(keys));
+        assert!(error.contains(said), "{keys}: {error}");
+    }
+    Study::new(&classified("test_fraction = 0.375\nn_neighbours = 120"));
+    Study::new(&classified(
+        "test_fraction = 0.375\nreadings_per_touch = 2\nn_neighbours = 121",
+    ));
 }

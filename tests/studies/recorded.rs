@@ -258,3 +258,37 @@ fn what_does_not_fit_is_refused_by_its_name() {
     write(folder, &broken, &labels);
     refused("", "frames.npy, frame 3, taxel 7: inf; a finite number");
 }
+
+#[test]
+fn recordings_of_one_class_each_are_divided_into_folds() {
+    // Four classes, five recordings of each, four frames a recording.
+    let folder = Case::new();
+    let frames = Array::from_shape_fn((80, 4, 4), |(frame, row, _)| {
+        if frame / 20 == row {
+            1e-3
+        } else {
+            1e-4 * (frame % 3) as f32
+        }
+    });
+    let labels: Vec<usize> = (0..80).map(|frame| frame / 20).collect();
+    write(folder.folder(), &frames, &labels);
+    write_integers(
+        &folder.path("groups.npy"),
+        (0..80).map(|frame| frame / 4).collect(),
+    )
+    .unwrap();
+    let groups = format!(
+        "groups = {:?}",
+        folder.path("groups.npy").display().to_string()
+    );
+    let text = recorded(
+        folder.folder(),
+        &groups,
+        "[recognition]\nclassifier = \"nearest_centroid\"\nfolds = 5",
+    );
+    let study = laid_out(&text.replace("trials = 2", "trials = 5")).unwrap();
+    for score in scores(&study) {
+        assert_eq!((score.n_test, score.n_train, score.accuracy), (16, 64, 1.0));
+        assert_eq!(score.n_groups, Some(4));
+    }
+}

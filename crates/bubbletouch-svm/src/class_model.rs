@@ -43,6 +43,11 @@ pub trait ClassModel: Debug + Send + Sync {
         0
     }
 
+    /// Returns whether `labels` may differ from the classes with the largest sum of score and log-prior.
+    fn has_own_labels(&self) -> bool {
+        false
+    }
+
     /// Returns whether the model is trained anew in each call that predicts. The time of such a call is training time, too.
     fn trains_in_predictions(&self) -> bool {
         false
@@ -51,17 +56,15 @@ pub trait ClassModel: Debug + Send + Sync {
     /// Returns for each row of scores the label with the largest sum of score and log-prior; if several are equal, the lowest label.
     fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         let scores = self.class_scores(scores);
-        let label = |row: ArrayView1<f64>| {
-            self.classes()[first_maximum(row.as_slice().unwrap_or_default())]
-        };
-        scores.rows().into_iter().map(label).collect()
+        let rows = scores.rows().into_iter();
+        rows.map(|row| self.classes()[first_maximum(row)]).collect()
     }
 
     /// Returns the sum of score and log-prior of each class (n_rows × n_classes).
     fn class_scores(&self, scores: ArrayView2<f64>) -> Array2<f64> {
         match self.log_prior() {
             Some(prior) => &scores + &prior,
-            None => scores.as_standard_layout().into_owned(),
+            None => scores.to_owned(),
         }
     }
 

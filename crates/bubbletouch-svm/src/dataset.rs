@@ -68,6 +68,22 @@ pub fn check_features(features: ArrayView2<f64>) -> Result<()> {
     }
 }
 
+/// Returns the squared Euclidean norm of each row of features, shape (n_rows,).
+///
+/// # Errors
+/// If a square overflows; the error names the row.
+pub fn squared_norms(features: ArrayView2<f64>) -> Result<Array1<f64>> {
+    let norms = features.map_axis(Axis(1), |row| row.dot(&row));
+    match norms.iter().position(|norm| !norm.is_finite()) {
+        None => Ok(norms),
+        Some(row) => Err(Error::input(
+            format!("features, row {row}"),
+            "values whose squares overflow",
+            "scaled features are needed",
+        )),
+    }
+}
+
 /// Returns whether all values are finite. The loop has no early exit, so that it runs in vector instructions.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub fn all_finite(values: &[f64]) -> bool {

@@ -91,11 +91,13 @@
 pub mod audit;
 mod binary_problem;
 pub mod class_model;
+pub mod class_weight;
 pub mod classifiers;
 pub mod cross_validation;
 pub mod dataset;
 pub mod dual;
 pub mod error;
+mod fold_search;
 pub(crate) mod gram;
 pub mod kernel;
 pub(crate) mod linalg;

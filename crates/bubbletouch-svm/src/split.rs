@@ -3,12 +3,13 @@
 //! Every split contains rows of every class in both `train` and `test`. Every row is in exactly one of them, except rows left out by [`given_hold_out`]. Rows
 //! are drawn from one named stream per class, so the split of a class does not depend on the rows of other classes.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use ndarray::ArrayView1;
 use rand::seq::SliceRandom;
 
-use crate::dataset::check_labels;
+use crate::dataset::{check_labels, distinct, positions};
+use crate::fold_search::{FoldSearch, NoDivision};
 use crate::streams::Streams;
 use crate::{Error, Result};
 
@@ -139,10 +140,10 @@ pub fn stratified_k_fold(
 /// Group hold-out: whole groups (for example all touches of one pose) are held out as test rows.
 ///
 /// Groups with equal sets of classes form a stratum. In a stratum of n groups, `test_fraction · n` (rounded, 1 to n − 1) are test groups. Strata of a single
-/// group are pooled. `groups` contains one group number per row.
+/// group are pooled. Groups change sides if a class would otherwise have no training or no test row. `groups` contains one group number per row.
 ///
 /// # Errors
-/// If the fraction is outside 0 < f < 1, the numbers of groups and labels differ, or a class has no training or no test row.
+/// If the fraction is outside 0 < f < 1, or the numbers of groups and labels differ. If no division of the groups has training and test rows of every class.
 pub fn group_hold_out(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
@@ -151,26 +152,36 @@ pub fn group_hold_out(
 ) -> Result<Split> {
     check_fraction(test_fraction)?;
     check_labels(labels.len(), groups)?;
-    let mut is_test_group = BTreeMap::new();
+    let (mut order, mut drawn) = (Vec::new(), Vec::new());
     for (stratum, mut members) in strata(labels, groups).into_iter().enumerate() {
         let stream = seed.named("groups").numbered(stratum as u64);
         members.shuffle(&mut stream.rng());
         let n_test = share(members.len(), test_fraction);
-        for (rank, group) in members.into_iter().enumerate() {
-            is_test_group.insert(group, rank < n_test);
-        }
+        drawn.extend((0..members.len()).map(|rank| usize::from(rank < n_test)));
+        order.extend(members);
     }
-    let sides = groups.iter().map(|group| side(is_test_group[group]));
-    let sides: Vec<Side> = sides.collect();
+    let classes = distinct(labels);
+    let classes_of = classes_of(labels, groups, &order);
+    let parts = ("parts (training and test)", 2);
+    let is_drawn = |_: &FoldSearch, group: usize, part| drawn[group] != part;
+    let is_test = divide((&classes, &classes_of), parts, is_drawn)?;
+    let is_test: BTreeMap<usize, usize> = order.into_iter().zip(is_test).collect();
+    let sides: Vec<Side> = groups
+        .iter()
+        .map(|group| side(is_test[group] == 1))
+        .collect();
     split(labels, &draw_rows(labels, seed), &sides)
 }
 
-/// Group k-fold: k splits whose disjoint sets of test rows together contain all rows. A group is never divided.
+/// Group k-fold, stratified by class: k splits whose disjoint sets of test rows together contain all rows. A group is never divided, and every fold contains
+/// test rows of every class.
 ///
-/// Groups are assigned in random order, larger groups first, to the fold with the fewest rows so far.
+/// Groups are assigned in random order, larger groups first. A group gets the fold in which the rows of its classes are rarest (relative to all rows of each
+/// class), then the fold with the fewest rows, as in scikit-learn's `StratifiedGroupKFold`. Other folds are taken where the classes would otherwise not be in
+/// every fold.
 ///
 /// # Errors
-/// If k is below 2, there are fewer than k groups, or the numbers of groups and labels differ. If a class has no training or no test row in some fold.
+/// If k is below 2, or the numbers of groups and labels differ. If no division of the groups puts every class into every fold.
 pub fn group_k_fold(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
@@ -183,57 +194,91 @@ pub fn group_k_fold(
     for &group in groups {
         *sizes.entry(group).or_default() += 1;
     }
-    if sizes.len() < k {
-        return Err(Error::input(
-            "folds",
-            k,
-            format!("at most the number of groups, {}, is allowed", sizes.len()),
-        ));
-    }
-    let n_groups = sizes.len();
-    check_groups_of_classes(labels, groups, k)?;
     let mut order: Vec<(usize, usize)> = sizes.into_iter().collect();
     order.shuffle(&mut seed.named("groups").rng());
     order.sort_by_key(|&(_, size)| std::cmp::Reverse(size));
-    let mut n_rows = vec![0; k];
-    let mut fold_of_group = BTreeMap::new();
-    for (group, size) in order {
-        let fold = (0..k).min_by_key(|&fold| n_rows[fold]).unwrap_or(0);
-        n_rows[fold] += size;
-        fold_of_group.insert(group, fold);
-    }
-    let fold_of: Vec<usize> = groups.iter().map(|group| fold_of_group[group]).collect();
-    folds(labels, &draw_rows(labels, seed), &fold_of, k).map_err(
-        |Error { place, given, .. }| {
-            let place = format!("folds, {place}");
-            let given = format!("{given} in a fold of the {k} that {n_groups} groups make");
-            let allowed =
-                "every class needs at least one of each in every fold: fewer folds, or more groups";
-            Error::input(place, given, allowed)
-        },
-    )
+    let order: Vec<usize> = order.into_iter().map(|(group, _)| group).collect();
+    let classes_of = classes_of(labels, groups, &order);
+    let n_rows = |class: usize| labels.iter().filter(|label| **label == class).count() as f64;
+    let classes = distinct(labels);
+    let n_rows: Vec<f64> = classes.iter().map(|&class| n_rows(class)).collect();
+    let cost = |search: &FoldSearch, group: usize, fold: usize| {
+        let in_fold = |class: usize| search.n_rows(class, fold);
+        let classes = classes_of[group].iter();
+        let excess =
+            classes.map(|&(class, n)| n as f64 * in_fold(class) as f64 / n_rows[class].powi(2));
+        let all: usize = (0..n_rows.len()).map(in_fold).sum();
+        (excess.sum::<f64>(), all)
+    };
+    let fold_of = divide((&classes, &classes_of), ("folds", k), cost)?;
+    let fold_of: BTreeMap<usize, usize> = order.into_iter().zip(fold_of).collect();
+    let fold_of: Vec<usize> = groups.iter().map(|group| fold_of[group]).collect();
+    folds(labels, &draw_rows(labels, seed), &fold_of, k)
 }
 
-/// Returns an error if a class has rows in fewer than k groups, so that a fold would lack test rows of the class.
-fn check_groups_of_classes(
+/// Returns the classes of each group, as indices of the distinct labels, each with its number of rows in the group.
+fn classes_of(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
-    k: usize,
-) -> Result<()> {
-    let mut groups_of = BTreeMap::<usize, BTreeSet<usize>>::new();
-    for (&class, &group) in labels.iter().zip(groups) {
-        groups_of.entry(class).or_default().insert(group);
+    order: &[usize],
+) -> Vec<Vec<(usize, usize)>> {
+    let mut counts = BTreeMap::<usize, BTreeMap<usize, usize>>::new();
+    for (class, &group) in positions(labels, &distinct(labels)).into_iter().zip(groups) {
+        *counts.entry(group).or_default().entry(class).or_default() += 1;
     }
-    let fewest = groups_of.iter().min_by_key(|(_, groups)| groups.len());
-    match fewest {
-        Some((class, found)) if found.len() < k => {
-            let n = found.len();
-            let given = format!("{k} folds, but class {class} has rows in only {n} groups");
-            let allowed = format!("at most {n} folds: each needs a test group of every class");
-            Err(Error::input("folds", given, allowed))
-        }
-        _ => Ok(()),
-    }
+    let classes = |group| {
+        counts[group]
+            .iter()
+            .map(|(class, n)| (*class, *n))
+            .collect()
+    };
+    order.iter().map(classes).collect()
+}
+
+/// Divides groups into parts, so that every part contains every class. Returns the part of each group. `classes_of` contains the classes of each group, as
+/// indices of `classes`, with their numbers of rows. `place` names the number of parts in errors.
+///
+/// # Errors
+/// If no such division exists. The error contains the largest possible number of parts.
+fn divide<C: PartialOrd>(
+    (classes, classes_of): (&[usize], &[Vec<(usize, usize)>]),
+    (place, n_parts): (&str, usize),
+    cost: impl Fn(&FoldSearch, usize, usize) -> C,
+) -> Result<Vec<usize>> {
+    let search = |n_parts| FoldSearch::new(classes_of.to_vec(), classes.len(), n_parts);
+    let found = search(n_parts).divide(cost);
+    found.map_err(|reason| {
+        let n_groups = |class: usize| {
+            let groups = classes_of.iter();
+            groups
+                .filter(|of| of.iter().any(|(other, _)| *other == class))
+                .count()
+        };
+        let fewest = (0..classes.len())
+            .map(|class| (n_groups(class), classes[class]))
+            .min();
+        let why = match (fewest, reason) {
+            (Some((n, class)), _) if n < n_parts => {
+                let groups = if n == 1 { "group" } else { "groups" };
+                format!("class {class} has rows in only {n} {groups}")
+            }
+            (_, NoDivision::Impossible) => {
+                "no division of the groups has every class in each".to_owned()
+            }
+            (_, NoDivision::NotFound) => {
+                "no division with every class in each was found".to_owned()
+            }
+        };
+        let is_possible = |n: &usize| search(*n).divide(|_, _, _| 0).is_ok();
+        let at_most = fewest.map_or(0, |(n, _)| n).min(n_parts - 1);
+        let allowed = match (2..=at_most).rev().find(is_possible) {
+            Some(most) => {
+                format!("at most {most} with these groups: each needs a group of every class")
+            }
+            None => "groups of which each class has two or more that can be apart".to_owned(),
+        };
+        Error::input(place, format!("{n_parts}, but {why}"), allowed)
+    })
 }
 
 /// Returns the rows of each class, shuffled by the random stream of the class.

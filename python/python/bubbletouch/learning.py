@@ -255,7 +255,8 @@ class LinearSVC(_Classifier):
 
 
 class GridSearch(_Classifier):
-    """Cross-validated choice of C and γ of an SVC, by the accuracy on held-out rows. The whole grid shares one matrix of inner products.
+    """Cross-validated choice of C and γ of an SVC, by the accuracy on held-out rows, averaged over the folds as in scikit-learn's GridSearchCV.
+    The whole grid shares one matrix of inner products.
 
     estimator: SVC whose other parameters are used. Default: SVC().
     C: candidate values, each above 0.
@@ -265,7 +266,7 @@ class GridSearch(_Classifier):
 
     If accuracies are equal, the smaller γ is chosen, then the smaller C.
 
-    Attributes after fit: best_params_ (C and gamma), best_score_, results_ (C, gamma and accuracy of each candidate), best_estimator_
+    Attributes after fit: best_params_ (C and gamma), best_score_, results_ (C, gamma and mean accuracy of each candidate), best_estimator_
     (trained on all rows).
     """
 

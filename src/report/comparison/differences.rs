@@ -196,11 +196,12 @@ impl<'a> Settings<'a> {
     /// Returns the numbers of training and test touches in the trial of a row; `None` if the table does not contain these numbers.
     fn trial_size(&self, row: usize) -> Option<TrialSize> {
         self.is_repeated.then_some(())?;
+        let n_decisions = self.count("n_test", row)?;
         Some(TrialSize {
             n_train: self.count("n_train", row)?,
             // The overlap of trials is counted in touches; a decision can use several touches.
-            n_test: self.count("n_test", row)?
-                * self.count("touches_per_decision", row).unwrap_or(1),
+            n_test: n_decisions * self.count("touches_per_decision", row).unwrap_or(1),
+            n_decisions,
         })
     }
 }

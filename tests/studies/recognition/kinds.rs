@@ -11,6 +11,7 @@ use bubbletouch::recognition::classifiers::naive_bayes::NaiveBayes;
 use bubbletouch::recognition::classifiers::random_forest::RandomForest;
 use bubbletouch::recognition::data::dataset::{Dataset, dataset, rows};
 use bubbletouch::recognition::data::split::stratified_hold_out;
+use bubbletouch::recognition::svm::class_weight::ClassWeight;
 use bubbletouch::recognition::svm::cross_validation::choice::Candidates;
 use linfa::traits::Fit;
 use ndarray::{Array1, Array2, ArrayView1, Axis, array};
@@ -187,8 +188,8 @@ fn options_out_of_range_are_refused() {
         assert!(error.contains("1 to the 60 training rows"), "{error}");
     }
     let seed = Seed::new(0);
-    assert!(RandomForest::train(&data, 0, None, &seed).is_err());
-    assert!(RandomForest::train(&data, 1, Some(0), &seed).is_err());
+    assert!(RandomForest::train(&data, 0, None, ClassWeight::Uniform, &seed).is_err());
+    assert!(RandomForest::train(&data, 1, Some(0), ClassWeight::Uniform, &seed).is_err());
     let constant = dataset(Array2::ones((4, 2)), array![0, 1, 0, 1]).unwrap();
     assert!(NaiveBayes::train(&constant).is_err());
     assert!(KNearest::train(&dataset(array![[1e200], [0.0]], array![0, 1]).unwrap(), 1).is_err());
@@ -287,7 +288,14 @@ fn a_forest_is_better_than_its_trees_and_follows_its_seed() {
         .mapv_inplace(|value| value + rng.gen_range(-0.5..0.5));
     let (training, test) = at(&data, 240);
     let share = |n_trees: usize, seed: u64| {
-        let forest = RandomForest::train(&training, n_trees, None, &Seed::new(seed)).unwrap();
+        let forest = RandomForest::train(
+            &training,
+            n_trees,
+            None,
+            ClassWeight::Uniform,
+            &Seed::new(seed),
+        )
+        .unwrap();
         let scores = forest.scores(test.records.view()).unwrap();
         (
             accuracy(&forest.labels_of_scores(scores.view()), &test.targets),

@@ -183,3 +183,43 @@ fn a_given_hold_out_has_each_row_where_it_was_put_and_draws_the_order_alone() {
     assert!(given_hold_out(labels.view(), &sides[1..], &Seed::new(1)).is_err());
     assert!(given_hold_out(labels.view(), &[Train; 8], &Seed::new(1)).is_err());
 }
+
+#[test]
+fn folds_of_groups_contain_every_class_evenly() {
+    // Four classes, five recordings of each, four rows a recording.
+    let labels = Array1::from_iter((0..80).map(|row| row / 20));
+    let groups = Array1::from_iter((0..80).map(|row| row / 4));
+    for seed in 0..20 {
+        let folds = group_k_fold(labels.view(), groups.view(), 5, &Seed::new(seed)).unwrap();
+        for fold in folds {
+            assert!((0..4).all(|class| count(&labels, &fold.test, class) == 4));
+        }
+    }
+    // Three classes share four groups: a and c are one fold, b and d the other.
+    let labels = Array1::from(vec![1, 1, 0, 0, 2, 2]);
+    let groups = Array1::from(vec![0, 1, 1, 2, 2, 3]);
+    for seed in 0..20 {
+        let seed = Seed::new(seed);
+        let folds = group_k_fold(labels.view(), groups.view(), 2, &seed).unwrap();
+        let held_out = group_hold_out(labels.view(), groups.view(), 0.25, &seed).unwrap();
+        for fold in folds.iter().chain([&held_out]) {
+            assert!([vec![0, 3, 4], vec![1, 2, 5]].contains(&fold.test));
+        }
+    }
+    let error = |k| {
+        let folds = group_k_fold(labels.view(), groups.view(), k, &Seed::new(1));
+        folds.unwrap_err().to_string()
+    };
+    assert_eq!(
+        error(3),
+        "folds: 3, but class 0 has rows in only 2 groups; at most 2 with these groups: each needs a group of every class"
+    );
+    // Three groups of two classes each: two of them are always in one fold, without the third class.
+    let labels = Array1::from(vec![0, 1, 1, 2, 2, 0]);
+    let groups = Array1::from(vec![0, 0, 1, 1, 2, 2]);
+    let error = group_k_fold(labels.view(), groups.view(), 2, &Seed::new(1)).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "folds: 2, but no division of the groups has every class in each; groups of which each class has two or more that can be apart"
+    );
+}

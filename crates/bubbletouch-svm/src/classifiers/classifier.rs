@@ -11,8 +11,9 @@ use ndarray::{Array1, Array2};
 use serde::{Deserialize, Serialize};
 
 use crate::class_model::ClassModel;
+use crate::class_weight::ClassWeight;
 use crate::classifiers::ClassifierKind;
-use crate::classifiers::parameters::Parameters;
+use crate::classifiers::parameters::{Parameter, Parameters};
 use crate::classifiers::trained_classifier::Model;
 use crate::cross_validation::choice::{Candidates, Chosen, choose, choose_c};
 use crate::dataset::{Dataset, rows};
@@ -55,6 +56,8 @@ pub struct Classifier {
     pub solver: Solver,
     /// Penalty C: a fixed value, or candidate values from which it is chosen.
     pub c: Cost,
+    /// Weights of the classes in training; logistic regression and random forests have them.
+    pub class_weight: ClassWeight,
     /// Values of the parameters that the kind of classifier declares; see [`with`](Self::with).
     pub parameters: Parameters,
     /// Stopping tolerance of the solver, above 0, in units of the decision value. Logistic regression uses one twentieth of this tolerance.
@@ -75,6 +78,7 @@ impl Classifier {
             multiclass: Multiclass::OneVsOne,
             solver: Solver::Smo,
             c: Cost::Fixed(1.0),
+            class_weight: ClassWeight::Uniform,
             parameters: Parameters::new(kind),
             tolerance: 1e-3,
             memory_bytes: DEFAULT_MEMORY_BYTES,
@@ -286,6 +290,22 @@ impl Classifier {
             solver: self.solver,
             memory_bytes: self.memory_bytes,
         })
+    }
+
+    /// Checks that the parameters allow training on `n_rows` rows.
+    ///
+    /// # Errors
+    /// If a parameter that the number of rows limits is larger; the error names the parameter.
+    pub fn check_rows(&self, n_rows: usize) -> Result<()> {
+        let mut limited = self.kind.about().parameters.iter();
+        let value = |one: &Parameter| one.value(&self.parameters).unwrap_or(0.0);
+        match limited.find(|one| one.is_at_most_rows && value(one) > n_rows as f64) {
+            None => Ok(()),
+            Some(one) => {
+                let allowed = format!("at most {n_rows}, the training rows");
+                Err(Error::input(one.key, value(one), allowed))
+            }
+        }
     }
 
     /// Checks that the solver supports this classifier, if the classifier is an SVM.

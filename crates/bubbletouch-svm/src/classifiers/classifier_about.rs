@@ -17,6 +17,8 @@ pub struct ClassifierAbout {
     pub words: &'static str,
     /// Whether the classifier has a soft-margin penalty C.
     pub has_c: bool,
+    /// Whether the training supports [class weights](crate::class_weight).
+    pub has_class_weights: bool,
     /// Parameters that the kind of classifier declares. Classifiers with an equal key share its declaration.
     pub parameters: &'static [Parameter],
     /// Kernel of a kernel SVM; `None` for other kinds. Kernel SVMs solve several values of C together and keep kernel values in memory.
@@ -34,6 +36,7 @@ impl ClassifierAbout {
         Self {
             words,
             has_c: false,
+            has_class_weights: false,
             parameters: &[],
             kernel: None,
             train,

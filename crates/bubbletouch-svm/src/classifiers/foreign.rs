@@ -3,14 +3,14 @@
 //! A [`Foreign`] is the identity of such a classifier: a name and a version. The code behind it is a [`ForeignClassifier`], which a program
 //! [provides](Foreign::provide) while it runs a study. [`LinfaClassifier`] adapts any classifier that implements linfa's traits.
 
-use crate::class_model::{ClassModel, log_priors, log_vote_shares};
+use crate::class_model::{ClassModel, log_vote_shares};
 use crate::classifiers::ClassifierKind;
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::dataset::{Dataset, check_width, checked_classes};
 use crate::streams::Streams;
 use crate::{Error, Result};
 use linfa::traits::{Fit, PredictInplace};
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, s};
+use ndarray::{Array1, Array2, ArrayView2, s};
 use rand::RngCore;
 use serde::{Serialize, Serializer};
 use std::cell::RefCell;
@@ -72,8 +72,9 @@ pub trait ForeignModel: Send + Sync {
         false
     }
 
-    /// Returns the log-probability of each class given the row, shape (n_rows, n_classes), in ascending order of the labels. Returns `None` if the model
-    /// predicts labels alone; a decision on several touches then counts the labels as votes.
+    /// Returns the log-probability of each class given the row, shape (n_rows, n_classes), in ascending order of the labels. A decision on
+    /// several touches adds these values; the prior that they contain counts once for each touch. Returns `None` if the model predicts labels alone; a decision
+    /// on several touches then counts the labels as votes.
     ///
     /// # Errors
     /// If the model cannot predict.
@@ -243,7 +244,7 @@ impl Foreign {
         Ok(Arc::new(ForeignClassModel {
             foreign: self,
             n_features: scaled.records.ncols(),
-            log_prior: has_probabilities.then(|| log_priors(scaled.targets.view(), &classes)),
+            has_probabilities,
             classes,
             model,
         }))
@@ -324,8 +325,8 @@ struct ForeignClassModel {
     foreign: Foreign,
     classes: Vec<usize>,
     n_features: usize,
-    /// Log-priors of the classes, shape (n_classes,); `None` if the model predicts labels alone.
-    log_prior: Option<Array1<f64>>,
+    /// Whether the model returns log-probabilities; otherwise, it predicts labels alone.
+    has_probabilities: bool,
     model: Box<dyn ForeignModel>,
 }
 
@@ -368,13 +369,12 @@ impl ClassModel for ForeignClassModel {
     fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         let shape = (features.nrows(), self.classes.len());
         check_width(&features, self.n_features)?;
-        if let (Some(prior), Some(scores)) =
-            (&self.log_prior, self.model.log_probabilities(features)?)
+        if self.has_probabilities
+            && let Some(scores) = self.model.log_probabilities(features)?
         {
             if scores.dim() == shape && !scores.iter().any(|score| score.is_nan()) {
                 // −∞ would exclude a class in all further touches.
-                let scores = scores.mapv(|score| score.max(f64::MIN_POSITIVE.ln()));
-                return Ok(scores - prior);
+                return Ok(scores.mapv(|score| score.max(f64::MIN_POSITIVE.ln())));
             }
             let given = format!("log-probabilities of shape {:?}", scores.dim());
             let allowed = format!("{shape:?}, without NaN");
@@ -387,8 +387,8 @@ impl ClassModel for ForeignClassModel {
         Ok(log_vote_shares(votes))
     }
 
-    fn log_prior(&self) -> Option<ArrayView1<'_, f64>> {
-        self.log_prior.as_ref().map(Array1::view)
+    fn has_own_labels(&self) -> bool {
+        self.has_probabilities
     }
 
     fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use crate::class_model::{ClassModel, log_vote_shares};
-use crate::dataset::{Dataset, check_width, checked_classes, positions};
+use crate::dataset::{Dataset, check_width, checked_classes, positions, squared_norms};
 use crate::linalg::products::multiply;
 use crate::saved::SavedModel;
 use crate::{Error, Result};
@@ -94,14 +94,7 @@ impl KNearest {
             ));
         }
         let rows = data.records.clone();
-        let squared_norms = rows.map_axis(Axis(1), |row| row.dot(&row));
-        if let Some(row) = squared_norms.iter().position(|norm| !norm.is_finite()) {
-            return Err(Error::input(
-                format!("features, row {row}"),
-                "values whose squares overflow",
-                "scaled features are needed",
-            ));
-        }
+        squared_norms(rows.view())?;
         Ok(Self {
             n_neighbours,
             label: positions(data.targets.view(), &classes),
@@ -282,7 +275,8 @@ const N_NEIGHBOURS: Parameter = Parameter::integer(
     "number k of nearest neighbours",
     [1.0, MAX_COUNT],
     DefaultValue::Number(5.0),
-);
+)
+.at_most_rows();
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     parameters: &[N_NEIGHBOURS],

@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 mod classifier_about;
 pub mod classifier;
 pub mod foreign;
-pub(crate) mod lbfgs;
 pub(crate) mod logistic_loss;
 pub mod parameters;
 pub(crate) mod ranked;

@@ -23,6 +23,8 @@ pub struct Parameter {
     pub default: DefaultValue,
     /// Whether a study file with all default values contains the parameter even if no classifier of the study uses it.
     pub is_always_written: bool,
+    /// Whether the value must not exceed the number of training rows.
+    pub is_at_most_rows: bool,
 }
 
 /// Default value of a classifier's parameter: a number, or a rule that computes the value.
@@ -73,6 +75,7 @@ impl Parameter {
             range,
             default,
             is_always_written: false,
+            is_at_most_rows: false,
         }
     }
 
@@ -80,6 +83,14 @@ impl Parameter {
     pub(crate) const fn always_written(self) -> Self {
         Self {
             is_always_written: true,
+            ..self
+        }
+    }
+
+    /// Declares that the value must not exceed the number of training rows.
+    pub(crate) const fn at_most_rows(self) -> Self {
+        Self {
+            is_at_most_rows: true,
             ..self
         }
     }
@@ -190,7 +201,8 @@ impl Parameters {
 type Uses = fn(ClassifierKind) -> bool;
 
 /// Keys of `[recognition]` that several kinds of classifiers share.
-const SHARED: [(&str, Uses); 7] = [
+const SHARED: [(&str, Uses); 8] = [
+    ("class_weight", |kind| kind.about().has_class_weights),
     ("tolerance", ClassifierKind::has_c),
     ("c", ClassifierKind::has_c),
     ("c_grid", ClassifierKind::has_c),

@@ -7,12 +7,13 @@
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::classifiers::parameters::{DefaultValue, MAX_COUNT, Parameter};
-use ndarray::{Array2, ArrayView2};
+use ndarray::{Array1, Array2, ArrayView2};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use crate::class_model::{ClassModel, log_vote_shares};
+use crate::class_weight::ClassWeight;
 use crate::classifiers::ranked::Ranked;
 use crate::classifiers::tree::{Growth, Tree, check_depth};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
@@ -24,6 +25,7 @@ use crate::{Error, Result};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RandomForest {
     classes: Vec<usize>,
+    class_weights: Array1<f64>,
     trees: Vec<Tree>,
     n_features: usize,
 }
@@ -39,6 +41,7 @@ impl RandomForest {
         data: &Dataset,
         n_trees: usize,
         max_depth: Option<usize>,
+        class_weight: ClassWeight,
         seed: &dyn Streams,
     ) -> Result<Self> {
         let classes = checked_classes(data)?;
@@ -47,11 +50,13 @@ impl RandomForest {
             return Err(Error::input("trees", 0, "at least 1 is allowed"));
         }
         let n_features = data.records.ncols();
+        let label = positions(data.targets.view(), &classes);
+        let class_weights = class_weight.of_classes(&label, classes.len());
         let growth = Growth {
+            class_weights: &class_weights.to_vec(),
             n_candidates: n_features.isqrt().max(1),
             max_depth,
         };
-        let label = positions(data.targets.view(), &classes);
         let ranked = Ranked::new(data.records.view());
         let n_rows = label.len() as u32;
         let trees = (0..n_trees as u64)
@@ -59,17 +64,12 @@ impl RandomForest {
                 let seed = seed.named("tree").numbered(tree);
                 let mut rng = seed.named("rows").rng();
                 let rows = (0..n_rows).map(|_| rng.gen_range(0..n_rows)).collect();
-                growth.grow(
-                    &ranked,
-                    &label,
-                    classes.len(),
-                    rows,
-                    &*seed.named("features"),
-                )
+                growth.grow(&ranked, &label, rows, &*seed.named("features"))
             })
             .collect();
         Ok(Self {
             classes,
+            class_weights,
             trees,
             n_features,
         })
@@ -96,9 +96,10 @@ impl ClassModel for RandomForest {
         for tree in &self.trees {
             for (row, mut votes) in features.rows().into_iter().zip(votes.rows_mut()) {
                 let counts = tree.leaf(row);
-                let n_rows: u32 = counts.iter().map(|&(_, count)| count).sum();
-                for &(class, count) in counts {
-                    votes[class as usize] += f64::from(count) / f64::from(n_rows);
+                let weighted = |&(class, count): &(u32, u32)| self.class_weights[class as usize] * f64::from(count);
+                let sum: f64 = counts.iter().map(weighted).sum();
+                for count in counts {
+                    votes[count.0 as usize] += weighted(count) / sum;
                 }
             }
         }
@@ -121,12 +122,14 @@ const MAX_DEPTH: Parameter = Parameter::integer(
 );
 
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_class_weights: true,
     parameters: &[N_TREES, MAX_DEPTH],
     ..ClassifierAbout::new("random forest", |classifier, scaled, _, seed| {
         let n_trees = N_TREES.count(&classifier.parameters);
         let depth = MAX_DEPTH.value(&classifier.parameters);
         let depth = depth.map(|depth| depth as usize);
-        let forest = RandomForest::train(scaled, n_trees, depth, &*seed.named("forest"))?;
+        let seed = seed.named("forest");
+        let forest = RandomForest::train(scaled, n_trees, depth, classifier.class_weight, &*seed)?;
         Ok(Arc::new(forest))
     })
 };

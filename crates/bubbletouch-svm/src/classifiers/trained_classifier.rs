@@ -79,6 +79,7 @@ impl TrainedClassifier {
     /// |---|---|
     /// | SVM | decision value of each binary problem, or of each class |
     /// | logistic regression | `ln p(k given x) − ln p(k)`; `labels_of_scores` adds the prior once |
+    /// | own classifier | `ln p(k given x)`, or the smoothed fraction of the votes if it predicts labels alone |
     /// | naive Bayes | `ln p(x given k)`; `labels_of_scores` adds the prior once |
     /// | linfa-svm | `ln p` of the probability that the SVM of class k gives |
     /// | k nearest neighbours, tree, forest | `ln((v_k + 1) / (Σ v + n_classes))`, where v are the votes or the rows of the leaf; finite without votes |
@@ -153,6 +154,14 @@ impl TrainedClassifier {
     /// Returns the number of optimisation problems that stopped at the solver's iteration cap before reaching the tolerance.
     pub fn n_capped(&self) -> usize {
         self.model.n_capped()
+    }
+
+    /// Returns whether `labels` may differ from `labels_of_scores` for single rows.
+    pub fn has_own_labels(&self) -> bool {
+        match &self.model {
+            Model::Svm(_) => false,
+            Model::Classes(model) => model.has_own_labels(),
+        }
     }
 
     /// Returns whether the model is trained anew in each call that predicts.

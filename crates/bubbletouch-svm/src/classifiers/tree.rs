@@ -1,7 +1,7 @@
 //! Classification trees of a random forest [Breiman et al. 1984]: Gini impurity, binary splits `x_f ≤ threshold`, no pruning.
 //!
 //! A node is divided by the split with the lowest impurity, i.e. the largest `Σ_k l_k² / l + Σ_k r_k² / r`. Here l_k and r_k are the numbers of rows of class k
-//! on the left and right. If splits are equal, the first visited feature and its lowest threshold are chosen. Thresholds are midpoints between values that
+//! on the left and right, times the [weight](crate::class_weight) of the class. If splits are equal, the first visited feature and its lowest threshold are chosen. Thresholds are midpoints between values that
 //! occur in the node.
 //!
 //! The crate linfa-trees 0.8.1 is not used, because it sums impurities in f32 in the order of a `HashMap`. Two of its trees grown on equal rows can differ
@@ -63,8 +63,11 @@ impl Tree {
 
 /// Parameters that limit the growth of a tree.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Growth {
-    /// Number of non-constant features that are tested for the split of a node. If fewer than all are tested, they are drawn again for each node.
+pub(crate) struct Growth<'a> {
+    /// Weight of each class, shape (n_classes,).
+    pub class_weights: &'a [f64],
+    /// Number of features that are drawn for the split of a node, with those that are constant in the node. If all of them are constant, further ones are drawn
+    /// until one varies, as in scikit-learn.
     pub n_candidates: usize,
     pub max_depth: Option<usize>,
 }
@@ -81,20 +84,19 @@ struct Split {
 struct Grower<'a> {
     ranked: &'a Ranked,
     label: &'a [usize],
-    n_classes: usize,
+    class_weights: &'a [f64],
     /// Sort keys of the rows in the current node: rank of the feature value (upper 32 bits) and class (lower 32 bits).
     keys: Vec<u64>,
     left: Vec<f64>,
     right: Vec<f64>,
 }
 
-impl Growth {
-    /// Grows a tree on the given training rows, which may contain repetitions. The argument `label` contains the class of each row, below `n_classes`.
+impl Growth<'_> {
+    /// Grows a tree on the given training rows, which may contain repetitions. The argument `label` contains the class of each row, as an index.
     pub(crate) fn grow(
         &self,
         ranked: &Ranked,
         label: &[usize],
-        n_classes: usize,
         mut rows: Vec<u32>,
         seed: &dyn Streams,
     ) -> Tree {
@@ -103,10 +105,10 @@ impl Growth {
         let mut grower = Grower {
             ranked,
             label,
-            n_classes,
+            class_weights: self.class_weights,
             keys: Vec::with_capacity(rows.len()),
-            left: vec![0.0; n_classes],
-            right: vec![0.0; n_classes],
+            left: vec![0.0; self.class_weights.len()],
+            right: vec![0.0; self.class_weights.len()],
         };
         let mut features: Vec<usize> = (0..ranked.n_features()).collect();
         let mut nodes = vec![Node::Leaf { counts: Vec::new() }];
@@ -147,9 +149,8 @@ impl Growth {
         rng: &mut ChaCha8Rng,
     ) -> Option<Split> {
         let mut best: Option<Split> = None;
-        let mut n_varying = 0;
         for place in 0..features.len() {
-            if n_varying == self.n_candidates {
+            if place >= self.n_candidates && best.is_some() {
                 break;
             }
             if self.n_candidates < features.len() {
@@ -158,7 +159,6 @@ impl Growth {
             let Some(split) = grower.split(features[place], rows) else {
                 continue;
             };
-            n_varying += 1;
             if best.as_ref().is_none_or(|best| split.score > best.score) {
                 best = Some(split);
             }
@@ -170,7 +170,7 @@ impl Growth {
 impl Grower<'_> {
     /// Counts the given rows by class: pairs (class, number of rows) in ascending order of the class.
     fn counts(&self, rows: &[u32]) -> Vec<(u32, u32)> {
-        let mut counts = vec![0; self.n_classes];
+        let mut counts = vec![0; self.class_weights.len()];
         for &row in rows {
             counts[self.label[row as usize]] += 1;
         }
@@ -192,24 +192,26 @@ impl Grower<'_> {
         self.left.fill(0.0);
         self.right.fill(0.0);
         for &key in &self.keys {
-            self.right[key as u32 as usize] += 1.0;
+            let class = key as u32 as usize;
+            self.right[class] += self.class_weights[class];
         }
-        // Σ l² and Σ r², updated while rows move from right to left; integers, so exact.
+        // Σ l² and Σ r², updated while rows move from right to left; exact with weights of 1.
         let mut squares = [0.0, self.right.iter().map(|r| r * r).sum::<f64>()];
+        let (mut n_left, n_rows) = (0.0, self.right.iter().sum::<f64>());
         let mut best: Option<(f64, u32, u32)> = None;
-        for (i, pair) in self.keys.windows(2).enumerate() {
+        for pair in self.keys.windows(2) {
             let class = pair[0] as u32 as usize;
-            squares[0] += 2.0 * self.left[class] + 1.0;
-            squares[1] -= 2.0 * self.right[class] - 1.0;
-            self.left[class] += 1.0;
-            self.right[class] -= 1.0;
+            let weight = self.class_weights[class];
+            squares[0] += weight * (2.0 * self.left[class] + weight);
+            squares[1] -= weight * (2.0 * self.right[class] - weight);
+            self.left[class] += weight;
+            self.right[class] -= weight;
+            n_left += weight;
             let (rank, next) = ((pair[0] >> 32) as u32, (pair[1] >> 32) as u32);
             if rank == next {
                 continue;
             }
-            let n_left = (i + 1) as f64;
-            let n_correct = rows.len() as f64 - n_left;
-            let score = squares[0] / n_left + squares[1] / n_correct;
+            let score = squares[0] / n_left + squares[1] / (n_rows - n_left);
             if best.is_none_or(|best| score > best.0) {
                 best = Some((score, rank, next));
             }
@@ -243,13 +245,14 @@ mod tests {
     /// Grows a decision tree on all rows; every feature is a candidate for the split of each node.
     fn grow(features: &Array2<f64>, label: &[usize], max_depth: Option<usize>) -> Tree {
         let ranked = Ranked::new(features.view());
+        let n_classes = label.iter().max().unwrap() + 1;
         let growth = Growth {
+            class_weights: &vec![1.0; n_classes],
             n_candidates: ranked.n_features(),
             max_depth,
         };
-        let n_classes = label.iter().max().unwrap() + 1;
         let rows = (0..label.len() as u32).collect();
-        growth.grow(&ranked, label, n_classes, rows, &(0))
+        growth.grow(&ranked, label, rows, &(0))
     }
 
     /// Returns the most frequent class of the leaf that each row reaches; the first class if several are equally frequent.
@@ -324,5 +327,62 @@ mod tests {
         let tree = grow(&array![[0.0], [-0.0], [0.0]], &[1, 0, 1], None);
         assert_eq!(n_leaves(&tree), 1);
         assert_eq!(tree.leaf(array![0.0].view()), [(0, 1), (1, 2)]);
+    }
+
+    #[test]
+    fn a_weight_of_three_is_three_equal_rows() {
+        let features = Array2::from_shape_fn((40, 3), |(i, j)| {
+            ((i * 7 + j * 13) as f64 * 1.7).sin().round()
+        });
+        let label: Vec<usize> = (0..40).map(|i| usize::from(i * i % 7 < 2)).collect();
+        let ranked = Ranked::new(features.view());
+        let growth = |class_weights| Growth {
+            class_weights,
+            n_candidates: 3,
+            max_depth: Some(3),
+        };
+        let rows = (0..40).collect();
+        let weighted = growth(&[1.0, 3.0]).grow(&ranked, &label, rows, &0_u64);
+        let repeated = (0..40)
+            .flat_map(|row| vec![row; 1 + 2 * label[row as usize]])
+            .collect();
+        let repeated = growth(&[1.0, 1.0]).grow(&ranked, &label, repeated, &0_u64);
+        for row in features.rows() {
+            let counts = weighted
+                .leaf(row)
+                .iter()
+                .map(|&(class, n)| (class, n * (1 + 2 * class)));
+            assert_eq!(counts.collect::<Vec<_>>(), repeated.leaf(row));
+        }
+    }
+
+    #[test]
+    fn constant_features_are_drawn_but_the_last_draw_varies() {
+        // One of 50 features varies. With 5 draws for each node, the tree still separates all rows.
+        let features =
+            Array2::from_shape_fn((20, 50), |(i, j)| if j == 31 { i as f64 } else { 1.0 });
+        let label: Vec<usize> = (0..20).map(|i| i % 2).collect();
+        let growth = Growth {
+            class_weights: &[1.0; 2],
+            n_candidates: 5,
+            max_depth: None,
+        };
+        let ranked = Ranked::new(features.view());
+        let tree = growth.grow(&ranked, &label, (0..20).collect(), &0_u64);
+        assert_eq!(labels(&tree, &features), label);
+        // With two features that vary, 5 draws of 50 mostly contain one of them, so the worse feature is often used.
+        let features = Array2::from_shape_fn((20, 50), |(i, j)| match j {
+            3 => (i % 2) as f64,
+            31 => i as f64,
+            _ => 1.0,
+        });
+        let ranked = Ranked::new(features.view());
+        let is_best_first = |seed: u64| {
+            let tree = growth.grow(&ranked, &label, (0..20).collect(), &seed);
+            matches!(tree.nodes[0], Node::Split { feature: 3, .. })
+        };
+        let n_best = (0..200).filter(|seed| is_best_first(*seed)).count();
+        // Half of the first varying draws are feature 3, and a twentieth of the trees draw both.
+        assert!((80..140).contains(&n_best), "{n_best}");
     }
 }

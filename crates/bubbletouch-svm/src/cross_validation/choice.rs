@@ -1,7 +1,8 @@
 //! Choice of C and γ by cross-validation on training rows; test rows are not used.
 
-use ndarray::{Array1, Array2, ArrayView1};
+use ndarray::{Array1, Array3, ArrayView1, Axis};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 use crate::cross_validation::grid::Grid;
 use crate::dataset::{Dataset, check_labels, distinct, rows};
@@ -31,7 +32,7 @@ pub struct Tried {
     pub c: f64,
     /// Kernel parameter γ of this combination; `None` for a linear kernel.
     pub gamma: Option<f64>,
-    /// Fraction of validation rows classified correctly over all folds, 0 to 1.
+    /// Fraction of the validation rows of a fold that are classified correctly, averaged over the folds, 0 to 1.
     pub accuracy: f64,
 }
 
@@ -46,7 +47,7 @@ pub struct Chosen {
     pub n_capped: usize,
 }
 
-/// Evaluates every C with every γ on every fold, and returns the most accurate candidate. If candidates are equally accurate, the smaller γ is chosen, then the
+/// Evaluates every C with every γ on every fold, and returns the candidate with the highest accuracy on validation rows, averaged over the folds. If candidates are equally accurate, the smaller γ is chosen, then the
 /// smaller C (smoother, more regularised, and faster).
 ///
 /// `training` contains only scaled training rows; the scaling may be fitted to all of them, without labels. `folds` split these rows. All candidates share one
@@ -73,15 +74,17 @@ pub fn choose(
         memory: params.memory_bytes,
     };
     let (counts, n_capped) = on_one_matrix(params, (training, &statistics), folds, &kernels, goal)?;
-    let n_validated: usize = folds.iter().map(|fold| fold.test.len()).sum();
-    let tried = counts
-        .indexed_iter()
-        .map(|((kernel, c), &n_correct)| Tried {
-            c: path[c],
-            gamma: kernels[kernel].gamma(),
-            accuracy: n_correct as f64 / n_validated as f64,
-        });
-    Ok(Chosen::new(tried.collect(), n_capped))
+    let mut tried = Vec::with_capacity(kernels.len() * path.len());
+    for (kernel, counts) in kernels.iter().zip(counts.outer_iter()) {
+        for (&c, counts) in path.iter().zip(counts.axis_iter(Axis(0))) {
+            tried.push(Tried {
+                c,
+                gamma: kernel.gamma(),
+                accuracy: mean_accuracy(folds, counts.iter().copied()),
+            });
+        }
+    }
+    Ok(Chosen::new(tried, n_capped))
 }
 
 /// Chooses the penalty C of a classifier by cross-validation. The function `train` trains a classifier on given rows with a given C. The result of `train` is a
@@ -104,21 +107,20 @@ where
         return Err(Error::input("C", "none", "at least one is needed").into());
     }
     check_folds(training, folds)?;
-    let n_validated: usize = folds.iter().map(|fold| fold.test.len()).sum();
     let mut n_capped = 0;
     let mut tried = Vec::new();
     for c in path {
-        let mut n_correct = 0;
+        let mut n_correct = Vec::with_capacity(folds.len());
         for fold in folds {
             let (predict, capped) = train(&rows(training, &fold.train)?, c)?;
             let held_out = rows(training, &fold.test)?;
-            n_correct += n_equal(&predict(&held_out)?, &held_out.targets);
+            n_correct.push(n_equal(&predict(&held_out)?, &held_out.targets));
             n_capped += capped;
         }
         tried.push(Tried {
             c,
             gamma: None,
-            accuracy: n_correct as f64 / n_validated as f64,
+            accuracy: mean_accuracy(folds, n_correct),
         });
     }
     Ok(Chosen::new(tried, n_capped))
@@ -140,6 +142,23 @@ impl Chosen {
             n_capped,
         }
     }
+}
+
+/// Returns the accuracy on the validation rows of a fold, averaged over the folds that have any, as in scikit-learn. `n_correct` contains the number of correctly
+/// classified rows of each fold.
+///
+/// Counts of folds of equal size are added before the division. Candidates with equal counts in total are therefore equally accurate, without rounding errors.
+fn mean_accuracy(folds: &[Split], n_correct: impl IntoIterator<Item = usize>) -> f64 {
+    let mut of_size = BTreeMap::<usize, usize>::new();
+    for (fold, n_correct) in folds.iter().zip(n_correct) {
+        *of_size.entry(fold.test.len()).or_default() += n_correct;
+    }
+    of_size.remove(&0);
+    let sum: f64 = of_size
+        .iter()
+        .map(|(&size, &n_correct)| n_correct as f64 / size as f64)
+        .sum();
+    sum / folds.iter().filter(|fold| !fold.test.is_empty()).count() as f64
 }
 
 fn n_equal(a: &Array1<usize>, b: &Array1<usize>) -> usize {
@@ -214,15 +233,15 @@ fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
     }
 }
 
-/// Returns the number of correctly classified validation rows for each kernel and C (kernels.len() × path.len()). Also returns the number of solver runs that
-/// stopped at the iteration cap.
+/// Returns the number of correctly classified validation rows for each kernel, C and fold (kernels.len() × path.len() × folds.len()). Also returns the number of
+/// solver runs that stopped at the iteration cap.
 fn on_one_matrix(
     params: &SvmParams,
     (training, statistics): (&Dataset, &RowStatistics),
     folds: &[Split],
     kernels: &[KernelFunction],
     goal: Goal,
-) -> Result<(Array2<usize>, usize)> {
+) -> Result<(Array3<usize>, usize)> {
     let centre = kernels[0].centre(statistics);
     let n_rows = training.records.nrows();
     let needs_double = |farthest: f64| {
@@ -260,7 +279,7 @@ fn grid<T: SolverScalar>(
     folds: &[Split],
     kernels: &[KernelFunction],
     goal: Goal,
-) -> Result<(Array2<usize>, usize)> {
+) -> Result<(Array3<usize>, usize)> {
     // Up to three matrices are in memory: the products, the kernel values, and the part of a fold's training rows.
     let most = (params.memory_bytes / (3 * size_of::<T>())).isqrt();
     let n_rows = sorted.points().len();
@@ -284,6 +303,7 @@ mod tests {
     use super::*;
     use crate::dataset::dataset;
     use crate::multiclass::Multiclass;
+    use ndarray::Array2;
 
     /// Three overlapping classes.
     fn overlapping(n: usize) -> Dataset {
@@ -310,21 +330,21 @@ mod tests {
         folds: &[Split],
         kernels: &[KernelFunction],
         goal: Goal,
-    ) -> Result<(Array2<usize>, usize)> {
-        let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
+    ) -> Result<(Array3<usize>, usize)> {
+        let mut counts = Array3::zeros((kernels.len(), goal.path.len(), folds.len()));
         let mut n_capped = 0;
-        for fold in folds {
+        for (number, fold) in folds.iter().enumerate() {
             let fitting = rows(training, &fold.train)?;
             let held_out = rows(training, &fold.test)?;
-            for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
+            for (kernel, mut counts) in kernels.iter().zip(counts.outer_iter_mut()) {
                 let kernel = match kernel.gamma() {
                     Some(gamma) => params.kernel.with_gamma(Gamma::Value(gamma)),
                     None => params.kernel,
                 };
                 let models = SvmParams { kernel, ..*params }.train_path(&fitting, goal.path)?;
-                for (count, model) in counts.iter_mut().zip(models) {
+                for (mut counts, model) in counts.outer_iter_mut().zip(models) {
                     let labels = model.labels(held_out.records.view())?;
-                    *count += n_equal(&labels, &held_out.targets);
+                    counts[number] = n_equal(&labels, &held_out.targets);
                     n_capped += model.n_capped();
                 }
             }
@@ -361,7 +381,7 @@ mod tests {
                 let fast = on_one_matrix(&params, rows, &folds, &kernels, goal).unwrap();
                 let slow = one_by_one(&params, &data, &folds, &kernels, goal).unwrap();
                 assert_eq!(fast, slow, "{kernel:?} {multiclass:?}");
-                assert_eq!(fast.0.nrows(), if kernel == Kernel::Linear { 1 } else { 2 });
+                assert_eq!(fast.0.dim().0, if kernel == Kernel::Linear { 1 } else { 2 });
             }
         }
     }
@@ -388,6 +408,23 @@ mod tests {
         assert_eq!(chosen.tried.len(), 4);
         assert_eq!(chosen.best, chosen.tried[0]);
         assert_eq!((chosen.best.c, chosen.best.accuracy), (1.0, 1.0));
+    }
+
+    #[test]
+    fn a_candidate_is_as_good_as_its_mean_over_the_folds() {
+        // One fold of one row and one of nine rows: 1/1 and 3/9 are better than 0/1 and 8/9 in the mean, and worse on all rows together.
+        let fold = |n: usize| Split {
+            train: Vec::new(),
+            test: (0..n).collect(),
+        };
+        let folds = [fold(1), fold(9), fold(0)];
+        assert!((mean_accuracy(&folds, [1, 3, 0]) - 2.0 / 3.0).abs() < 1e-15);
+        assert!((mean_accuracy(&folds, [0, 8, 0]) - 4.0 / 9.0).abs() < 1e-15);
+        let equal = [fold(7), fold(7), fold(7)];
+        assert_eq!(
+            mean_accuracy(&equal, [1, 2, 3]),
+            mean_accuracy(&equal, [3, 1, 2])
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! solver starts from the solution of the previous C. For the first C, a pair starts with all multipliers at their bounds, or from the previous fold
 //! (`alpha_seeding`) if that start is closer. Validation rows are scored by the problems of their own class first (`validation_scorer`).
 
-use ndarray::{Array1, Array2};
+use ndarray::{Array1, Array3};
 
 use super::validation_scorer::ValidationScorer;
 use crate::cross_validation::fold_path::FoldPath;
@@ -45,21 +45,23 @@ struct Fold {
 }
 
 impl<T: SolverScalar> Grid<'_, T> {
-    /// Returns the number of correctly classified validation rows over all folds for each kernel and C (kernels.len() × path.len()). Also returns the number of
-    /// solver runs that stopped at the iteration cap.
-    pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
+    /// Returns the number of correctly classified validation rows for each kernel, C and fold (kernels.len() × path.len() × folds.len()). Also returns the number
+    /// of solver runs that stopped at the iteration cap.
+    pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array3<usize>, usize) {
         let rows = (self.sorted.points(), self.sorted.ranges());
         // The kernels differ only in γ, so they share the pairwise numbers.
         let pairwise = kernels[0].own_pairwise(rows.0.all().values);
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
-        let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
+        let mut counts = Array3::zeros((kernels.len(), goal.path.len(), folds.len()));
         let mut n_capped = 0;
-        for (&kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
+        for (&kernel, mut counts) in kernels.iter().zip(counts.outer_iter_mut()) {
             let kernel = ProductKernel::new(rows, pairwise.view(), kernel);
+            let mut counts = counts.columns_mut().into_iter();
             for folds in folds.chunks(FOLDS_AT_ONCE) {
-                for scorer in self.score(folds, &kernel, goal) {
+                for (scorer, mut counts) in self.score(folds, &kernel, goal).iter().zip(&mut counts)
+                {
                     n_capped += scorer.n_capped();
-                    counts += &Array1::from(scorer.n_correct(&kernel));
+                    counts.assign(&Array1::from(scorer.n_correct(&kernel)));
                 }
             }
         }

@@ -233,7 +233,7 @@ mod tests {
                 .map(|scores| {
                     let right = rows.iter().zip(scores);
                     right
-                        .filter(|(row, scores)| first_maximum(&scores[..]) == row.1)
+                        .filter(|(row, scores)| first_maximum(*scores) == row.1)
                         .count()
                 })
                 .collect();

@@ -1,7 +1,6 @@
 //! Linear algebra: products of rows and factors of symmetric matrices.
 
 pub(crate) mod centered_row;
-pub(crate) mod exponential;
 pub(crate) mod factors;
 pub(crate) mod few_dimensions;
 pub(crate) mod lanes;

@@ -6,11 +6,12 @@
 //! Shrinking: a row is skipped if its multiplier is at a bound and its gradient towards the bound exceeds every violation of the last pass. When the
 //! remaining rows have converged, all rows are visited again.
 
-use ndarray::{Array2, ArrayView2, s};
+use ndarray::{Array1, Array2, ArrayView2, s};
 use rand::Rng;
 
+use crate::Result;
+use crate::dataset::squared_norms;
 use crate::linear_svm::params::LinearSvmParams;
-use crate::{Error, Result};
 
 /// Number of partial sums of an inner product; rows are padded to a multiple of this number. With a smaller value, vector units are partly idle; with a larger
 /// value, the padding grows without benefit.
@@ -32,7 +33,7 @@ pub(crate) struct Solved {
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
     values: Array2<f64>,
-    squared_norms: Vec<f64>,
+    squared_norms: Array1<f64>,
 }
 
 impl Rows {
@@ -42,17 +43,9 @@ impl Rows {
         let mut values = Array2::zeros((n_rows, (m + 1).next_multiple_of(LANES)));
         values.slice_mut(s![.., ..m]).assign(&features);
         values.column_mut(m).fill(1.0);
-        let squared_norms: Vec<f64> = values.rows().into_iter().map(|x| x.dot(&x)).collect();
-        if let Some(row) = squared_norms.iter().position(|norm| !norm.is_finite()) {
-            return Err(Error::input(
-                format!("features, row {row}"),
-                "values whose squares overflow",
-                "scaled features are needed",
-            ));
-        }
         Ok(Self {
+            squared_norms: squared_norms(values.view())?,
             values,
-            squared_norms,
         })
     }
 
@@ -67,8 +60,7 @@ impl Rows {
 
     pub(crate) fn row(&self, row: usize) -> &[f64] {
         let width = self.width();
-        // The matrix is in standard layout by construction.
-        &self.values.as_slice().unwrap_or_default()[row * width..][..width]
+        &self.values.as_slice().expect("rows are stored one by one")[row * width..][..width]
     }
 
     /// Returns the squared norm of a row, at least 1 because the row includes the bias feature.

@@ -1,6 +1,6 @@
 //! Combination of the decision values of all binary problems into one predicted class.
 
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 use serde::{Deserialize, Serialize};
 
 use crate::linalg::scalar::Scalar;
@@ -35,12 +35,11 @@ impl Voting {
 
     /// Returns the predicted label for each row of decision values, shape n_rows × n_problems.
     pub fn labels(&self, values: ArrayView2<f64>) -> Array1<usize> {
-        let values = values.as_standard_layout();
         let mut votes = Vec::new();
         values
             .rows()
             .into_iter()
-            .map(|row| self.label(row.as_slice().unwrap_or_default(), &mut votes))
+            .map(|row| self.label(row, &mut votes))
             .collect()
     }
 
@@ -68,14 +67,14 @@ impl Voting {
     }
 
     /// Returns the predicted label for one row of decision values, using `votes` as temporary memory.
-    fn label(&self, values: &[f64], votes: &mut Vec<u32>) -> usize {
+    fn label(&self, values: ArrayView1<f64>, votes: &mut Vec<u32>) -> usize {
         let winner = match self.multiclass {
             Multiclass::OneVsRest => first_maximum(values),
             _ => {
                 votes.clear();
                 votes.resize(self.classes.len(), 0);
                 count(values, votes);
-                first_maximum(votes)
+                first_maximum(votes.iter().copied())
             }
         };
         self.classes[winner]
@@ -158,7 +157,7 @@ impl VoteCounter {
             Self::Counts(votes) => votes
                 .columns()
                 .into_iter()
-                .map(|votes| first_maximum(&votes.to_vec()))
+                .map(|votes| first_maximum(votes.iter().copied()))
                 .collect(),
         }
     }
@@ -166,11 +165,11 @@ impl VoteCounter {
 
 /// Adds the votes of one row, as in LIBSVM: a positive value is a vote for the positive class, other values for the negative class. The values are in the order
 /// of all pairs of classes, so the pairs of a class with all later classes are contiguous.
-fn count(values: &[f64], votes: &mut [u32]) {
+fn count(values: ArrayView1<f64>, votes: &mut [u32]) {
     let mut rest = values;
     for class in 0..votes.len() {
         let (own, later) = votes[class..].split_at_mut(1);
-        let (values, after) = rest.split_at(later.len());
+        let (values, after) = rest.split_at(Axis(0), later.len());
         rest = after;
         for (vote, &value) in later.iter_mut().zip(values) {
             let is_own = u32::from(value > 0.0);
@@ -181,14 +180,10 @@ fn count(values: &[f64], votes: &mut [u32]) {
 }
 
 /// Returns the index of the largest value; the first index if several values are equal.
-pub fn first_maximum<V: PartialOrd>(values: &[V]) -> usize {
-    let mut best = 0;
-    for (i, value) in values.iter().enumerate() {
-        if *value > values[best] {
-            best = i;
-        }
-    }
-    best
+pub fn first_maximum<V: PartialOrd>(values: impl IntoIterator<Item = V>) -> usize {
+    let values = values.into_iter().enumerate();
+    let best = values.reduce(|best, next| if next.1 > best.1 { next } else { best });
+    best.map_or(0, |(place, _)| place)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! of [`waves`].
 
 use crate::drawn;
+use bubbletouch_svm::class_weight::ClassWeight;
 use bubbletouch_svm::classifiers::ClassifierKind;
 use bubbletouch_svm::classifiers::class_model::ClassModel;
 use bubbletouch_svm::classifiers::classifier::{Classifier, Cost};
@@ -170,6 +171,87 @@ fn logistic_regression_reaches_scikit_learns_optimum() {
             );
         }
     }
+}
+
+#[test]
+fn logistic_regression_reaches_its_tolerance_at_any_penalty_and_in_any_units() {
+    let mut units = waves();
+    for (column, unit) in [1.0, 1e3, 1e-3, 30.0, 1e-2].into_iter().enumerate() {
+        let mut column = units.records.column_mut(column);
+        column.mapv_inplace(|x| unit * (x + 5.0));
+    }
+    let all = [
+        waves(),
+        units,
+        clusters(300, 30, 5, 3),
+        clusters(90, 1, 3, 5),
+    ];
+    for (number, data) in all.iter().enumerate() {
+        for c in [1e-6, 1e-2, 1.0, 1e2, 1e4, 1e6] {
+            // The objective and its gradient by the weights.
+            let objective = |tolerance: f64| {
+                let params = LogisticParams {
+                    c,
+                    tolerance,
+                    ..LogisticParams::default()
+                };
+                let model = params.train(data).unwrap();
+                assert_eq!(model.n_capped(), 0, "data {number}, C = {c}");
+                let mut p = model.log_probabilities(data.records.view()).unwrap();
+                let loss: f64 = (data.targets.iter().enumerate())
+                    .map(|(row, &label)| -p[[row, label]])
+                    .sum();
+                p.mapv_inplace(f64::exp);
+                for (row, &label) in data.targets.iter().enumerate() {
+                    p[[row, label]] -= 1.0;
+                }
+                let weights = &model.model().weights;
+                let gradient = c * p.t().dot(&data.records) + weights;
+                let squares = weights.mapv(|w| w * w).sum();
+                (c * loss + 0.5 * squares, gradient)
+            };
+            let (exact, gradient) = objective(1e-9);
+            // The objective is strongly convex in the weights, so |gradient|² / 2 bounds its distance from the minimum.
+            let gap = 0.5 * gradient.mapv(|g| g * g).sum() / exact;
+            assert!(gap < 1e-5, "data {number}, C = {c}: {gap}");
+            let (found, _) = objective(LogisticParams::default().tolerance);
+            assert!(
+                (found / exact - 1.0).abs() < 5e-5,
+                "data {number}, C = {c}: {found} for {exact}"
+            );
+        }
+    }
+}
+
+#[test]
+fn balanced_weights_equal_repeated_rows() {
+    // Class 0 has three times the rows of class 1; repeating the rows of class 1 three times balances them.
+    let data = waves();
+    let is_kept = |row: &usize| row % 4 == 0 || row % 12 == 1;
+    let few: Vec<usize> = (0..60).filter(is_kept).collect();
+    let repeated = few
+        .iter()
+        .flat_map(|&row| vec![row; if row % 4 == 0 { 1 } else { 3 }]);
+    let (few, repeated) = (
+        rows(&data, &few).unwrap(),
+        rows(&data, &repeated.collect::<Vec<_>>()).unwrap(),
+    );
+    let params = LogisticParams {
+        tolerance: 1e-12,
+        ..LogisticParams::default()
+    };
+    // The weights of the rows are 2/3 and 2.
+    let balanced = LogisticParams {
+        class_weight: ClassWeight::Balanced,
+        c: 1.5,
+        ..params
+    };
+    let (balanced, repeated) = (
+        balanced.train(&few).unwrap(),
+        params.train(&repeated).unwrap(),
+    );
+    let both = [balanced, repeated].map(|model| model.scores(data.records.view()).unwrap());
+    assert!((&both[0] - &both[1]).iter().all(|error| error.abs() < 1e-5));
 }
 
 #[test]

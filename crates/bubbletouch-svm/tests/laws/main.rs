@@ -2,6 +2,7 @@
 
 mod drawn;
 mod engine;
+mod every_classifier;
 mod foreign;
 mod hard_cases;
 mod inseparable;

@@ -72,6 +72,7 @@ impl TrialScore {
             size: Some(TrialSize {
                 n_train: self.n_train,
                 n_test: self.n_test * n_fused,
+                n_decisions: self.n_test,
             }),
         }
     }

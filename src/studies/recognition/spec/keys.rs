@@ -144,6 +144,7 @@ const KEYS: &[KeyAbout] = keys! {
     "recognition.temporal_features": Table, Choice, Any, scale: Words, names: OVER_TIME, gives_way: 13;
     "recognition.classifier": Table, Choice, Any, scale: Words, names: ClassifierKind::NAMES;
     "recognition.multiclass": Axes, Choice, Any;
+    "recognition.class_weight": Axes, Choice, Any;
     "recognition.solver": Axes, Choice, Any;
     "recognition.scaling": Axes, Choice, Any;
     "recognition.c": Table, Choice, PENALTY, title: "C", scale: Log, names: CHOSEN, gives_way: 5;

@@ -32,6 +32,7 @@ pub use crate::studies::recognition::spec::signal::*;
 pub use crate::studies::recognition::spec::zero::ZeroSpec;
 use crate::table::{Column, Columns};
 use bubbletouch_sim::features::Features;
+use bubbletouch_svm::class_weight::ClassWeight;
 use bubbletouch_svm::scaling::Scaling;
 use bubbletouch_svm::{Multiclass, Solver};
 use schemars::JsonSchema;
@@ -151,6 +152,11 @@ pub struct RecognitionSpec {
     #[serde(default)]
     #[schemars(with = "Names<Multiclass>")]
     pub multiclass: Multiclass,
+    /// Weights of the objects in the training of logistic regressions and random forests: `uniform` (default), or `balanced`, as in scikit-learn: the weight of
+    /// an object is inverse to its number of training rows.
+    #[serde(default, skip_serializing_if = "is_default")]
+    #[schemars(with = "Names<ClassWeight>")]
+    pub class_weight: ClassWeight,
     /// Solver that trains SVMs: `smo` (default) or `coordinate_descent`.
     #[serde(default)]
     #[schemars(with = "Names<Solver>")]

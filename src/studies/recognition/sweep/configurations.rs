@@ -146,6 +146,7 @@ impl Sweep {
                 sweep.add_group(plan, group, &train_touches)?;
             }
         }
+        sweep.check_training(plan)?;
         Ok(sweep)
     }
 

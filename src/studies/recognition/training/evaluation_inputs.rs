@@ -19,7 +19,8 @@ use crate::studies::recognition::sweep::configurations::Sweep;
 use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 use bubbletouch_svm::split::Split;
-use ndarray::Array1;
+use ndarray::{Array1, Axis};
+use std::collections::HashSet;
 
 /// Number of hexadecimal digits of the hash that a work item's name contains. With fewer digits, the names of two work items may collide.
 const DIGITS: usize = 24;
@@ -103,6 +104,36 @@ impl TrialInputs<'_> {
         seed.numbered(self.number as u64)
     }
 
+    /// Checks that the trial has the training rows and the inner folds that the training of a family needs. Each training touch gives `n_per_touch` rows.
+    ///
+    /// # Errors
+    /// If a fold cannot be drawn, or a parameter of the classifier exceeds the number of its training rows.
+    pub fn check(&self, family: &FamilyInputs, n_per_touch: usize) -> Result<()> {
+        let (split, labels) = self.training(&family.training_rows)?;
+        let inputs = &family.training;
+        let mut n_touches = split.train.len();
+        if inputs.n_folds.is_some() {
+            let labels = labels.select(Axis(0), &split.train);
+            let keys = self
+                .group_keys
+                .map(|keys| keys.select(Axis(0), &split.train));
+            let all: Vec<usize> = (0..n_touches).collect();
+            let chosen_on = (inputs.c_grid.is_some() || inputs.gamma_grid.is_some())
+                .then(|| inputs.choosing_rows(labels.view()));
+            let informed = family.decisions.iter().any(Decision::is_informed);
+            let held_out = informed.then_some(all);
+            for rows in chosen_on.iter().chain(&held_out) {
+                let of = (&labels, keys.as_ref());
+                let folds = inputs.folds(of, rows, &self.stream("validation"))?;
+                let smallest = folds.iter().map(|fold| fold.train.len()).min();
+                n_touches = n_touches.min(smallest.unwrap_or(n_touches));
+            }
+        }
+        let classifier = &inputs.classifier;
+        let checked = classifier.check_rows(n_per_touch * n_touches);
+        checked.map_err(|error| Error::from(error).under("key recognition."))
+    }
+
     /// Returns the group of each test touch; `None` if the split does not hold out whole groups.
     pub fn test_groups(&self, test: &[usize]) -> Option<Vec<usize>> {
         match (self.tested_block, self.group_keys) {
@@ -175,6 +206,7 @@ impl TrainingInputs {
         let classifier = Classifier {
             scaling: recognition.scaling,
             multiclass: used!(multiclass = recognition.multiclass),
+            class_weight: used!(class_weight = recognition.class_weight),
             solver: used!(solver = recognition.solver),
             memory_bytes: match is_used("solver_memory_gib") {
                 true => solver_memory,
@@ -211,6 +243,30 @@ pub fn family_name(
 }
 
 impl Sweep {
+    /// Checks that every family of configurations can be trained in every trial.
+    ///
+    /// # Errors
+    /// Returns the errors of [`TrialInputs::check`].
+    pub(crate) fn check_training(&self, plan: &Plan) -> Result<()> {
+        let mut checked = HashSet::new();
+        let families = |group| MeasurementGroup::families(group).map(move |family| (group, family));
+        for (group, family) in self.groups.iter().flat_map(families) {
+            let inputs = FamilyInputs::new(plan, self, family);
+            let n_per_touch = group.n_readings(plan) + inputs.rows.n_copies;
+            let FamilyInputs {
+                training_rows,
+                training,
+                ..
+            } = &inputs;
+            if checked.insert(format!("{n_per_touch} {training_rows:?} {training:?}")) {
+                for number in 0..self.splits.len() {
+                    self.trial(plan, number)?.check(&inputs, n_per_touch)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Returns the inputs of the trial with this number, which all families of configurations share.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Training of a family of configurations on common features, with one classifier for each C.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::learning::classifiers::classifier::{Classifier, Cost};
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
 use crate::learning::data::split::{group_k_fold, stratified_k_fold};
@@ -10,7 +10,7 @@ use bubbletouch_svm::cross_validation::choice::Candidates;
 use bubbletouch_svm::dataset::{Dataset, rows};
 use bubbletouch_svm::kernel::Gamma;
 use bubbletouch_svm::split::Split;
-use ndarray::{Array1, Axis};
+use ndarray::{Array1, ArrayView1, Axis, s};
 use std::collections::HashMap;
 use std::time::Instant;
 
@@ -114,7 +114,8 @@ impl Training<'_> {
             return Ok((*c, scaled_by(scale)));
         }
         let classifier = scaled_by(1.0);
-        let chosen_on = self.choosing_rows();
+        let first = self.data.targets.slice(s![..self.n_first]);
+        let chosen_on = self.inputs.choosing_rows(first);
         let folds = self.folds(&chosen_on)?;
         let data = rows(&self.data, &chosen_on)?;
         let chosen = classifier.choose(&data, &folds, candidates, &self.seed)?;
@@ -180,30 +181,47 @@ impl Training<'_> {
         Ok(Some(number(classifier.gamma()).unwrap_or_else(scale)))
     }
 
-    /// Returns the training rows that are used to choose C and γ: first readings only, with a maximum number per object. With further readings, a fold could
-    /// train on another reading of a held-out touch.
-    fn choosing_rows(&self) -> Vec<usize> {
-        let most = self.inputs.cv_touches.unwrap_or(usize::MAX);
+    fn folds(&self, rows: &[usize]) -> Result<Vec<Split>> {
+        let (labels, keys) = (&self.data.targets, self.group_keys.as_ref());
+        self.inputs.folds((labels, keys), rows, &self.seed)
+    }
+}
+
+impl TrainingInputs {
+    /// Returns the training rows that are used to choose C and γ, given the labels of the first readings: a maximum number per object. With further readings, a
+    /// fold could train on another reading of a held-out touch.
+    pub(crate) fn choosing_rows(&self, first: ArrayView1<usize>) -> Vec<usize> {
+        let most = self.cv_touches.unwrap_or(usize::MAX);
         let mut n_chosen: HashMap<usize, usize> = HashMap::new();
         let takes_part = |row: &usize| {
-            let n_chosen = n_chosen.entry(self.data.targets[*row]).or_default();
+            let n_chosen = n_chosen.entry(first[*row]).or_default();
             *n_chosen += 1;
             *n_chosen <= most
         };
-        (0..self.n_first).filter(takes_part).collect()
+        (0..first.len()).filter(takes_part).collect()
     }
 
-    /// Returns the folds of the inner cross-validation as positions in `rows`. The folds do not divide groups that the study's split does not divide.
-    fn folds(&self, rows: &[usize]) -> Result<Vec<Split>> {
-        let labels = self.data.targets.select(Axis(0), rows);
-        let k = self.inputs.n_folds.expect("folds of a choice");
-        match &self.group_keys {
-            None => Ok(stratified_k_fold(labels.view(), k, &self.seed)?),
+    /// Returns the folds of the inner cross-validation as positions in `rows`, given the labels of all training rows and the groups of the first readings. The
+    /// folds do not divide groups.
+    ///
+    /// # Errors
+    /// If an object has too few rows or groups for the folds.
+    pub(crate) fn folds(
+        &self,
+        (labels, keys): (&Array1<usize>, Option<&Array1<usize>>),
+        rows: &[usize],
+        seed: &Seed,
+    ) -> Result<Vec<Split>> {
+        let labels = labels.select(Axis(0), rows);
+        let k = self.n_folds.expect("folds of a choice");
+        let folds = match keys {
+            None => stratified_k_fold(labels.view(), k, seed),
             Some(keys) => {
                 let keys = keys.select(Axis(0), rows);
-                Ok(group_k_fold(labels.view(), keys.view(), k, &self.seed)?)
+                group_k_fold(labels.view(), keys.view(), k, seed)
             }
-        }
+        };
+        folds.map_err(|error| Error::from(error).under("key recognition.cv_folds: "))
     }
 }
 

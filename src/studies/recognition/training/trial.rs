@@ -75,25 +75,29 @@ pub struct Trial<'a> {
     pub measurements: &'a Measurements,
 }
 
-/// Returns the function by which a trained classifier decides on groups of test touches.
+/// Returns the function by which a trained classifier decides on groups of test touches. All groups of a call have the same size. A group of one touch gets the
+/// predicted label of the touch; for a larger group, the scores of its touches are added.
 fn decider<'a>(
     fitted: &'a Fitted,
     test: &Dataset,
     configurations: &[Decision],
 ) -> Result<Decide<'a>> {
     let (classifier, features) = (&fitted.classifier, test.records.view());
+    let mut counts = configurations.iter().map(|one| one.touches_per_decision);
     // If each decision uses one touch, labels suffice and are faster to compute.
-    if configurations
-        .iter()
-        .all(|configuration| configuration.touches_per_decision == 1)
-    {
-        let labels = classifier.labels(features)?;
-        let label = move |group: &Vec<usize>| labels[group[0]];
-        return Ok(Box::new(move |groups| groups.iter().map(&label).collect()));
-    }
-    let scores = classifier.scores(features)?;
-    Ok(Box::new(move |groups| {
-        classifier.labels_of_scores(fuse_scores(scores.view(), groups).view())
+    let scores = match counts.any(|k| k > 1) {
+        true => Some(classifier.scores(features)?),
+        false => None,
+    };
+    let labels = match &scores {
+        Some(scores) if !classifier.has_own_labels() => classifier.labels_of_scores(scores.view()),
+        _ => classifier.labels(features)?,
+    };
+    Ok(Box::new(move |groups| match &scores {
+        Some(scores) if groups.iter().any(|group| group.len() > 1) => {
+            classifier.labels_of_scores(fuse_scores(scores.view(), groups).view())
+        }
+        _ => groups.iter().map(|group| labels[group[0]]).collect(),
     }))
 }
 

@@ -1,0 +1,32 @@
+//! Weights of classes in training.
+
+use ndarray::Array1;
+use serde::{Deserialize, Serialize};
+
+/// Weights of the classes in training; the errors on a row count as its weight.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum ClassWeight {
+    /// Each row has the weight 1; frequent classes are favoured.
+    #[default]
+    Uniform,
+    /// A row of class k has the weight n_rows / (n_classes · n_k), where n_k is the number of training rows of the class, as in scikit-learn. All classes then
+    /// have the same total weight.
+    Balanced,
+}
+
+impl ClassWeight {
+    /// Returns the weight of each class, shape (n_classes,), given the class of each training row as an index.
+    pub fn of_classes(self, label: &[usize], n_classes: usize) -> Array1<f64> {
+        match self {
+            Self::Uniform => Array1::ones(n_classes),
+            Self::Balanced => {
+                let mut counts = Array1::zeros(n_classes);
+                label.iter().for_each(|&class| counts[class] += 1.0);
+                (label.len() as f64 / n_classes as f64) / counts
+            }
+        }
+    }
+}
