@@ -93,6 +93,7 @@ fn corrected_resampled_t_test() -> Result<()> {
     let size = TrialSize {
         n_train: 300,
         n_test: 100,
+        n_decisions: 100,
     };
     let test = compare(&a, &b, &[size], 0.95)?.expect("there are several trials");
     // The plain paired t-test would give p = 0.034.
@@ -107,6 +108,7 @@ fn minimum_number_of_trials() -> Result<()> {
     let size = TrialSize {
         n_train: 300,
         n_test: 100,
+        n_decisions: 100,
     };
     assert_eq!(trials_needed(&[size], 0.95)?, Some(4));
     Ok(())
