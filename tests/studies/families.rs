@@ -395,37 +395,34 @@ fn a_plan_refuses_what_training_would_refuse() {
         } else {
             "linear_svm"
         };
-        let text = text.replace(
+        text.replace(
             "classifier = \"linear_svm\"",
             &format!("classifier = \"{kind}\""),
-        );
-        text.replace("test_fraction = 0.375\n", "")
+        )
     };
     // 20 of 32 touches of each object train.
     for (keys, said) in [
         (
-            "test_fraction = 0.375\nn_neighbours = 121",
+            "n_neighbours = 121",
             "key recognition.n_neighbours: 121; at most 120, the training rows",
         ),
         (
-            "test_fraction = 0.375\ntrain_touches = 2\nn_neighbours = 13",
+            "train_touches = 2\nn_neighbours = 13",
             "key recognition.n_neighbours: 13; at most 12",
         ),
-        // Yaws of an object that are nearer than 2° are one group.
+        // Yaws of an object that are nearer than 4° are one group.
         (
-            "test_fraction = 0.375\ngroup_by = \"yaw\"\ngroup_by_deg = 2.0\ncv_folds = 20\nc_grid = [1.0, 10.0]",
-            "key recognition.cv_folds: folds: 20, but class",
+            "group_by = \"yaw\"\ngroup_by_deg = 4.0\ncv_folds = 8\nc_grid = [1.0, 10.0]",
+            "key recognition.cv_folds: folds: 8, but class",
         ),
         (
-            "test_fraction = 0.375\nmislabelled_fraction = 0.8\ncv_folds = 20\nc_grid = [1.0, 10.0]",
+            "mislabelled_fraction = 0.8\ncv_folds = 20\nc_grid = [1.0, 10.0]",
             "key recognition.cv_folds: labels, class",
         ),
     ] {
         let error = Study::error(&classified(keys));
         assert!(error.contains(said), "{keys}: {error}");
     }
-    Study::new(&classified("test_fraction = 0.375\nn_neighbours = 120"));
-    Study::new(&classified(
-        "test_fraction = 0.375\nreadings_per_touch = 2\nn_neighbours = 121",
-    ));
+    Study::new(&classified("n_neighbours = 120"));
+    Study::new(&classified("readings_per_touch = 2\nn_neighbours = 121"));
 }

@@ -274,7 +274,7 @@ fn recordings_of_one_class_each_are_divided_into_folds() {
     write(folder.folder(), &frames, &labels);
     write_integers(
         &folder.path("groups.npy"),
-        (0..80).map(|frame| frame / 4).collect(),
+        (0..80).map(|frame| frame / 4).collect::<Vec<usize>>(),
     )
     .unwrap();
     let groups = format!(

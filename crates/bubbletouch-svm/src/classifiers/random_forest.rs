@@ -7,7 +7,7 @@
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::classifiers::parameters::{DefaultValue, MAX_COUNT, Parameter};
-use ndarray::{Array1, Array2, ArrayView2};
+use ndarray::{Array2, ArrayView2};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -25,7 +25,7 @@ use crate::{Error, Result};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RandomForest {
     classes: Vec<usize>,
-    class_weights: Array1<f64>,
+    class_weights: Vec<f64>,
     trees: Vec<Tree>,
     n_features: usize,
 }
@@ -51,9 +51,9 @@ impl RandomForest {
         }
         let n_features = data.records.ncols();
         let label = positions(data.targets.view(), &classes);
-        let class_weights = class_weight.of_classes(&label, classes.len());
+        let class_weights = class_weight.of_classes(&label, classes.len()).to_vec();
         let growth = Growth {
-            class_weights: &class_weights.to_vec(),
+            class_weights: &class_weights,
             n_candidates: n_features.isqrt().max(1),
             max_depth,
         };
