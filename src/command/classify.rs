@@ -29,7 +29,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Train, test and time one classifier on exported features, or apply a saved one
+/// Train, test and time one classifier, or apply a saved one
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  bubbletouch classify features --classifier rbf_svm --c-grid 0.1,1,10"

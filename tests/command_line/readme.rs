@@ -256,7 +256,16 @@ fn committed_results_are_small_and_every_picture_is_shown() {
 
 #[test]
 fn the_readme_fits_in_two_hundred_lines() {
-    let n_lines = documents()[0].1.lines().count();
+    // Comments, which name the tables of printed numbers, are not shown.
+    let mut is_comment = false;
+    let documents = documents();
+    let shown = documents[0].1.lines().filter(|line| {
+        is_comment |= line.starts_with("<!--");
+        let is_shown = !is_comment;
+        is_comment &= !line.ends_with("-->");
+        is_shown
+    });
+    let n_lines = shown.count();
     assert!(n_lines <= 200, "{n_lines} lines");
 }
 

@@ -190,7 +190,7 @@ assert palm.dtype == "<f4" and palm.shape == (30, 12) and palm[29, 5] == numpy.f
 assert (archive["palm/force"] == palm).all()
 assert archive["finger/force"].shape == (30, 20, 3)
 assert archive["palm/pose"].shape == (30, 7)
-assert (archive["palm/pose"][3] == [0, 0, 0.03, 0, 0, 0, 1]).all()
+assert (archive["palm/pose"][3] == [0, 0, 0.03, 1, 0, 0, 0]).all()
 assert archive["finger/axes"].shape == (20, 3) and archive["mug/pose"].shape == (30, 7)
 numpy.savez("again.npz", **archive)
 print("opened")

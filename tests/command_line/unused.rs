@@ -284,7 +284,10 @@ fn a_number_out_of_range_is_refused_when_the_file_is_read() {
     let grouped = grouped.replace("per_object = 8", "yaw_deg = [0, 90, 180]\nper_object = 9");
     studies.push((
         grouped.replace("question", "trials = 4\nquestion"),
-        ["key recognition.folds", "3"],
+        [
+            "key recognition.folds: folds: 4",
+            "at most 2 with these groups",
+        ],
     ));
     for (study, words) in studies {
         case.file("x.toml", study);

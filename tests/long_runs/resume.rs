@@ -4,6 +4,7 @@
 use crate::command::Case;
 use crate::faults::{pieces, said, signal, start};
 use crate::kinds::Kind;
+use bubbletouch::study::write_integers;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::fs;
@@ -335,7 +336,7 @@ fn other_words_refuse_nothing_and_train_nothing() {
     assert!(page.contains("Expected or not"));
 }
 
-/// Study in which five training touches per object are too few for 25 neighbours, and twenty are enough.
+/// Study in which five training touches per object are too few for an own classifier, and twenty are enough.
 const FAILING: &str = r#"
 question = "What if some cells cannot be?"
 trials = 2
@@ -359,8 +360,7 @@ depth_mm = 3.0
 ratio = 4
 
 [recognition]
-classifier = ["linear_svm", "k_nearest"]
-n_neighbours = 25
+classifier = ["linear_svm", { command = ["sh", "many.sh"], version = "1" }]
 train_touches = [5, 20]
 "#;
 
@@ -368,6 +368,12 @@ train_touches = [5, 20]
 fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
     let case = Case::new();
     case.file("failing.toml", FAILING);
+    // Twenty rows of 17 numbers have 2,720 bytes.
+    case.file(
+        "many.sh",
+        "[ $(wc -c < $1) -gt 5000 ] || { echo too few rows >&2; exit 1; }\ncp first.npy $3\n",
+    );
+    write_integers(&case.path("first.npy"), [0; 60]).unwrap();
     let output = case.run(&["run", "failing.toml", "--out", "failing"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(
@@ -384,7 +390,7 @@ fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
         failures
             .lines()
             .skip(1)
-            .all(|line| line.contains("k_nearest") && line.contains("neighbours"))
+            .all(|line| line.contains("many") && line.contains("too few rows"))
     );
     // Failed items are tried again, the others are not.
     let again = case.run(&["run", "failing.toml", "--out", "failing"]);
@@ -395,7 +401,7 @@ fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
     assert!(output.contains("7 of 9 work items"), "{output}");
     let strict = case.run(&["run", "failing.toml", "--out", "strict", "--fail-fast"]);
     assert_eq!(strict.status.code(), Some(2));
-    assert!(said(&strict).contains("neighbours"), "{}", said(&strict));
+    assert!(said(&strict).contains("too few rows"), "{}", said(&strict));
 }
 
 #[test]

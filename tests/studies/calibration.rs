@@ -191,7 +191,8 @@ fn drift_is_no_gain_wherever_the_skin_is_untouched() {
     };
     let at_start = || Array1::linspace(0.0, 0.05, 200);
     let never = || Array1::zeros(0);
-    let cases: [(&dyn Fn() -> Array1<f64>, &[&str]); 4] = [
+    type Times<'a> = &'a dyn Fn() -> Array1<f64>;
+    let cases: [(Times, &[&str]); 4] = [
         (&evenly, &["drift"]),
         (&at_ends, &["drift"]),
         (&at_start, &[]),

@@ -123,7 +123,7 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
         let n = configurations.len() / 4;
         let set = |number: usize| study.first().features((number, 1), &Silent).unwrap();
         let mut fits = BTreeSet::new();
-        for number in n..4 * n {
+        for (number, configuration) in configurations.iter().enumerate().skip(n) {
             let (frames, found) = (set(number % n), set(number));
             assert_eq!(frames.split, found.split);
             let train = &frames.split.train;
@@ -134,7 +134,7 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
                 groups: train,
                 ..TrainingFrames::from(trained.view())
             };
-            let ensemble = configurations[number].ensemble;
+            let ensemble = configuration.ensemble;
             let seed = Seed::new(2018).named("projection").numbered(1);
             let projection = Projection::learned(ensemble, (10, 10), 5, (training, &seed));
             let expected = projection.unwrap().measure(frames.data.records.view());

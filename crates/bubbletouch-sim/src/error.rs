@@ -158,7 +158,7 @@ impl From<bubbletouch_svm::Error> for Error {
 }
 
 /// Maximum number of characters shown per line of a message.
-const LETTERS: usize = 500;
+const LETTERS: usize = 800;
 /// Maximum number of lines shown in a message.
 const LINES: usize = 25;
 /// Approximate maximum number of bytes shown in a message.

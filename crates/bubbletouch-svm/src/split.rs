@@ -235,13 +235,16 @@ fn classes_of(
     order.iter().map(classes).collect()
 }
 
+/// Classes of a group, as indices of all classes, with their numbers of rows.
+type ClassCounts = Vec<(usize, usize)>;
+
 /// Divides groups into parts, so that every part contains every class. Returns the part of each group. `classes_of` contains the classes of each group, as
 /// indices of `classes`, with their numbers of rows. `place` names the number of parts in errors.
 ///
 /// # Errors
 /// If no such division exists. The error contains the largest possible number of parts.
 fn divide<C: PartialOrd>(
-    (classes, classes_of): (&[usize], &[Vec<(usize, usize)>]),
+    (classes, classes_of): (&[usize], &[ClassCounts]),
     (place, n_parts): (&str, usize),
     cost: impl Fn(&FoldSearch, usize, usize) -> C,
 ) -> Result<Vec<usize>> {

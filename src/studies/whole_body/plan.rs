@@ -165,10 +165,8 @@ impl WholeBodyPlan {
         let compressions = check.compressions(&wanted.sensing)?;
         let n_measured = compressions.len() * wanted.sensing.measurements;
         check.body_recognition(&wanted.recognition, n_measured)?;
-        let ladders = wanted.ladders.iter();
-        ladders
-            .map(|ladders| check.touched_at_taxels(ladders))
-            .collect::<Result<()>>()?;
+        let mut ladders = wanted.ladders.iter();
+        ladders.try_for_each(|ladders| check.touched_at_taxels(ladders))?;
         let radius_mm = wanted.taxel_radius_mm.unwrap_or(0.5 * wanted.pitch_mm);
         Ok(Self {
             taxel: Taxel {

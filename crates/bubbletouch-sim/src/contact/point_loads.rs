@@ -413,10 +413,11 @@ fn solve_semidefinite(mut matrix: [[f64; 6]; 6], mut values: [f64; 6]) -> [f64; 
             break;
         }
         order.push(pivot);
+        let eliminated = matrix[pivot];
         for row in (0..6).filter(|k| !order.contains(k)) {
-            let factor = matrix[row][pivot] / matrix[pivot][pivot];
-            for column in 0..6 {
-                matrix[row][column] -= factor * matrix[pivot][column];
+            let factor = matrix[row][pivot] / eliminated[pivot];
+            for (entry, of_pivot) in matrix[row].iter_mut().zip(eliminated) {
+                *entry -= factor * of_pivot;
             }
             values[row] -= factor * values[pivot];
         }

@@ -227,7 +227,7 @@ fn logistic_regression_reaches_its_tolerance_at_any_penalty_and_in_any_units() {
 fn balanced_weights_equal_repeated_rows() {
     // Class 0 has three times the rows of class 1; repeating the rows of class 1 three times balances them.
     let data = waves();
-    let is_kept = |row: &usize| row % 4 == 0 || row % 12 == 1;
+    let is_kept = |row: &usize| row.is_multiple_of(4) || row % 12 == 1;
     let few: Vec<usize> = (0..60).filter(is_kept).collect();
     let repeated = few
         .iter()
