@@ -2,8 +2,8 @@
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result};
 use crate::audit::finding::percent;
-use crate::inputs::arrays::whole_numbers::spellings;
 use crate::audit::splits::touches_of_classes;
+use crate::inputs::arrays::whole_numbers::spellings;
 use crate::table::short_number;
 use statrs::distribution::{Binomial, ChiSquared, ContinuousCDF, DiscreteCDF};
 

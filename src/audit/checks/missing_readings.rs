@@ -15,7 +15,12 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     let n_padded: usize = context.n_padded.iter().sum();
     let n_recorded = context.data.frames.nrows() - n_padded;
     // A taxel that never reads is a place without a sensor.
-    let present = || context.n_missing.iter().filter(|&&count| count < n_recorded);
+    let present = || {
+        context
+            .n_missing
+            .iter()
+            .filter(|&&count| count < n_recorded)
+    };
     let n: usize = present().sum();
     let n_present = present().count();
     let share = n as f64 / (n_recorded * n_present) as f64;

@@ -96,7 +96,9 @@ impl ClassModel for RandomForest {
         for tree in &self.trees {
             for (row, mut votes) in features.rows().into_iter().zip(votes.rows_mut()) {
                 let counts = tree.leaf(row);
-                let weighted = |&(class, count): &(u32, u32)| self.class_weights[class as usize] * f64::from(count);
+                let weighted = |&(class, count): &(u32, u32)| {
+                    self.class_weights[class as usize] * f64::from(count)
+                };
                 let sum: f64 = counts.iter().map(weighted).sum();
                 for count in counts {
                     votes[count.0 as usize] += weighted(count) / sum;
