@@ -153,7 +153,7 @@ def _layout(folder: Path, value: Any) -> str:
 
 def _splits(folder: Path, key: str, value: Iterable[tuple[ArrayLike, ArrayLike]]) -> str:
     """Writes the arrays `train_t` and `test_t` of each split t, and returns the path of the file."""
-    arrays = {}
+    arrays: dict[str, Any] = {}
     for number, pair in enumerate(value):
         if len(pair) != 2:
             raise ValueError(f"{key}: {len(pair)} arrays in split {number}; a pair (train, test) of arrays of touch numbers")

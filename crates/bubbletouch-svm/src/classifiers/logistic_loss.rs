@@ -24,6 +24,10 @@ const TRUNCATION: f64 = 0.1;
 /// far from the minimum if the objective is flat along some direction; with a smaller value, the last step needs more products.
 const RESIDUAL: f64 = 1e-4;
 
+/// Maximum number of products of conjugate gradients in a step. With a larger value, steps far from the minimum are computed needlessly well; with a smaller
+/// value, more steps are needed, and the predicted decrease of the last one is too small.
+const MAX_PRODUCTS: usize = 100;
+
 /// Minimum decrease of the objective in an accepted step, relative to the decrease predicted by the gradient (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
@@ -178,7 +182,7 @@ impl<'a> LogisticLoss<'a> {
         let mut product = dot(&residual, &scaled);
         let first = product;
         let mut decrease = 0.0;
-        for _ in 0..10 * step.len() {
+        for n_products in 1..=10 * step.len() {
             let turned = self.hessian_product(&p, &direction);
             let length = product / dot(&direction, &turned);
             if !(length > 0.0 && length.is_finite()) {
@@ -195,7 +199,9 @@ impl<'a> LogisticLoss<'a> {
             } else {
                 RESIDUAL
             };
-            if product <= relative * relative * first {
+            if product <= relative * relative * first
+                || n_products >= MAX_PRODUCTS
+            {
                 break;
             }
             direction *= product / last;
