@@ -199,9 +199,7 @@ impl<'a> LogisticLoss<'a> {
             } else {
                 RESIDUAL
             };
-            if product <= relative * relative * first
-                || n_products >= MAX_PRODUCTS
-            {
+            if product <= relative * relative * first || n_products >= MAX_PRODUCTS {
                 break;
             }
             direction *= product / last;
