@@ -223,7 +223,7 @@ def test_csv(arrays, tmp_path):
         file.write_text(text)
         with pytest.raises(ValueError, match=words):
             bt.read_recorded(file, "ff_*", labels="object")
-    with pytest.raises(ValueError, match="a.csv, column .*: no readings, shape):
+    with pytest.raises(ValueError, match="a.csv, column .*: no readings, shape"):
         file.write_bytes(b"\xff\xfe,")
         bt.read_recorded(file)
     file.write_text("\n".join(lines).replace(repr(float(rows[3, 0])), "", 1))
