@@ -18,15 +18,10 @@ use crate::linear_model::LinearModel;
 
 /// Relative residual at which the conjugate gradients stop. With a smaller value, each Newton step takes more products; with a larger value, more Newton steps
 /// are needed.
-const TRUNCATION: f64 = 0.1;
+const TRUNCATION: f64 = 0.5;
 
-/// Relative residual at which the conjugate gradients stop if the predicted decrease is small enough to end the training. With a larger value, the training ends
-/// far from the minimum if the objective is flat along some direction; with a smaller value, the last step needs more products.
-const RESIDUAL: f64 = 1e-4;
-
-/// Maximum number of products of conjugate gradients in a step. With a larger value, steps far from the minimum are computed needlessly well; with a smaller
-/// value, more steps are needed, and the predicted decrease of the last one is too small.
-const MAX_PRODUCTS: usize = 100;
+/// The same in the step that ends the training. With a larger value, the training ends far from the minimum if the objective is flat along some direction.
+const LAST_TRUNCATION: f64 = 1e-2;
 
 /// Minimum decrease of the objective in an accepted step, relative to the decrease predicted by the gradient (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
@@ -161,8 +156,8 @@ impl<'a> LogisticLoss<'a> {
         None
     }
 
-    /// Returns an approximate Newton step d, the slope g·d, and the predicted decrease of the objective. A decrease of at most `least` ends the training, so it is
-    /// computed with a smaller residual.
+    /// Returns an approximate Newton step d, the slope g·d, and the predicted decrease of the objective, which ends the training
+    /// if it is at most `least`.
     fn newton_step(&self, point: &Point, least: f64) -> (Array2<f64>, f64, f64) {
         let (p, gradient) = self.gradient(point);
         let scale = self.row_weights.mean().unwrap_or(1.0);
@@ -182,7 +177,7 @@ impl<'a> LogisticLoss<'a> {
         let mut product = dot(&residual, &scaled);
         let first = product;
         let mut decrease = 0.0;
-        for n_products in 1..=10 * step.len() {
+        for _ in 0..10 * step.len() {
             let turned = self.hessian_product(&p, &direction);
             let length = product / dot(&direction, &turned);
             if !(length > 0.0 && length.is_finite()) {
@@ -194,12 +189,12 @@ impl<'a> LogisticLoss<'a> {
             scaled = &residual / &diagonal;
             let last = product;
             product = dot(&residual, &scaled);
-            let relative = if decrease > least {
+            let truncation = if decrease > least {
                 TRUNCATION
             } else {
-                RESIDUAL
+                LAST_TRUNCATION
             };
-            if product <= relative * relative * first || n_products >= MAX_PRODUCTS {
+            if product <= truncation * truncation * first {
                 break;
             }
             direction *= product / last;

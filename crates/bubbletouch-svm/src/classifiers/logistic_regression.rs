@@ -154,7 +154,7 @@ pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     ..ClassifierAbout::new("logistic regression", |classifier, scaled, c, _| {
         let params = LogisticParams {
             c,
-            tolerance: 0.05 * classifier.tolerance,
+            tolerance: classifier.tolerance,
             class_weight: classifier.class_weight,
             ..LogisticParams::default()
         };

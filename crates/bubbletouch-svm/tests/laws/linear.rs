@@ -210,7 +210,7 @@ fn logistic_regression_reaches_its_tolerance_at_any_penalty_and_in_any_units() {
                 let squares = weights.mapv(|w| w * w).sum();
                 (c * loss + 0.5 * squares, gradient)
             };
-            let (exact, gradient) = objective(1e-9);
+            let (exact, gradient) = objective(1e-13);
             // The objective is strongly convex in the weights, so |gradient|² / 2 bounds its distance from the minimum.
             let gap = 0.5 * gradient.mapv(|g| g * g).sum() / exact;
             assert!(gap < 1e-5, "data {number}, C = {c}: {gap}");
