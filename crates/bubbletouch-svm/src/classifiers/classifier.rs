@@ -60,7 +60,7 @@ pub struct Classifier {
     pub class_weight: ClassWeight,
     /// Values of the parameters that the kind of classifier declares; see [`with`](Self::with).
     pub parameters: Parameters,
-    /// Stopping tolerance of the solver, above 0, in units of the decision value. Logistic regression uses one twentieth of this tolerance.
+    /// Stopping tolerance of the solver, above 0, in units of the decision value; relative to the objective for logistic regression.
     pub tolerance: f64,
     /// Maximum size of the kernel values that an SVM's solver keeps in memory, bytes.
     pub memory_bytes: usize,

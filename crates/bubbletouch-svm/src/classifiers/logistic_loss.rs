@@ -5,14 +5,14 @@
 //! `F = (1/n) Σ_i −v_i ln p(y_i | x_i) + ½ penalty Σ_k |w_k|²`.
 //!
 //! The Newton step d solves `H d = −g`, where g is the gradient and H the Hessian of F. A product with H needs two matrix products with the features and no
-//! exponential, because the probabilities of the point are stored. Conjugate gradients start from the diagonal of H, so the units of the features do not
-//! matter; the features are centred, which changes the biases alone. Steps are
-//! halved until F decreases, which needs no further product with the features.
+//! exponential, because the probabilities of the point are stored. Products that only steer the search are computed in f32; those that decide about its end are
+//! computed in f64. The features are centred and divided by their root mean squares, and conjugate gradients start from the diagonal of H, so the units of the
+//! features do not matter. Steps are halved until F decreases, which needs no further product with the features.
 //!
 //! The predicted decrease `−½ g·d` estimates F − min F. Training stops after the step whose predicted decrease is at most `tolerance · F`.
 
 use ndarray::linalg::general_mat_mul;
-use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, concatenate, s};
+use ndarray::{Array1, Array2, ArrayView2, Axis, NdFloat, Zip, concatenate, s};
 
 use crate::linear_model::LinearModel;
 
@@ -20,8 +20,15 @@ use crate::linear_model::LinearModel;
 /// are needed.
 const TRUNCATION: f64 = 0.5;
 
-/// The same in the step that ends the training. With a larger value, the training ends far from the minimum if the objective is flat along some direction.
-const LAST_TRUNCATION: f64 = 1e-2;
+/// Predicted decrease, relative to the objective, below which products are computed in f64. With a smaller value, rounding errors of f32 predominate.
+const SINGLE_PRECISION: f64 = 1e-5;
+
+/// Relative residual below which the rounding errors of the products predominate.
+const ROUNDING: f64 = 1e-7;
+
+/// Number of products that must add less than a tenth to the predicted decrease before it ends the training [Strakoš & Tichý 2002]. With a smaller value, the
+/// training ends far from the minimum if the objective is flat along some direction; with a larger value, the last step needs more products.
+const LAST_PRODUCTS: usize = 10;
 
 /// Minimum decrease of the objective in an accepted step, relative to the decrease predicted by the gradient (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
@@ -29,18 +36,21 @@ const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// Maximum number of step halvings; after more halvings, the decrease is below the rounding error.
 const MAX_HALVINGS: usize = 40;
 
-/// Objective of labelled rows as a function of the coefficients, shape n_classes × (m + 1): the weights of each class and, in the last column, its bias.
+/// Objective of labelled rows as a function of the coefficients, shape n_classes × (m + 1): the weights of each class and, in the last column, its bias. The
+/// weights are those of the scaled features.
 pub(crate) struct LogisticLoss<'a> {
-    /// Features minus their means, shape n × m.
-    centred: Array2<f64>,
+    /// Features minus their means, divided by their scales, shape n × m.
+    scaled: Array2<f64>,
+    single: Array2<f32>,
     means: Array1<f64>,
-    /// Mean square of each centred feature, and 1 for the bias, shape (m + 1,).
-    squares: Array1<f64>,
+    /// Root mean square of each centred feature; 1 where it is 0.
+    scales: Array1<f64>,
     /// Class of each row, as an index.
     label: &'a [usize],
     row_weights: Array1<f64>,
     n_classes: usize,
-    penalty: f64,
+    /// Penalty of the square of each coefficient of a class, shape (m + 1,).
+    penalties: Array1<f64>,
 }
 
 /// Result of the minimisation.
@@ -67,20 +77,23 @@ impl<'a> LogisticLoss<'a> {
         penalty: f64,
     ) -> Self {
         let means = features.mean_axis(Axis(0)).expect("at least one row");
-        let mut centred = features.as_standard_layout().into_owned();
-        centred -= &means;
-        let of_bias = Array1::ones(1);
-        let squares = centred.mapv(|x| x * x).mean_axis(Axis(0));
-        let squares = squares.expect("at least one row");
-        let squares = concatenate![Axis(0), squares, of_bias];
+        let mut scaled = features.as_standard_layout().into_owned();
+        scaled -= &means;
+        let scales = scaled.map_axis(Axis(0), |column| {
+            let square = column.dot(&column) / column.len() as f64;
+            if square > 0.0 { square.sqrt() } else { 1.0 }
+        });
+        scaled /= &scales;
+        let of_weights = scales.mapv(|scale| penalty / (scale * scale));
         Self {
-            centred,
+            single: scaled.mapv(|x| x as f32),
+            scaled,
             means,
-            squares,
             label,
             row_weights,
             n_classes,
-            penalty,
+            penalties: concatenate![Axis(0), of_weights, Array1::zeros(1)],
+            scales,
         }
     }
 
@@ -103,14 +116,12 @@ impl<'a> LogisticLoss<'a> {
     }
 
     fn minimum(&self, point: Point, n_iterations: usize, is_capped: bool) -> Minimum {
-        let (weights, bias) = (point.at.slice(s![.., ..-1]), point.at.slice(s![.., -1]));
+        let weights = &point.at.slice(s![.., ..-1]) / &self.scales;
+        let bias = point.at.slice(s![.., -1]);
         // Adding a number to all biases changes no probability; their mean is 0.
         let bias = &bias - bias.mean().unwrap_or(0.0) - weights.dot(&self.means);
         Minimum {
-            model: LinearModel {
-                weights: weights.to_owned(),
-                bias,
-            },
+            model: LinearModel { weights, bias },
             n_iterations,
             is_capped,
         }
@@ -129,10 +140,9 @@ impl<'a> LogisticLoss<'a> {
             let others: f64 = others.map(|(_, score)| (score - scores[place]).exp()).sum();
             loss += weight * (others.ln_1p() + (scores[place] - scores[label]));
         });
-        let weights = at.slice(s![.., ..-1]);
-        let squares: f64 = weights.iter().map(|w| w * w).sum();
+        let squares = at.mapv(|w| w * w).dot(&self.penalties).sum();
         Point {
-            value: loss / self.label.len() as f64 + 0.5 * self.penalty * squares,
+            value: loss / self.label.len() as f64 + 0.5 * squares,
             at,
             scores,
         }
@@ -140,7 +150,7 @@ impl<'a> LogisticLoss<'a> {
 
     /// Returns the point `at + t·step` with the first t of 1, ½, ¼, … that decreases the objective; `None` if none does.
     fn lower_point(&self, from: &Point, step: &Array2<f64>, slope: f64) -> Option<Point> {
-        let of_step = self.scores(step);
+        let of_step = scores(&self.scaled, step);
         let mut length = 1.0;
         for _ in 0..MAX_HALVINGS {
             let mut at = from.at.clone();
@@ -164,12 +174,10 @@ impl<'a> LogisticLoss<'a> {
         let curvature = Zip::from(&p).map_collect(|p| p * (1.0 - p));
         let curvature = curvature.mean_axis(Axis(0)).expect("at least one row") * scale;
         let curvature = curvature.insert_axis(Axis(1));
-        let mut diagonal = &curvature * &self.squares;
-        diagonal
-            .slice_mut(s![.., ..-1])
-            .mapv_inplace(|value| value + self.penalty);
+        let mut diagonal = &curvature + &self.penalties;
         // Probabilities of 0 and 1 have no curvature.
         diagonal.mapv_inplace(|value| value.max(f64::MIN_POSITIVE.sqrt()));
+        let single = p.mapv(|p| p as f32);
         let mut residual = -&gradient;
         let mut step = Array2::zeros(gradient.dim());
         let mut scaled = &residual / &diagonal;
@@ -177,8 +185,16 @@ impl<'a> LogisticLoss<'a> {
         let mut product = dot(&residual, &scaled);
         let first = product;
         let mut decrease = 0.0;
+        let mut decreases = Vec::new();
         for _ in 0..10 * step.len() {
-            let turned = self.hessian_product(&p, &direction);
+            let mut turned = if decrease > least.max(SINGLE_PRECISION * point.value) {
+                let steps = direction.mapv(|step| step as f32);
+                let turned = self.curvature(&self.single, &single, &steps);
+                turned.mapv(f64::from)
+            } else {
+                self.curvature(&self.scaled, &p, &direction)
+            };
+            turned += &(&direction * &self.penalties);
             let length = product / dot(&direction, &turned);
             if !(length > 0.0 && length.is_finite()) {
                 break;
@@ -189,12 +205,15 @@ impl<'a> LogisticLoss<'a> {
             scaled = &residual / &diagonal;
             let last = product;
             product = dot(&residual, &scaled);
+            decreases.push(decrease);
+            let before = decreases.iter().rev().nth(LAST_PRODUCTS);
+            let is_steady = before.is_some_and(|before| decrease - before <= 0.1 * decrease);
             let truncation = if decrease > least {
                 TRUNCATION
             } else {
-                LAST_TRUNCATION
+                ROUNDING
             };
-            if product <= truncation * truncation * first {
+            if product <= truncation * truncation * first || decrease <= least && is_steady {
                 break;
             }
             direction *= product / last;
@@ -225,61 +244,47 @@ impl<'a> LogisticLoss<'a> {
             row[label] = -row.sum();
             row *= *weight;
         }
-        let gradient = self.with_penalty(self.sums(&residuals), &point.at);
+        let gradient = sums(&self.scaled, &residuals) + &point.at * &self.penalties;
         (p, gradient)
     }
 
-    /// Returns the product of the Hessian, at the point with probabilities `p`, with a direction.
-    fn hessian_product(&self, p: &Array2<f64>, direction: &Array2<f64>) -> Array2<f64> {
-        let mut changes = self.scores(direction);
+    /// Returns the product of a direction with the Hessian of the mean loss (without the penalty), at the point with probabilities `p`.
+    fn curvature<T: NdFloat>(
+        &self,
+        features: &Array2<T>,
+        p: &Array2<T>,
+        direction: &Array2<T>,
+    ) -> Array2<T> {
+        let mut changes = scores(features, direction);
         let rows = changes.rows_mut().into_iter().zip(p.rows());
-        for (((mut row, p), &label), weight) in rows.zip(self.label).zip(&self.row_weights) {
+        for (((mut row, p), &label), &weight) in rows.zip(self.label).zip(&self.row_weights) {
             // The probability of the label is usually near 1; differences from its change keep their digits.
             let of_label = row[label];
             row -= of_label;
             let mean = row.dot(&p);
+            let weight = T::from(weight).expect("a finite number");
             Zip::from(&mut row)
                 .and(p)
-                .for_each(|change, p| *change = weight * p * (*change - mean));
+                .for_each(|change, p| *change = weight * *p * (*change - mean));
         }
-        self.with_penalty(self.sums(&changes), direction)
+        sums(features, &changes)
     }
+}
 
-    /// Returns the scores of all rows, shape n × n_classes.
-    fn scores(&self, at: &Array2<f64>) -> Array2<f64> {
-        let mut scores = Array2::zeros((self.label.len(), self.n_classes));
-        general_mat_mul(
-            1.0,
-            &self.centred,
-            &at.slice(s![.., ..-1]).t(),
-            0.0,
-            &mut scores,
-        );
-        scores += &at.slice(s![.., -1]);
-        scores
-    }
+/// Returns the scores of all rows of features (n × m), shape n × n_classes.
+fn scores<T: NdFloat>(features: &Array2<T>, at: &Array2<T>) -> Array2<T> {
+    features.dot(&at.slice(s![.., ..-1]).t()) + at.slice(s![.., -1])
+}
 
-    /// Returns the mean over the rows of `values[i, k] · (x_i, 1)`, shape n_classes × (m + 1).
-    fn sums(&self, values: &Array2<f64>) -> Array2<f64> {
-        let per_row = 1.0 / self.label.len() as f64;
-        let mut sums = Array2::zeros((self.n_classes, self.squares.len()));
-        general_mat_mul(
-            per_row,
-            &values.t(),
-            &self.centred,
-            0.0,
-            &mut sums.slice_mut(s![.., ..-1]),
-        );
-        sums.slice_mut(s![.., -1])
-            .assign(&(values.sum_axis(Axis(0)) * per_row));
-        sums
-    }
-
-    fn with_penalty(&self, mut sums: Array2<f64>, at: &Array2<f64>) -> Array2<f64> {
-        sums.slice_mut(s![.., ..-1])
-            .scaled_add(self.penalty, &at.slice(s![.., ..-1]));
-        sums
-    }
+/// Returns the mean over the rows of `values[i, k] · (x_i, 1)`, shape n_classes × (m + 1).
+fn sums<T: NdFloat>(features: &Array2<T>, values: &Array2<T>) -> Array2<T> {
+    let per_row = T::one() / T::from(features.nrows()).expect("a number of rows");
+    let mut sums = Array2::zeros((values.ncols(), features.ncols() + 1));
+    let of_weights = &mut sums.slice_mut(s![.., ..-1]);
+    general_mat_mul(per_row, &values.t(), features, T::zero(), of_weights);
+    let of_bias = values.sum_axis(Axis(0)) * per_row;
+    sums.column_mut(features.ncols()).assign(&of_bias);
+    sums
 }
 
 fn dot(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
@@ -303,10 +308,10 @@ mod tests {
     fn gradient_and_hessian_are_the_derivatives_of_the_objective() {
         let label: Vec<usize> = (0..40).map(|i| i * i % 3).collect();
         let loss = loss(&label);
-        let point = |at: &Array2<f64>| loss.point(at.clone(), loss.scores(at));
+        let point = |at: &Array2<f64>| loss.point(at.clone(), scores(&loss.scaled, at));
         let at = Array2::from_shape_fn((3, 4), |(k, j)| ((k * 4 + j) as f64 * 1.3).sin() * 0.1);
         let (p, gradient) = loss.gradient(&point(&at));
-        let scores = loss.scores(&at);
+        let scores = scores(&loss.scaled, &at);
         let by_definition: f64 = (0..40)
             .map(|i| {
                 loss.row_weights[i]
@@ -314,7 +319,7 @@ mod tests {
             })
             .sum::<f64>()
             / 40.0
-            + 0.15 * at.slice(s![.., ..-1]).mapv(|w| w * w).sum();
+            + 0.5 * (at.mapv(|w| w * w) * &loss.penalties).sum();
         assert!((point(&at).value - by_definition).abs() < 1e-12 * by_definition);
         for place in 0..12 {
             let mut unit = Array2::zeros((3, 4));
@@ -323,7 +328,7 @@ mod tests {
             let slope = (above.value - below.value) / 2e-5;
             assert!((gradient[[place / 4, place % 4]] - slope).abs() < 1e-7 * (1.0 + slope.abs()));
             let change = (loss.gradient(&above).1 - loss.gradient(&below).1) / 2.0;
-            let product = loss.hessian_product(&p, &unit);
+            let product = loss.curvature(&loss.scaled, &p, &unit) + &unit * &loss.penalties;
             assert!(
                 (product - change)
                     .iter()
