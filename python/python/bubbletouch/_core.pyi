@@ -611,6 +611,7 @@ class Patch:
         stroke: float | None = None,
         *,
         mesh: Mesh | None = None,
+        unit: _Unit | None = None,
         sensor: str | None = None,
         taxel_radius: float | None = None,
         stiffness: float = 100.0,
@@ -627,7 +628,8 @@ class Patch:
         - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
 
         stroke: metres. Default: the diameter of the taxel.
-        mesh: surface that gives the normals, for files of iCub and PaXini without normals.
+        mesh: surface that gives the normals, for files without normals or with placeholders, such as files of iCub and PaXini.
+        unit: "m", "cm", "mm" or "in", for .npz, .txt, .ini and .json files that do not state their unit. Default: mm for PaXini, metres for others.
         taxel_radius: metres. Default: the radius in the file, or half the median distance between neighbours.
 
         Frames have the shape (ny, nx) if the file numbers its taxels row by row in a complete image. Notes of the reader are issued as UserWarnings.

@@ -6,6 +6,7 @@ use super::arguments::{
 use crate::arrays::{points, to_column, to_rows, whole_number};
 use crate::batch::Spare;
 use crate::errors::{check_folder, check_readable, exception, guarded};
+use crate::length_unit::unit_of;
 use crate::mesh::Mesh;
 use crate::poses::Poses;
 use crate::press::output::Output;
@@ -321,19 +322,21 @@ impl Patch {
     /// - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
     ///
     /// stroke: metres. Default: the diameter of the taxel.
-    /// mesh: surface that gives the normals, for files of iCub and PaXini without normals.
+    /// mesh: surface that gives the normals, for files without normals or with placeholders, such as files of iCub and PaXini.
+    /// unit: "m", "cm", "mm" or "in", for .npz, .txt, .ini and .json files that do not state their unit. Default: mm for PaXini, metres for others.
     /// taxel_radius: metres. Default: the radius in the file, or half the median distance between neighbours.
     ///
     /// Frames have the shape (ny, nx) if the file numbers its taxels row by row in a complete image. Notes of the reader are issued as UserWarnings.
     /// Raises ValueError with the file and the row if the file is invalid, and OSError if it cannot be read.
     #[staticmethod]
-    #[pyo3(signature = (path, stroke=None, *, mesh=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    #[pyo3(signature = (path, stroke=None, *, mesh=None, unit=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "a signature of Python")]
     fn read(
         py: Python,
         path: PathBuf,
         stroke: Option<f64>,
         mesh: Option<&Mesh>,
+        unit: Option<&str>,
         sensor: Option<&str>,
         taxel_radius: Option<f64>,
         stiffness: f64,
@@ -342,6 +345,7 @@ impl Patch {
         guarded(|| {
             let options = LayoutOptions {
                 mesh: mesh.map(Mesh::triangle_mesh),
+                unit: unit_of(unit)?,
                 sensor,
             };
             check_readable(&path)?;
