@@ -443,7 +443,7 @@ fn equal_normals_that_do_not_stand_across_the_taxels_are_placeholders() {
                 let text = format!("[calibration]\n{}", rows(n, n_columns, along));
                 let file = folder.file("sole.txt", &text);
                 let wanted = format!(
-                    "for all {} taxels, which do not lie across them; rows with normals, or a mesh beside it",
+                    "of all {} taxels is not perpendicular to their surface; rows with normals, or a mesh beside it",
                     6 * n_columns
                 );
                 refused(&file, &wanted);
@@ -468,8 +468,16 @@ fn equal_normals_that_do_not_stand_across_the_taxels_are_placeholders() {
     };
     let outwards = |angle: f64| DVec3::new(angle.sin(), 0.0, angle.cos());
     let true_normals = read(&folder.file("arm.csv", &arm(&outwards)));
+    let shin = folder.file("shin.csv", &arm(&|_| outwards(1.35)));
+    refused(
+        &shin,
+        "of all 40 taxels is not perpendicular to their surface",
+    );
     let placeholders = folder.file("arm_x.csv", &arm(&|_| DVec3::Y));
-    refused(&placeholders, "equal normals [0, 1, 0] for all 40 taxels");
+    refused(
+        &placeholders,
+        "the normal [0, 1, 0] of all 40 taxels is not perpendicular",
+    );
     // A fine cylinder of triangles gives the normals.
     let cylinder = Cylinder::mesh(1e-2, 0.1, 720);
     let options = LayoutOptions {
@@ -477,7 +485,10 @@ fn equal_normals_that_do_not_stand_across_the_taxels_are_placeholders() {
         ..LayoutOptions::default()
     };
     let from_mesh = LayoutFile::read(&placeholders, options).unwrap();
-    assert!(from_mesh.notes[0].contains("are placeholders; the mesh gives the normals"));
+    assert!(
+        from_mesh.notes[0]
+            .contains("is not perpendicular to their surface; the mesh gives the normals")
+    );
     let pairs = from_mesh
         .layout
         .axes()

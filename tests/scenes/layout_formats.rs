@@ -508,9 +508,7 @@ fn positions_of_icub_without_normals_take_the_normals_of_a_mesh() {
     fs::write(&path, text).unwrap();
     let error = read(&path).unwrap_err().to_string();
     assert!(
-        error.contains(
-            "nomesh.txt: normals of zero length for all 2 taxels; rows with normals, or a mesh"
-        ),
+        error.contains("nomesh.txt: all 2 normals have length zero; rows with normals, or a mesh"),
         "{error}"
     );
     let cube = TriangleMesh::cuboid("cube", DVec3::splat(0.01)).unwrap();

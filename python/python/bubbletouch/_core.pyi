@@ -513,7 +513,7 @@ class Patch:
 
     @staticmethod
     def draped(
-        mesh: Mesh,
+        mesh: Mesh | SphereUnion,
         pitch: float,
         stroke: float,
         *,
@@ -525,7 +525,7 @@ class Patch:
         stiffness: float = 100.0,
         damping: float = 0.0,
     ) -> Patch:
-        """Returns a patch of taxels that are distributed over the outer surface of a mesh.
+        """Returns a patch of taxels that are distributed over the outer surface of a mesh, or of a SphereUnion of one sphere.
 
         The number of taxels equals the number in a grid with this pitch. The taxels are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A
         taxel whose axis would meet the mesh again is omitted; n_left_out counts these taxels. Closed parts of the mesh that face inwards are turned

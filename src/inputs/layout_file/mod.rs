@@ -8,7 +8,7 @@
 //! | `.json` | [`paxini`] | taxel positions of PaXini's sensors, mm, with or without normals |
 //! | `.urdf`, `.xml` | [`urdf`] | `<sensor><tactile>` of urdf_tactile, or taxels of three prismatic joints, as for XELA's uSkin |
 //!
-//! Some published files have placeholders for normals: zeros, or one normal along which the taxels spread. A mesh then gives the normals.
+//! Some published files have placeholders for normals: zeros, or one normal for taxels that are not in a plane across it. A mesh then gives the normals.
 
 pub mod csv;
 mod format;
@@ -208,12 +208,13 @@ impl LayoutFile {
                 return Err(Error::input(place, "a mesh for normals", allowed));
             }
             (None, Some(mesh)) => {
-                notes.extend(placeholder.map(|given| {
-                    format!("{place}: {given}, are placeholders; the mesh gives the normals")
-                }));
+                notes.extend(
+                    placeholder
+                        .map(|given| format!("{place}: {given}; the mesh gives the normals")),
+                );
                 normals::surface_normals(place, (positions, rows), mesh)?
             }
-            (None, None) if *is_flat => {
+            (None, None) if *is_flat && placeholder.is_none() => {
                 notes.push(format!(
                     "{place}: positions x and y alone are read as a flat skin with normals along z"
                 ));
@@ -306,19 +307,16 @@ struct Points {
     is_flat: bool,
 }
 
-/// Returns a description of normals that cannot be those of the taxels' surface; `None` for other normals. They are zeros, or equal normals of several taxels that
-/// do not stand across the taxels: the taxels of a flat pad spread across their common normal n, not along it. For pins with parallel axes on a curved or
-/// inclined surface, the variance of p · n may be a quarter of the smallest variance across n. The other term allows for rounded numbers.
+/// Returns a description of normals that cannot be those of the taxels' surface; `None` for other normals. Such placeholders are zeros, or one normal n of several
+/// taxels that are not in a plane across n. For a pad that is slightly uneven or inclined, the variance along n may be a hundredth of the smallest variance
+/// across n. A further ten-thousandth of the whole variance allows for rounded numbers.
 fn placeholder(positions: &[DVec3], normals: &[DVec3]) -> Option<String> {
     let first = *normals.first()?;
     if normals.iter().any(|normal| *normal != first) {
         return None;
     }
     if first == DVec3::ZERO {
-        return Some(format!(
-            "normals of zero length for all {} taxels",
-            normals.len()
-        ));
+        return Some(format!("all {} normals have length zero", normals.len()));
     }
     let n = first.try_normalize()?;
     let (u, v) = n.any_orthonormal_pair();
@@ -333,10 +331,10 @@ fn placeholder(positions: &[DVec3], normals: &[DVec3]) -> Option<String> {
     }
     let total = squares.x + squares.y;
     let least = 0.5 * (total - (squares.x - squares.y).hypot(2.0 * product));
-    let is_placeholder = along > 0.25 * least + 1e-4 * (total + along);
+    let is_placeholder = along > 1e-2 * least + 1e-4 * (total + along);
     is_placeholder.then(|| {
         let n_taxels = normals.len();
-        format!("equal normals {first} for all {n_taxels} taxels, which do not lie across them")
+        format!("the normal {first} of all {n_taxels} taxels is not perpendicular to their surface")
     })
 }
 
