@@ -1,7 +1,7 @@
 //! Class `SphereUnion`: rigid spheres.
 
 use crate::arrays::{corners, each, points, to_column, to_rows};
-use crate::errors::{check_folder, check_readable, exception, guarded};
+use crate::errors::{bad_input, check_folder, check_readable, exception, guarded};
 use crate::length_unit::unit_of;
 use bubbletouch::files::write_whole;
 use bubbletouch::mesh::SizeLimits;
@@ -39,6 +39,21 @@ impl SphereUnion {
 
     fn spheres(&self) -> &[Sphere] {
         self.union().spheres()
+    }
+
+    /// Returns the only sphere of the union.
+    ///
+    /// # Errors
+    /// If there are several spheres; the message begins with `place`.
+    pub fn single(&self, place: &str) -> PyResult<Sphere> {
+        match self.spheres() {
+            [sphere] => Ok(*sphere),
+            all => Err(bad_input(
+                place,
+                format!("a SphereUnion of {} spheres", all.len()),
+                "a Mesh, or one sphere",
+            )),
+        }
     }
 }
 

@@ -207,7 +207,7 @@ SENSOR = "<robot name='r'><link name='l'/><sensor name='s'><parent link='l'/><ta
         ("a.urdf", SENSOR.format("<array rows='2' cols='0' size='1 1'/>"), "line 2: `cols` 0"),
         ("a.urdf", SENSOR.format("<taxel xyz='0 0 0'/>")[:-20], "line [0-9]"),
         ("a.npz", {"positions": np.zeros((3, 3)), "normals": np.zeros((2, 3))}, r"normals: an array of shape \[2, 3\]; 3 × 3"),
-        ("a.npz", {"positions": np.zeros((3, 3)), "normals": np.zeros((3, 3))}, "row 1: normal .* of length 0"),
+        ("a.npz", {"positions": np.zeros((3, 3)), "normals": np.zeros((3, 3))}, "all 3 normals have length zero; .*or a mesh beside it"),
         ("a.npz", {"positions": np.full((3, 3), np.nan), "normals": np.ones((3, 3))}, "row 1: a number that is not finite"),
         ("a.npz", {"poses": np.tile(np.diag([-1.0, 1, 1])[:, [0, 1, 2, 2]], (2, 1, 1))}, "poses, row 1: a left-handed frame"),
         ("a.npz", {"poses": np.zeros((2, 3, 4))}, "poses, row 1: a matrix that is no rotation"),

@@ -177,11 +177,12 @@ def test_a_concave_mesh_presses_with_its_surface_or_with_the_hull_of_the_engine(
     front = [(0, 2, 1), (0, 7, 2), (7, 3, 2), (7, 6, 3), (6, 5, 3), (5, 4, 3)]
     faces = [(b, a, c) for a, b, c in faces] + [(a + 8, b + 8, c + 8) for a, b, c in front] + [(a, c, b) for a, b, c in front]
     block = f'<mesh name="block" vertex="{" ".join(corners)}" face="{" ".join(map(str, sum(faces, ())))}"/>'
-    model = mujoco.MjModel.from_xml_string(f"""
+    text = f"""
     <mujoco><asset>{block}</asset><worldbody>
       <geom name="ball" type="sphere" size="0.008" pos="0 0 -0.008"/><site name="top" pos="0 0 0"/>
       <body name="block"><freejoint/><geom name="block" type="mesh" mesh="block" density="100"/></body>
-    </worldbody></mujoco>""")
+    </worldbody></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(text)
     surface, hull = (geom_surface(model, model.geom("block").id, hulls=hulls) for hulls in (False, True))
     assert abs(surface.volume - (1600 - 400) * 40e-9) < 1e-11 and abs(hull.volume - 64e-6) < 1e-11
     data = mujoco.MjData(model)
@@ -196,3 +197,7 @@ def test_a_concave_mesh_presses_with_its_surface_or_with_the_hull_of_the_engine(
         skin.read(data, match="normal_force", residuals=residuals)
         assert (abs(residuals[0, 0]) < 1e-6) == hulls, (hulls, residuals)
     assert not readings[False].any() and readings[True].all()
+    # MuJoCo keeps no hull of a mesh that does not collide.
+    drawn = mujoco.MjModel.from_xml_string(text.replace('density="100"', 'density="100" contype="0" conaffinity="0"'))
+    with pytest.raises(ValueError, match="geom block: the model has no convex hull of its mesh"):
+        Skin(drawn, {"top": bt.Patch.grid(6, 6, 2e-3, 3e-3)}, geoms=["block"], hulls=True)

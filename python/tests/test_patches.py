@@ -150,6 +150,19 @@ def test_what_cannot_be_a_patch_is_refused_in_the_librarys_words(make, said) -> 
         make()
 
 
+def test_taxels_draped_over_a_sphere_lie_on_the_sphere() -> None:
+    center = np.array([0.01, -0.02, 0.03])
+    tip = bt.SphereUnion(center[None], [0.012])
+    patch = bt.Patch.draped(tip, 2e-3, 2e-3, plane=[center, [0, 0, 1]])
+    offsets = patch.centers - center
+    assert np.abs(np.linalg.norm(offsets, axis=1) - 0.012).max() < 1e-15
+    assert np.abs(patch.axes - offsets / 0.012).max() < 1e-12 and patch.axes[:, 2].min() > -0.05
+    # As many taxels as a grid on the half sphere.
+    assert abs(patch.n_taxels - 2 * np.pi * 0.012**2 / 4e-6) < 10
+    with pytest.raises(ValueError, match="mesh: a SphereUnion of 2 spheres; a Mesh, or one sphere"):
+        bt.Patch.draped(bt.SphereUnion(np.zeros((2, 3)), [0.01, 0.02]), 2e-3, 2e-3)
+
+
 def test_a_draped_patch_covers_a_region_of_the_outer_surface() -> None:
     corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], dtype=float)
     faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]

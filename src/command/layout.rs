@@ -24,6 +24,9 @@ pub struct Args {
     /// Set the unit of --mesh: m, cm, mm or in [default: m]
     #[arg(long, value_name = "UNIT", requires = "mesh", help_heading = "Input")]
     mesh_unit: Option<LengthUnit>,
+    /// Set the unit of a file that does not state it: m, cm, mm or in
+    #[arg(long, value_name = "UNIT", help_heading = "Input")]
+    unit: Option<LengthUnit>,
     /// Read the sensor of this name in a robot's file
     #[arg(long, value_name = "NAME", help_heading = "Input")]
     sensor: Option<String>,
@@ -48,6 +51,7 @@ pub fn layout(args: &Args) -> Result<()> {
     let mesh = mesh.transpose()?;
     let options = LayoutOptions {
         mesh: mesh.as_ref(),
+        unit: args.unit,
         sensor: args.sensor.as_deref(),
     };
     let file = LayoutFile::read(&args.file, options)?;

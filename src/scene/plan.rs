@@ -169,7 +169,7 @@ impl ScenePlan {
         frame as f64 / self.output_rate
     }
 
-    /// Returns notes about parts of the robot files that are used or ignored; each note starts with the key of the robot.
+    /// Returns notes about parts of the robot and layout files that are used or ignored; each note starts with the key of the robot or patch.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let of_robot = |robot: &PlannedRobot| {
             let trajectory = robot.joints.iter().flat_map(|joints| joints.notes());
@@ -187,7 +187,12 @@ impl ScenePlan {
             let of = |note: String| format!("robots.{}: {note}", robot.name);
             notes.chain(unused).map(of).collect::<Vec<_>>()
         };
-        self.robots.iter().flat_map(of_robot)
+        let of_patch = |patch: &PlannedPatch| {
+            let of = |note: &String| format!("patches.{}: {note}", patch.skin.name());
+            patch.notes.iter().map(of).collect::<Vec<_>>()
+        };
+        let of_robots = self.robots.iter().flat_map(of_robot);
+        of_robots.chain(self.patches.iter().flat_map(of_patch))
     }
 
     /// Returns whether a patch uses the taxels of the tactile sensor with this name in the file of this robot.

@@ -29,6 +29,8 @@ pub struct PlannedPatch {
     pub shears: Option<Shears>,
     /// Signal chain of the patch (conversion of deflections to sensor readings); `None` if it has no steps.
     pub signal: Option<PlannedSignal>,
+    /// Notes on the layout file of the patch; empty for other layouts.
+    pub notes: Vec<String>,
 }
 
 impl PlannedPatch {
@@ -77,12 +79,13 @@ impl Reader<'_> {
         }
         let layout_key = &format!("{key}.layout");
         self.drape_on_own_link(layout_key, spec, robots)?;
-        let (layout, radii) = match self.listed_taxels(layout_key, spec, robots)? {
+        let (layout, radii, notes) = match self.listed_taxels(layout_key, spec, robots)? {
             Some(listed) => listed,
             None => {
                 let layout = self.layout(layout_key, spec, robots, &seed.named(&spec.name))?;
                 let half_pitch = spec.layout.pitch_mm().map(|pitch_mm| 0.5 * pitch_mm);
-                (layout, PerTaxel::Equal(half_pitch.unwrap_or_default()))
+                let radii = PerTaxel::Equal(half_pitch.unwrap_or_default());
+                (layout, radii, Vec::new())
             }
         };
         self.mount_on_draped_link(layout_key, spec)?;
@@ -96,6 +99,7 @@ impl Reader<'_> {
             skin,
             mount: self.mount_of_patch(key, spec, robots, objects)?,
             shears,
+            notes,
         })
     }
 
@@ -212,14 +216,14 @@ impl Reader<'_> {
         projected.map(|projected| projected.layout)
     }
 
-    /// Returns the taxels of a layout file or of a robot's tactile sensor, and their radii in mm; `None` for other layouts. A patch with the taxels of a sensor
-    /// is mounted on the link of the sensor.
+    /// Returns the taxels of a layout file or of a robot's tactile sensor, their radii in mm, and the notes on the file; `None` for other layouts. A patch with
+    /// the taxels of a sensor is mounted on the link of the sensor.
     fn listed_taxels(
         &self,
         key: &str,
         spec: &mut PatchSpec,
         robots: &[PlannedRobot],
-    ) -> Result<Option<(Layout, PerTaxel<f64>)>> {
+    ) -> Result<Option<(Layout, PerTaxel<f64>, Vec<String>)>> {
         let file = match &spec.layout {
             LayoutSpec::File(file) => self.layout_file(&format!("{key}.file"), file)?,
             LayoutSpec::Sensor(sensor) => {
@@ -240,7 +244,11 @@ impl Reader<'_> {
                     let given = format!("a sensor of link `{}` on link `{link}`", sensor.link);
                     return Err(self.check.error(key, given, "the link of the sensor"));
                 }
-                LayoutFile::of_sensor(self.check.place, sensor)?
+                LayoutFile {
+                    // The robot has these notes.
+                    notes: Vec::new(),
+                    ..LayoutFile::of_sensor(self.check.place, sensor)?
+                }
             }
             _ => return Ok(None),
         };
@@ -248,7 +256,7 @@ impl Reader<'_> {
             Some(radii) => PerTaxel::Each(radii.iter().map(|radius| radius / MM).collect()),
             None => PerTaxel::Equal(file.default_radius() / MM),
         };
-        Ok(Some((file.layout, radii)))
+        Ok(Some((file.layout, radii, file.notes)))
     }
 
     fn layout_file(&self, key: &str, spec: &FileLayoutSpec) -> Result<LayoutFile> {
@@ -269,6 +277,7 @@ impl Reader<'_> {
         let mesh = mesh.transpose()?;
         let options = LayoutOptions {
             mesh: mesh.as_ref(),
+            unit: None,
             sensor: parts.and_then(|parts| parts.sensor.as_deref()),
         };
         self.under(key, LayoutFile::read(&self.path(path), options))

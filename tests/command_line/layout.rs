@@ -63,6 +63,10 @@ fn invalid_files_and_options_are_refused_and_nothing_is_written() {
         (&["palm.csv", "--mesh", "palm.csv"], "palm.csv"),
         (&["palm.csv", "--sensor", "s"], "a sensor's name; none"),
         (
+            &["palm.csv", "--unit", "mm"],
+            "a unit; none: this format states its unit",
+        ),
+        (
             &["palm.csv", "--out", "palm.pdf"],
             "palm.pdf: another file; a layout in",
         ),

@@ -1,7 +1,7 @@
 //! Layouts from files: each format gives the taxels that its file describes, and an invalid file is refused with the number of its row.
 
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutOptions};
-use bubbletouch::mesh::TriangleMesh;
+use bubbletouch::mesh::{LengthUnit, TriangleMesh};
 use bubbletouch::scene::ScenePlan;
 use glam::DVec3;
 use ndarray::{Array1, Array2, Array3, array};
@@ -159,7 +159,7 @@ fn points_of_paxini_take_the_normals_of_a_mesh() {
     let cube = TriangleMesh::cuboid("cube", DVec3::splat(0.01)).unwrap();
     let options = LayoutOptions {
         mesh: Some(&cube),
-        sensor: None,
+        ..LayoutOptions::default()
     };
     let file = LayoutFile::read(&path, options).unwrap();
     assert_eq!(file.layout.axes(), [DVec3::Z, DVec3::X]);
@@ -414,6 +414,241 @@ fn a_wrong_file_is_refused_with_its_row() {
     }
 }
 
+/// Equal normals of all taxels are normals of a flat pad, and placeholders of other skins.
+#[test]
+fn equal_normals_that_do_not_stand_across_the_taxels_are_placeholders() {
+    let folder = Folder::new();
+    // 4 × 6 taxels of a pad across n, and a column of them.
+    let rows = |n: DVec3, n_columns: usize, normal: DVec3| -> String {
+        let (u, v) = n.any_orthonormal_pair();
+        let place = |k: usize| 4e-3 * ((k % n_columns) as f64 * u + (k / n_columns) as f64 * v);
+        let row = |k: usize| {
+            let numbers = [place(k).to_array(), normal.to_array()].concat();
+            let numbers = numbers.iter().map(|number| format!("{number:.4}"));
+            numbers.collect::<Vec<_>>().join(" ") + "\n"
+        };
+        (0..6 * n_columns).map(row).collect()
+    };
+    let tilted = DVec3::new(1.0, -2.0, 0.5).normalize();
+    for n in [DVec3::X, DVec3::Z, tilted] {
+        for n_columns in [1, 4] {
+            let file = folder.file(
+                "pad.txt",
+                &format!("[calibration]\n{}", rows(n, n_columns, n)),
+            );
+            assert!((read(&file).layout.axes()[0] - n).length() < 1e-3);
+            // Normals along the pad, or along the column.
+            let (u, v) = n.any_orthonormal_pair();
+            for along in if n_columns == 1 { vec![v] } else { vec![u, v] } {
+                let text = format!("[calibration]\n{}", rows(n, n_columns, along));
+                let file = folder.file("sole.txt", &text);
+                let wanted = format!(
+                    "of all {} taxels is not perpendicular to their surface; rows with normals, or a mesh beside it",
+                    6 * n_columns
+                );
+                refused(&file, &wanted);
+            }
+        }
+    }
+    // Taxels around a cylinder with the axis y, whose radius is 10 mm, as on a forearm.
+    let angles = (0..40).map(|k| (0.3 * f64::from(k % 10), 4e-3 * f64::from(k / 10)));
+    let arm = |normal: &dyn Fn(f64) -> DVec3| -> String {
+        let row = |(angle, y): (f64, f64)| {
+            let n = normal(angle);
+            format!(
+                "{},{y},{},{},{},{}\n",
+                1e-2 * angle.sin(),
+                1e-2 * angle.cos(),
+                n.x,
+                n.y,
+                n.z
+            )
+        };
+        "x_m,y_m,z_m,nx,ny,nz\n".to_owned() + &angles.clone().map(row).collect::<String>()
+    };
+    let outwards = |angle: f64| DVec3::new(angle.sin(), 0.0, angle.cos());
+    let true_normals = read(&folder.file("arm.csv", &arm(&outwards)));
+    let shin = folder.file("shin.csv", &arm(&|_| outwards(1.35)));
+    refused(
+        &shin,
+        "of all 40 taxels is not perpendicular to their surface",
+    );
+    let placeholders = folder.file("arm_x.csv", &arm(&|_| DVec3::Y));
+    refused(
+        &placeholders,
+        "the normal [0, 1, 0] of all 40 taxels is not perpendicular",
+    );
+    // A fine cylinder of triangles gives the normals.
+    let cylinder = Cylinder::mesh(1e-2, 0.1, 720);
+    let options = LayoutOptions {
+        mesh: Some(&cylinder),
+        ..LayoutOptions::default()
+    };
+    let from_mesh = LayoutFile::read(&placeholders, options).unwrap();
+    assert!(
+        from_mesh.notes[0]
+            .contains("is not perpendicular to their surface; the mesh gives the normals")
+    );
+    let pairs = from_mesh
+        .layout
+        .axes()
+        .iter()
+        .zip(true_normals.layout.axes());
+    assert!(
+        pairs
+            .into_iter()
+            .all(|(one, other)| (*one - *other).length() < 5e-3)
+    );
+    let given = LayoutFile::read(&folder.file("arm.csv", &arm(&outwards)), options).unwrap_err();
+    assert!(
+        given.to_string().contains("a mesh for normals; none"),
+        "{given}"
+    );
+}
+
+/// Side of a cylinder around y, of triangles.
+struct Cylinder;
+
+impl Cylinder {
+    fn mesh(radius: f64, length: f64, n: u32) -> TriangleMesh {
+        let vertex = |k: u32| {
+            let angle = std::f64::consts::TAU * f64::from(k / 2) / f64::from(n);
+            let y = length * (f64::from(k % 2) - 0.5);
+            DVec3::new(radius * angle.sin(), y, radius * angle.cos())
+        };
+        let around = |k: u32| k % (2 * n);
+        let triangles = (0..n).flat_map(|k| {
+            let [a, b, c, d] = [2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 3].map(around);
+            [[a, c, b], [b, c, d]]
+        });
+        let vertices = (0..2 * n).map(vertex).collect();
+        TriangleMesh::new("cylinder", vertices, triangles.collect()).unwrap()
+    }
+}
+
+#[test]
+fn a_layout_of_another_unit_is_noted_and_read_with_its_unit() {
+    let folder = Folder::new();
+    let points = |scale: f64| {
+        let place = |k: usize| [scale * (k % 4) as f64, scale * (k / 4) as f64, 0.0];
+        let places: Vec<[f64; 3]> = (0..16).map(place).collect();
+        format!(
+            "{{\"points\": {places:?}, \"normals\": {:?}}}",
+            vec![[0.0, 0.0, 1.0]; 16]
+        )
+    };
+    let expected = read(&folder.file("mm.json", &points(4.0)));
+    assert!(expected.notes.is_empty());
+    let metres = folder.file("m.json", &points(4e-3));
+    let file = read(&metres);
+    let note = "m.json: the layout is 0.012 mm long; 1 mm to 1 m is usual: if the file is in another unit, give it (--unit, or unit= in Python)";
+    assert!(
+        file.notes.len() == 1 && file.notes[0].ends_with(note),
+        "{:?}",
+        file.notes
+    );
+    let unit = |unit| LayoutOptions {
+        unit: Some(unit),
+        ..LayoutOptions::default()
+    };
+    let file = LayoutFile::read(&metres, unit(LengthUnit::Metre)).unwrap();
+    let same = |file: &LayoutFile| {
+        assert!(file.notes.is_empty(), "{:?}", file.notes);
+        for (one, other) in file.layout.centers().iter().zip(expected.layout.centers()) {
+            near(*one, *other);
+        }
+    };
+    same(&file);
+    let archive = folder.npz("mm.npz", |npz| {
+        let place =
+            |(k, axis): (usize, usize)| [4.0 * (k % 4) as f64, 4.0 * (k / 4) as f64, 0.0][axis];
+        let normals = Array2::from_shape_fn((16, 3), |(_, axis)| f64::from(axis == 2));
+        npz.add_array("positions", &Array2::from_shape_fn((16, 3), place))
+            .unwrap();
+        npz.add_array("normals", &normals).unwrap();
+        npz.add_array("radii", &Array1::from_elem(16, 1.5)).unwrap();
+    });
+    assert!(read(&archive).notes[0].contains("the layout is 12000 mm long"));
+    let file = LayoutFile::read(&archive, unit(LengthUnit::Millimetre)).unwrap();
+    same(&file);
+    assert_eq!(file.radii, Some(vec![1.5e-3; 16]));
+    // The unit of a file that states it is not replaced.
+    let stated = folder.file(
+        "s.json",
+        &points(4.0).replacen('{', "{\"units\": \"mm\", ", 1),
+    );
+    let table = folder.file("t.csv", "x_mm,y_mm\n0,0\n4,0\n");
+    for path in [stated, table] {
+        let error = LayoutFile::read(&path, unit(LengthUnit::Millimetre)).unwrap_err();
+        assert!(error.to_string().contains("a unit; none: "), "{error}");
+    }
+    let large = folder.file("large.csv", "x_m,y_m\n0,0\n4,0\n");
+    assert!(
+        read(&large)
+            .notes
+            .iter()
+            .any(|note| note.contains("4000 mm long"))
+    );
+}
+
+/// Three sensors of one channel name, as in public files: one has two taxels on one channel, and one has no taxels.
+#[test]
+fn every_sensor_of_a_robots_file_is_listed_and_has_its_own_fault() {
+    let folder = Folder::new();
+    let sensor = |name: &str, inside: &str| {
+        format!(
+            "<sensor name='{name}'><parent link='a'/><tactile channel='c'>{inside}</tactile></sensor>\n"
+        )
+    };
+    let robot = |sensors: &str| format!("<robot name='r'><link name='a'/>\n{sensors}</robot>");
+    let good = "<taxel idx='2' xyz='0 0 0'/><taxel idx='7' xyz='0.01 0 0'/>";
+    let text = robot(
+        &(sensor(
+            "palm",
+            "<taxel idx='2' xyz='0 0 0'/><taxel idx='2' xyz='0 0.01 0'/>",
+        ) + &sensor("thumb", good)
+            + &sensor("empty", "")),
+    );
+    let path = folder.file("shared.urdf", &text);
+    refused(
+        &path,
+        "3 tactile sensors; the name of one: empty, palm, thumb",
+    );
+    for (name, wanted) in [
+        ("palm", "line 2: a second taxel with `idx` 2"),
+        ("empty", "line 4: <tactile> without taxels"),
+        ("index", "no sensor `index`; one of empty, palm, thumb"),
+    ] {
+        let options = LayoutOptions {
+            sensor: Some(name),
+            ..LayoutOptions::default()
+        };
+        let error = LayoutFile::read(&path, options).unwrap_err().to_string();
+        assert!(error.contains(wanted), "{name}: {error}");
+    }
+    let options = LayoutOptions {
+        sensor: Some("thumb"),
+        ..LayoutOptions::default()
+    };
+    assert_eq!(
+        LayoutFile::read(&path, options).unwrap().layout.n_taxels(),
+        2
+    );
+    // The only sensor is the one with a fault, or a name has two sensors.
+    let one = folder.file("one.urdf", &robot(&sensor("empty", "")));
+    refused(&one, "one.urdf, line 2: <tactile> without taxels");
+    let two = robot(&(sensor("palm", good) + &sensor("palm", good)));
+    let two = folder.file("two.urdf", &two);
+    refused(
+        &two,
+        "line 3: a second sensor `palm` (the first is on line 2); a name of its own",
+    );
+    let robot = bubbletouch::world::Robot::read(&two).unwrap();
+    assert_eq!(robot.tactile_sensors().len(), 1);
+    let left_out = "tactile sensor `palm` on link `a` is not read";
+    assert!(robot.notes().iter().any(|note| note.ends_with(left_out)));
+}
+
 #[test]
 fn a_patch_of_a_scene_has_the_taxels_of_a_file_or_of_its_robots_sensor() {
     let folder = Folder::new();
@@ -435,6 +670,15 @@ fn a_patch_of_a_scene_has_the_taxels_of_a_file_or_of_its_robots_sensor() {
     );
     assert!((plan.patches[0].skin.taxels().at(0).radius - 2e-3).abs() < 1e-12);
     assert_eq!(plan.notes().count(), 0);
+    folder.file("large.csv", "x_m,y_m\n0,0\n4,0\n");
+    let plan = scene("{ file = \"large.csv\" }").unwrap();
+    let notes: Vec<String> = plan.notes().collect();
+    assert!(
+        notes
+            .iter()
+            .any(|note| note.starts_with("patches.p: ") && note.contains("4000 mm long")),
+        "{notes:?}"
+    );
     let plan = scene("{ file = \"palm.txt\" }").unwrap();
     assert_eq!(plan.patches[0].skin.n_taxels(), 2);
     let notes: Vec<String> = plan.notes().collect();

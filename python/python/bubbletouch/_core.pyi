@@ -513,7 +513,7 @@ class Patch:
 
     @staticmethod
     def draped(
-        mesh: Mesh,
+        mesh: Mesh | SphereUnion,
         pitch: float,
         stroke: float,
         *,
@@ -525,7 +525,7 @@ class Patch:
         stiffness: float = 100.0,
         damping: float = 0.0,
     ) -> Patch:
-        """Returns a patch of taxels that are distributed over the outer surface of a mesh.
+        """Returns a patch of taxels that are distributed over the outer surface of a mesh, or of a SphereUnion of one sphere.
 
         The number of taxels equals the number in a grid with this pitch. The taxels are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A
         taxel whose axis would meet the mesh again is omitted; n_left_out counts these taxels. Closed parts of the mesh that face inwards are turned
@@ -611,6 +611,7 @@ class Patch:
         stroke: float | None = None,
         *,
         mesh: Mesh | None = None,
+        unit: _Unit | None = None,
         sensor: str | None = None,
         taxel_radius: float | None = None,
         stiffness: float = 100.0,
@@ -627,7 +628,8 @@ class Patch:
         - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
 
         stroke: metres. Default: the diameter of the taxel.
-        mesh: surface that gives the normals, for files of iCub and PaXini without normals.
+        mesh: surface that gives the normals, for files without normals or with placeholders, such as files of iCub and PaXini.
+        unit: "m", "cm", "mm" or "in", for .npz, .txt, .ini and .json files that do not state their unit. Default: mm for PaXini, metres for others.
         taxel_radius: metres. Default: the radius in the file, or half the median distance between neighbours.
 
         Frames have the shape (ny, nx) if the file numbers its taxels row by row in a complete image. Notes of the reader are issued as UserWarnings.

@@ -6,15 +6,21 @@ use super::arguments::{
 use crate::arrays::{points, to_column, to_rows, whole_number};
 use crate::batch::Spare;
 use crate::errors::{check_folder, check_readable, exception, guarded};
+use crate::length_unit::unit_of;
 use crate::mesh::Mesh;
 use crate::poses::Poses;
 use crate::press::output::Output;
 use crate::press::slide::{Motion, press_and_slide};
+use crate::sphere_union::SphereUnion;
 use bubbletouch::contact::Workspace;
+use bubbletouch::geometry::Pose;
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutOptions};
+use bubbletouch::mesh::TriangleMesh;
+use bubbletouch::objects::Sphere;
 use bubbletouch::random::Seed;
 use bubbletouch::report::layout_picture::write_layout_picture;
 use bubbletouch::world::{self, Grid, Layout, Taxel, Taxels};
+use glam::DVec3;
 use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyUserWarning;
@@ -230,7 +236,7 @@ impl Patch {
         })
     }
 
-    /// Returns a patch of taxels that are distributed over the outer surface of a mesh.
+    /// Returns a patch of taxels that are distributed over the outer surface of a mesh, or of a SphereUnion of one sphere.
     ///
     /// The number of taxels equals the number in a grid with this pitch. The taxels are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A
     /// taxel whose axis would meet the mesh again is omitted; n_left_out counts these taxels. Closed parts of the mesh that face inwards are turned
@@ -246,7 +252,7 @@ impl Patch {
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn draped(
         py: Python,
-        mesh: &Bound<Mesh>,
+        mesh: &Bound<PyAny>,
         pitch: f64,
         stroke: f64,
         seed: i128,
@@ -259,15 +265,28 @@ impl Patch {
     ) -> PyResult<Self> {
         guarded(|| {
             let seed = whole_number("seed", seed)?;
-            let mesh = mesh.get();
             let region = drape_region(bounds, plane, triangles)?;
-            let (layout, orientation) = py.detach(|| {
-                let (outwards, orientation) = mesh.triangle_mesh().clone().turned_outwards();
-                let layout = Layout::draped_on(&outwards, pitch, &region, &Seed::new(seed));
-                (layout, orientation)
-            });
-            let layout = layout.map_err(exception)?;
-            mesh.warn_if_turned(py, &orientation)?;
+            let drape = |mesh: TriangleMesh| {
+                let draped = py.detach(|| {
+                    let (outwards, orientation) = mesh.turned_outwards();
+                    let layout = Layout::draped_on(&outwards, pitch, &region, &Seed::new(seed));
+                    layout.map(|layout| (layout, orientation))
+                });
+                draped.map_err(exception)
+            };
+            let layout = match mesh.cast::<SphereUnion>() {
+                Ok(spheres) => {
+                    let sphere = spheres.get().single("mesh")?;
+                    on_sphere(sphere, drape(facets(sphere).map_err(exception)?)?.0)
+                        .map_err(exception)?
+                }
+                Err(_) => {
+                    let mesh = mesh.cast::<Mesh>()?.get();
+                    let (layout, orientation) = drape(mesh.triangle_mesh().clone())?;
+                    mesh.warn_if_turned(py, &orientation)?;
+                    layout
+                }
+            };
             let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
             Self::with(layout, taxel)
         })
@@ -321,19 +340,21 @@ impl Patch {
     /// - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
     ///
     /// stroke: metres. Default: the diameter of the taxel.
-    /// mesh: surface that gives the normals, for files of iCub and PaXini without normals.
+    /// mesh: surface that gives the normals, for files without normals or with placeholders, such as files of iCub and PaXini.
+    /// unit: "m", "cm", "mm" or "in", for .npz, .txt, .ini and .json files that do not state their unit. Default: mm for PaXini, metres for others.
     /// taxel_radius: metres. Default: the radius in the file, or half the median distance between neighbours.
     ///
     /// Frames have the shape (ny, nx) if the file numbers its taxels row by row in a complete image. Notes of the reader are issued as UserWarnings.
     /// Raises ValueError with the file and the row if the file is invalid, and OSError if it cannot be read.
     #[staticmethod]
-    #[pyo3(signature = (path, stroke=None, *, mesh=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    #[pyo3(signature = (path, stroke=None, *, mesh=None, unit=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "a signature of Python")]
     fn read(
         py: Python,
         path: PathBuf,
         stroke: Option<f64>,
         mesh: Option<&Mesh>,
+        unit: Option<&str>,
         sensor: Option<&str>,
         taxel_radius: Option<f64>,
         stiffness: f64,
@@ -342,6 +363,7 @@ impl Patch {
         guarded(|| {
             let options = LayoutOptions {
                 mesh: mesh.map(Mesh::triangle_mesh),
+                unit: unit_of(unit)?,
                 sensor,
             };
             check_readable(&path)?;
@@ -712,4 +734,21 @@ impl Patch {
             press_and_slide(py, patch, (object, poses), &motion, threads)
         })
     }
+}
+
+/// Returns a triangle mesh of a sphere, within a thousandth of its radius.
+fn facets(sphere: Sphere) -> bubbletouch::Result<TriangleMesh> {
+    let radii = DVec3::splat(sphere.radius);
+    let mesh = TriangleMesh::ellipsoid("sphere", radii, 1e-3 * sphere.radius)?;
+    Ok(mesh.moved(&Pose::from_translation(sphere.center)))
+}
+
+/// Returns the taxels of a layout on the facets of a sphere, moved onto the sphere itself.
+fn on_sphere(sphere: Sphere, layout: Layout) -> bubbletouch::Result<Layout> {
+    let outwards = |center: &DVec3| (*center - sphere.center).normalize();
+    let axes: Vec<DVec3> = layout.centers().iter().map(outwards).collect();
+    let centers = axes
+        .iter()
+        .map(|axis| sphere.center + sphere.radius * *axis);
+    Layout::new(centers.collect(), axes)
 }

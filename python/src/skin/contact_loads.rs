@@ -1,16 +1,14 @@
-//! Contact forces of an engine: arrays as arguments, and the patch on which each contact acts.
+//! Contact forces of an engine: arrays as arguments.
 
 use super::parts::SkinPatch;
 use crate::arrays::{points, view};
 use crate::errors::bad_input;
-use bubbletouch::contact::{LoadPart, PointLoad};
+use bubbletouch::contact::{
+    AssignedLoads, LoadPart, LoadRange, LoadedPatch, PointLoad, assign_loads,
+};
 use bubbletouch::geometry::Pose;
 use glam::DVec3;
 use pyo3::prelude::*;
-
-/// Least cosine between a normal force and the axis of the nearest taxel, reversed: contacts up to 60° off the axis act on the patch. If larger, contacts on
-/// the rims of curved skins are lost; if smaller, contacts on the side of a finger act on its pad.
-const FACING: f64 = 0.5;
 
 /// Contact forces of an engine on the bodies that carry patches, in the world.
 pub struct ContactLoads {
@@ -19,15 +17,6 @@ pub struct ContactLoads {
     loads: Vec<PointLoad>,
     /// Whether friction and torques act, too.
     pub part: LoadPart,
-}
-
-/// Contact forces of an engine by the patch and the object between which they act.
-#[derive(Default)]
-pub struct PatchLoads {
-    /// Patch, object and load in the patch frame, sorted by patch and object.
-    pub loads: Vec<(usize, usize, PointLoad)>,
-    /// Patch, object and normal force, newtons, of contacts beside all patches, at the nearest patch.
-    pub beside: Vec<(usize, usize, f64)>,
 }
 
 impl ContactLoads {
@@ -102,48 +91,26 @@ impl ContactLoads {
         })
     }
 
-    /// Assigns each contact to the patch of its carrier that it faces within reach, the nearest one if there are several. A contact that no patch of the carrier
-    /// has within reach acts on no patch.
+    /// Assigns the contacts to the patches of their carriers.
     pub fn by_patch(
         &self,
         parts: &[SkinPatch],
         carriers: &[usize],
         poses: &[Pose],
         reach: Option<f64>,
-    ) -> PatchLoads {
-        let mut found = PatchLoads::default();
-        for (load, [carrier, object]) in self.loads.iter().zip(&self.pairs) {
-            let own = carriers.iter().enumerate().filter(|(_, of)| *of == carrier);
-            let places = own.map(|(patch, _)| {
-                let local = in_frame(load, &poses[patch]);
-                let (distance, acts) =
-                    parts[patch].place(local.point, -local.normal, FACING, reach);
-                (patch, local, distance, acts)
-            });
-            let nearest = places.min_by(|a, b| b.3.cmp(&a.3).then(a.2.total_cmp(&b.2)));
-            match nearest {
-                Some((patch, local, _, true)) => found.loads.push((patch, *object, local)),
-                Some((patch, local, distance, false)) if distance <= parts[patch].size() => {
-                    found.beside.push((patch, *object, local.normal.length()));
-                }
-                _ => {}
-            }
-        }
-        found
-            .loads
-            .sort_by_key(|(patch, object, _)| (*patch, *object));
-        found
-    }
-}
-
-/// Returns a load of the world in the frame with a pose in the world.
-fn in_frame(load: &PointLoad, pose: &Pose) -> PointLoad {
-    let inverse = pose.inverse();
-    let turned = |vector: DVec3| inverse.rotation * vector;
-    PointLoad {
-        point: inverse.transform_point(load.point),
-        normal: turned(load.normal),
-        friction: turned(load.friction),
-        torque: turned(load.torque),
+    ) -> AssignedLoads {
+        let patches = parts.iter().zip(carriers).zip(poses);
+        let patches = patches.map(|((part, carrier), pose)| LoadedPatch {
+            patch: &part.patch,
+            range: LoadRange {
+                reach: reach.unwrap_or(0.0).max(part.range.reach),
+                ..part.range
+            },
+            carrier: *carrier,
+            pose: *pose,
+        });
+        let contacts = self.pairs.iter().zip(&self.loads);
+        let contacts = contacts.map(|([carrier, object], load)| (*carrier, *object, *load));
+        assign_loads(&patches.collect::<Vec<_>>(), contacts)
     }
 }

@@ -1,6 +1,6 @@
 //! Class `ShearState`: shear springs with friction of all taxels of a skin, from one read to the next.
 
-use super::parts::{RigidObject, SkinPatch};
+use super::parts::{RigidObject, SkinPatch, add_wrench};
 use crate::arrays::{to_rows, whole_number};
 use crate::errors::{bad_input, guarded};
 use bubbletouch::contact::{
@@ -121,11 +121,7 @@ impl ShearState {
         for contact in &contacts {
             forces[contact.taxel] = force_on_taxel(patch, state, contact);
         }
-        let load = state.load(patch, &contacts).on_object;
-        let six = load.force.to_array().into_iter();
-        for (sum, term) in wrench.iter_mut().zip(six.chain(load.torque.to_array())) {
-            *sum -= term;
-        }
+        add_wrench(wrench, -state.load(patch, &contacts).on_object);
     }
 }
 

@@ -1,9 +1,9 @@
 //! Class `Skin`: its arguments and results, and the loop over patches and bodies.
 
-use super::contact_loads::{ContactLoads, PatchLoads};
+use super::contact_loads::ContactLoads;
 use super::filled::{Target, read_optional};
 use super::force_match::{WantedForce, press_pair};
-use super::parts::{Body, RigidObject, SkinPatch, take_maximum};
+use super::parts::{Body, RigidObject, SkinPatch, add_wrench, take_maximum};
 use super::poses::{PoseSets, read_poses};
 use super::shear_state::ShearState;
 use crate::arrays::{each, shape_of, view, whole_number};
@@ -13,7 +13,7 @@ use crate::model::model_of;
 use crate::patch::Patch;
 use crate::press::output::Output;
 use bubbletouch::contact::{
-    CarriedLoad, LoadPart, LoadWorkspace, PointLoad, Workspace, Wrench, carry_loads, is_flat,
+    AssignedLoads, CarriedLoad, LoadPart, LoadWorkspace, PointLoad, Workspace, Wrench, carry_loads,
     press_at_pose, share_friction, travel_direction,
 };
 use bubbletouch::geometry::Pose;
@@ -90,6 +90,25 @@ struct SkinWorkspace {
     wrenches: Vec<f64>,
     contacts: Vec<i64>,
     pairs: PairResults,
+}
+
+impl SkinWorkspace {
+    /// Sets the results of `n` sets of poses to zero; counts, tangential forces and forces on the taxels are empty.
+    fn clear_results(&mut self, [n, n_patches, n_objects, n_taxels]: [usize; 4]) {
+        clear(&mut self.frame, n * n_taxels);
+        clear(&mut self.wrenches, n * n_patches * 6);
+        let PairResults {
+            forces,
+            residuals,
+            travels,
+        } = &mut self.pairs;
+        for values in [forces, residuals, travels] {
+            clear(values, n * n_patches * n_objects);
+        }
+        self.contacts.clear();
+        self.tangential.clear();
+        self.taxel_forces.clear();
+    }
 }
 
 /// Results for each pair of patch and object.
@@ -424,7 +443,7 @@ impl Skin {
         n_sets: Option<usize>,
         scratch: &mut SkinWorkspace,
         (options, has_shear): (ReadOptions, bool),
-    ) -> PyResult<Option<(PatchLoads, LoadPart)>> {
+    ) -> PyResult<Option<(AssignedLoads, LoadPart)>> {
         let Some(given) = given else { return Ok(None) };
         if n_sets.is_some() || !scratch.forces.is_empty() {
             let given = if n_sets.is_some() {
@@ -456,21 +475,20 @@ impl Skin {
             options.reach,
         );
         if has_shear {
-            clear(&mut scratch.forces, self.parts.len() * n_objects);
+            let n_pairs = self.parts.len() * n_objects;
+            clear(&mut scratch.forces, n_pairs);
             scratch.directions.clear();
+            scratch
+                .directions
+                .extend(DVec3::Z.to_array().repeat(n_pairs));
             for pair in found.loads.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
                 let (patch, object, _) = pair[0];
-                scratch.forces[patch * n_objects + object] =
-                    pair.iter().map(|(_, _, load)| load.normal.length()).sum();
-            }
-            for at in 0..self.parts.len() * n_objects {
-                let of_pair = found
-                    .loads
-                    .iter()
-                    .filter(|(patch, object, _)| patch * n_objects + object == at);
-                let of_pair: Vec<PointLoad> = of_pair.map(|(_, _, load)| *load).collect();
-                let direction = travel_direction(&self.parts[at / n_objects].patch, &of_pair);
-                scratch.directions.extend(direction.to_array());
+                let (at, loads) = (patch * n_objects + object, pair.iter().map(|it| it.2));
+                scratch.forces[at] = loads.clone().map(|load| load.normal.length()).sum();
+                if !self.parts[patch].is_flat {
+                    let direction = travel_direction(&loads.collect::<Vec<_>>());
+                    scratch.directions[3 * at..][..3].copy_from_slice(&direction.to_array());
+                }
             }
         }
         Ok(Some((found, loads.part)))
@@ -480,27 +498,17 @@ impl Skin {
     fn carry(
         &self,
         scratch: &mut SkinWorkspace,
-        (loads, part): (&PatchLoads, LoadPart),
+        (loads, part): (&AssignedLoads, LoadPart),
         options: ReadOptions,
     ) {
         let (n_patches, n_objects) = (self.parts.len(), self.objects[0].len());
-        clear(&mut scratch.frame, self.n_taxels);
-        clear(&mut scratch.wrenches, n_patches * 6);
-        clear(&mut scratch.pairs.forces, n_patches * n_objects);
-        clear(&mut scratch.pairs.residuals, n_patches * n_objects);
-        scratch.pairs.travels.clear();
-        scratch
-            .pairs
-            .travels
-            .resize(n_patches * n_objects, f64::NAN);
-        scratch.contacts.clear();
-        scratch.contacts.resize(n_patches * 2, 0);
-        scratch.tangential.clear();
+        scratch.clear_results([1, n_patches, n_objects, self.n_taxels]);
+        scratch.pairs.travels.fill(f64::NAN);
         scratch.tangential.resize(self.n_taxels, DVec3::ZERO);
         for pair in loads.loads.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
             let (number, object, _) = pair[0];
             let part_of = &self.parts[number];
-            let reach = options.reach.unwrap_or(part_of.reach);
+            let reach = options.reach.unwrap_or(part_of.range.reach);
             scratch.pair_loads.clear();
             scratch
                 .pair_loads
@@ -518,7 +526,7 @@ impl Skin {
             let of_pair = &mut scratch.object_frame;
             of_pair.clear();
             of_pair.extend_from_slice(frame);
-            let carried = if is_flat(&part_of.patch) {
+            let carried = if part_of.is_flat {
                 scratch.object_poses.clear();
                 let deeper = |member: &usize| {
                     let mut pose = scratch.placed[*member];
@@ -543,7 +551,7 @@ impl Skin {
                     &mut scratch.load_workspace,
                 )
             } else {
-                let direction = travel_direction(&part_of.patch, &scratch.pair_loads);
+                let direction = travel_direction(&scratch.pair_loads);
                 let force = scratch
                     .pair_loads
                     .iter()
@@ -582,53 +590,43 @@ impl Skin {
             );
             // The wrench of forces that the taxels carry contains the torque of contacts on the rim.
             let is_carried = (carried.required - carried.force).abs() <= CARRIED * carried.required;
-            if is_carried && (part == LoadPart::Whole || is_flat(&part_of.patch)) {
-                let torque = &mut scratch.wrenches[number * 6 + 3..][..3];
-                torque
-                    .iter_mut()
-                    .zip(rest.torque.to_array())
-                    .for_each(|(sum, term)| *sum += term);
+            if is_carried && (part == LoadPart::Whole || part_of.is_flat) {
+                let torque = Wrench {
+                    force: DVec3::ZERO,
+                    ..rest
+                };
+                add_wrench(&mut scratch.wrenches[number * 6..][..6], torque);
             }
         }
         for (number, part) in self.parts.iter().enumerate() {
             let taxels = part.first..part.first + part.patch.n_taxels();
             let frame = &mut scratch.frame[taxels.clone()];
             let wrench = &mut scratch.wrenches[number * 6..][..6];
-            part.add_wrench(frame, wrench);
+            part.add_normal_forces(frame, wrench);
             let centers = part.patch.layout().centers();
             for (center, force) in centers.iter().zip(&scratch.tangential[taxels]) {
-                let Wrench { force, torque } = Wrench::at(*center, *force);
-                let six = force.to_array().into_iter().chain(torque.to_array());
-                wrench
-                    .iter_mut()
-                    .zip(six)
-                    .for_each(|(sum, term)| *sum += term);
+                add_wrench(wrench, Wrench::at(*center, *force));
             }
-            scratch.contacts[number * 2..][..2].copy_from_slice(&part.count(frame));
+            scratch.contacts.extend(part.count(frame));
         }
-        self.write_taxel_forces(scratch, 1, options);
-        for part in &self.parts {
-            let frame = &mut scratch.frame[part.first..][..part.patch.n_taxels()];
-            options.output.convert(&part.patch, frame);
-        }
+        self.write_readings(scratch, 1, options);
     }
 
-    /// Writes the forces on all taxels from deflections and tangential forces, if they are requested.
-    fn write_taxel_forces(&self, scratch: &mut SkinWorkspace, n: usize, options: ReadOptions) {
-        scratch.taxel_forces.clear();
-        if !options.wants_taxel_forces {
-            return;
-        }
-        for set in 0..n {
-            for part in &self.parts {
-                let (layout, taxels) = (part.patch.layout(), part.patch.taxels());
-                for (taxel, axis) in layout.axes().iter().enumerate() {
-                    let at = set * self.n_taxels + part.first + taxel;
-                    let tangential = scratch.tangential.get(at).copied().unwrap_or_default();
-                    let force = tangential - taxels.at(taxel).stiffness * scratch.frame[at] * *axis;
+    /// Writes the forces on all taxels from deflections and tangential forces, if they are requested, and converts the deflections of `n` sets to the output.
+    fn write_readings(&self, scratch: &mut SkinWorkspace, n: usize, options: ReadOptions) {
+        for (set, part) in (0..n).flat_map(|set| self.parts.iter().map(move |part| (set, part))) {
+            let first = set * self.n_taxels + part.first;
+            let frame = &mut scratch.frame[first..][..part.patch.n_taxels()];
+            if options.wants_taxel_forces {
+                let (axes, taxels) = (part.patch.layout().axes(), part.patch.taxels());
+                for (taxel, axis) in axes.iter().enumerate() {
+                    let tangential = scratch.tangential.get(first + taxel);
+                    let axial = -taxels.at(taxel).stiffness * frame[taxel] * *axis;
+                    let force = tangential.copied().unwrap_or_default() + axial;
                     scratch.taxel_forces.extend(force.to_array());
                 }
             }
+            options.output.convert(&part.patch, frame);
         }
     }
 
@@ -641,14 +639,8 @@ impl Skin {
         mut shear: Option<&mut ShearState>,
     ) {
         let (n_patches, n_objects) = (self.parts.len(), self.objects[0].len());
-        let n_read = n * n_patches;
-        clear(&mut scratch.frame, n * self.n_taxels);
-        clear(&mut scratch.wrenches, n_read * 6);
-        clear(&mut scratch.pairs.forces, n_read * n_objects);
-        clear(&mut scratch.pairs.residuals, n_read * n_objects);
-        clear(&mut scratch.pairs.travels, n_read * n_objects);
-        scratch.contacts.clear();
-        for index in 0..n_read {
+        scratch.clear_results([n, n_patches, n_objects, self.n_taxels]);
+        for index in 0..n * n_patches {
             let (set, number) = (index / n_patches, index % n_patches);
             let part = &self.parts[number];
             let taxels = set * self.n_taxels + part.first..;
@@ -668,21 +660,14 @@ impl Skin {
                 shear.step(patch, bodies, wrench, &mut scratch.workspace);
                 frame.copy_from_slice(scratch.workspace.deflections());
             } else if is_near {
-                part.add_wrench(frame, wrench);
+                part.add_normal_forces(frame, wrench);
             }
             scratch.contacts.extend(match is_near {
                 true => part.count(frame),
                 false => [0, 0],
             });
         }
-        scratch.tangential.clear();
-        self.write_taxel_forces(scratch, n, options);
-        for index in 0..n_read {
-            let part = &self.parts[index % n_patches];
-            let taxels = (index / n_patches) * self.n_taxels + part.first..;
-            let frame = &mut scratch.frame[taxels][..part.patch.n_taxels()];
-            options.output.convert(&part.patch, frame);
-        }
+        self.write_readings(scratch, n, options);
     }
 
     /// Presses one patch under each object within reach, and writes the largest deflections into the frame of zeros. The poses of the bodies in the frame
@@ -710,7 +695,7 @@ impl Skin {
         let objects = &self.objects[number];
         let frame = &mut scratch.frame[set * self.n_taxels + part.first..][..part.patch.n_taxels()];
         let reads_pairs = !has_shear || !scratch.forces.is_empty() || options.wants_pairs;
-        let reach = options.reach.unwrap_or(part.reach);
+        let reach = options.reach.unwrap_or(part.range.reach);
         let mut any_near = false;
         for (at, object) in (index * objects.len()..).zip(&objects[..]) {
             let wanted = scratch.forces.get(at).copied().unwrap_or(f64::NAN);

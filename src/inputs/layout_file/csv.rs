@@ -1,10 +1,9 @@
 //! Layouts as CSV files with the columns `x_mm, y_mm, z_mm, nx, ny, nz` in any order. The columns `radius_mm`, and `row` and `column` (of the sensor's image)
 //! are optional. Without normals, they are taken from a mesh; without `z_mm` too, the skin is flat. Lengths may be in `_m`, `_cm` or `_mm`. Separators are commas, semicolons or tabs; lines that begin with `#` are comments.
 
-use super::LayoutFile;
 use super::millimetres::{millimetres, scaled};
+use super::{LayoutFile, LayoutOptions, Points};
 use crate::error::{Error, Result};
-use crate::mesh::TriangleMesh;
 use crate::numbers_csv::{check_width, finite, line_of, unreadable};
 use csv::StringRecord;
 use glam::DVec3;
@@ -27,7 +26,7 @@ struct Column {
 type Columns = [Option<Column>; 9];
 
 /// Reads a layout of taxels from the text of a CSV file.
-pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
+pub(super) fn read(place: &str, text: &str, options: LayoutOptions) -> Result<LayoutFile> {
     let allowed = format!("a table with the columns {}", REQUIRED.join(", "));
     let text = text.trim_start_matches('\u{feff}');
     let is_header = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
@@ -50,7 +49,7 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
     let (columns, notes) = read_header(place, &header_place, &header, &allowed)?;
     let has_radii = columns[6].is_some();
     let [is_flat, has_normals] = [columns[2].is_none(), columns[3].is_some()];
-    let (mut positions, mut normals, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut positions, mut normals, mut rows_of_taxels) = (Vec::new(), Vec::new(), Vec::new());
     let (mut radii, mut pixels) = (Vec::new(), Vec::new());
     for row in rows {
         let row = row.map_err(|e| unreadable(place, e, &allowed))?;
@@ -80,7 +79,7 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
         if has_normals {
             normals.push(DVec3::new(value(3)?, value(4)?, value(5)?));
         }
-        numbers.push(line_of(&row) as usize - 1);
+        rows_of_taxels.push(line_of(&row) as usize - 1);
         if has_radii {
             let radius = value(6)?;
             if radius <= 0.0 {
@@ -101,18 +100,14 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
             pixels.push([whole(7)?, whole(8)?]);
         }
     }
-    let mut read = match (has_normals, mesh) {
-        (true, None) => LayoutFile::new(
-            place,
-            positions.into_iter().zip(normals).collect(),
-            &numbers,
-        )?,
-        _ => {
-            let normals = has_normals.then_some(normals);
-            let without_normals = ("no column nx", "the columns nx, ny and nz, or ");
-            LayoutFile::of_positions(place, (positions, is_flat), normals, mesh, without_normals)?
-        }
+    let points = Points {
+        positions,
+        rows: rows_of_taxels,
+        is_flat,
     };
+    let normals = has_normals.then_some(normals);
+    let without_normals = ("no column nx", "the columns nx, ny and nz, or ");
+    let mut read = LayoutFile::of_points(place, points, normals, options, without_normals)?;
     read.radii = (!radii.is_empty()).then_some(radii);
     read.notes.extend(notes);
     Ok(match pixels.is_empty() {

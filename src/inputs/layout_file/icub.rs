@@ -1,17 +1,16 @@
 //! Position files of iCub's skin (`icub-main/app/skinGui/conf/positions`). A file has keys such as `name` and `taxel2Repr`, and a section `[calibration]` with
-//! one row `x y z nx ny nz` (positions in metres) for each taxel. In a file without sections, each line that begins with a number is a row. Rows of zeros belong to channels without a taxel. Some files have positions only, with zeros
-//! for all normals; a mesh then gives the normals.
+//! one row `x y z nx ny nz` (positions in metres) for each taxel. In a file without sections, each line that begins with a number is a row. Rows of zeros belong
+//! to channels without a taxel. Some files have positions only, with zeros or `1 0 0` for all normals; a mesh then gives the normals.
 
-use super::LayoutFile;
-use super::normals::surface_normals;
+use super::{LayoutFile, LayoutOptions, Points};
 use crate::error::{Error, Result};
-use crate::mesh::TriangleMesh;
 use glam::DVec3;
 
 /// Reads a layout of taxels from the text of an iCub position file. Normals of any length are scaled to length 1. If the file has no normals, they are computed
 /// from the mesh.
-pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
-    let (mut taxels, mut rows, mut n_unused) = (Vec::new(), Vec::new(), 0);
+pub(super) fn read(place: &str, text: &str, options: LayoutOptions) -> Result<LayoutFile> {
+    let (mut positions, mut normals) = (Vec::new(), Vec::new());
+    let (mut rows, mut n_unused) = (Vec::new(), 0);
     let mut n_represented = None;
     // In a file without sections, the rows begin with a number or a parenthesis.
     let has_sections = text.lines().any(|line| line.trim_start().starts_with('['));
@@ -51,7 +50,8 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
         match numbers.iter().all(|&number| number == 0.0) {
             true => n_unused += 1,
             false => {
-                taxels.push((DVec3::new(x, y, z), DVec3::new(nx, ny, nz)));
+                positions.push(DVec3::new(x, y, z));
+                normals.push(DVec3::new(nx, ny, nz));
                 rows.push(index + 1);
             }
         }
@@ -64,32 +64,19 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
         };
         return Err(Error::input(place, given, allowed));
     }
-    let has_normals = taxels.iter().any(|(_, normal)| *normal != DVec3::ZERO);
-    let mut read = match (mesh, has_normals) {
-        (None, true) => LayoutFile::new(place, taxels, &rows)?,
-        (Some(mesh), false) => {
-            let positions: Vec<DVec3> = taxels.into_iter().map(|(position, _)| position).collect();
-            let normals = surface_normals(place, (&positions, &rows), mesh)?;
-            let taxels = positions.into_iter().zip(normals).collect();
-            LayoutFile::new(place, taxels, &rows)?
-        }
-        (Some(_), true) => {
-            let allowed = "none: the file has normals of its own";
-            return Err(Error::input(place, "a mesh for normals", allowed));
-        }
-        (None, false) => {
-            let place = format!("{place}, row {}", rows[0]);
-            let allowed =
-                "rows with normals, or a mesh beside them, whose surface gives the normals";
-            return Err(Error::input(place, "positions without normals", allowed));
-        }
+    let n_rows = rows.len() + n_unused;
+    let points = Points {
+        positions,
+        rows,
+        is_flat: false,
     };
+    let without_normals = ("positions without normals", "rows with normals, or ");
+    let mut read = LayoutFile::of_points(place, points, Some(normals), options, without_normals)?;
     if n_unused > 0 {
         read.notes.push(format!(
             "{place}: {n_unused} rows of zeros are channels without a taxel"
         ));
     }
-    let n_rows = rows.len() + n_unused;
     if let Some(n_represented) = n_represented.filter(|n| *n != n_rows) {
         read.notes.push(format!(
             "{place}: taxel2Repr has {n_represented} numbers for {n_rows} rows; the rows are read"

@@ -7,6 +7,8 @@
 //! | `.txt`, `.ini` | [`icub`] | position files of iCub's skin: position (metres) and normal of each taxel |
 //! | `.json` | [`paxini`] | taxel positions of PaXini's sensors, mm, with or without normals |
 //! | `.urdf`, `.xml` | [`urdf`] | `<sensor><tactile>` of urdf_tactile, or taxels of three prismatic joints, as for XELA's uSkin |
+//!
+//! Some published files have placeholders for normals: zeros, or one normal for taxels that are not in a plane across it. A mesh then gives the normals.
 
 pub mod csv;
 mod format;
@@ -18,10 +20,10 @@ pub mod paxini;
 pub mod urdf;
 
 use crate::error::{Error, Result};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{LengthUnit, TriangleMesh};
 use crate::world::{Layout, TactileSensor, unit_axis};
 pub use format::LayoutFormat;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::path::Path;
 
 /// List of the file formats from which layouts can be read, for error messages.
@@ -45,8 +47,10 @@ pub struct LayoutFile {
 /// Further inputs of the reader of layout files, which some formats need.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LayoutOptions<'a> {
-    /// Surface from which the normals of the taxels are taken; required only if the file contains no normals.
+    /// Surface from which the normals of the taxels are taken; required only if the file contains no normals, or placeholders.
     pub mesh: Option<&'a TriangleMesh>,
+    /// Unit of the positions and radii, for files that do not state their unit. `None`: mm for PaXini's files, metres for others.
+    pub unit: Option<LengthUnit>,
     /// Name of the sensor to read; required only if the file has several sensors.
     pub sensor: Option<&'a str>,
 }
@@ -66,6 +70,9 @@ impl LayoutFile {
         if options.mesh.is_some() && matches!(&ending[..], "urdf" | "xml") {
             return refuse("a mesh for normals", "this format has normals of its own");
         }
+        if options.unit.is_some() && !matches!(&ending[..], "npz" | "txt" | "ini" | "json") {
+            return refuse("a unit", "this format states its unit");
+        }
         if options.sensor.is_some() && !matches!(&ending[..], "urdf" | "xml") {
             return refuse("a sensor's name", "only robots' files have several sensors");
         }
@@ -77,14 +84,17 @@ impl LayoutFile {
             )),
             read => read.map_err(|error| Error::unreadable(path, FORMATS, error)),
         };
-        let file = match &ending[..] {
-            "csv" | "tsv" => csv::read(&place, &text()?, options.mesh)?,
-            "npz" => npz::read(path, options.mesh)?,
-            "txt" | "ini" => icub::read(&place, &text()?, options.mesh)?,
-            "json" => paxini::read(&place, &text()?, options.mesh)?,
+        let mut file = match &ending[..] {
+            "csv" | "tsv" => csv::read(&place, &text()?, options)?,
+            "npz" => npz::read(path, options)?,
+            "txt" | "ini" => icub::read(&place, &text()?, options)?,
+            "json" => paxini::read(&place, &text()?, options)?,
             "urdf" | "xml" => urdf::read(&place, &text()?, options.sensor)?,
             _ => return Err(Error::input(place, "another file", FORMATS)),
         };
+        if options.unit.is_none() {
+            file.notes.extend(unusual_size(&place, &file.layout));
+        }
         Ok(file)
     }
 
@@ -162,42 +172,66 @@ impl LayoutFile {
         Self::from_points(place, positions, normals)
     }
 
-    /// Creates the content of a layout file from positions (metres) with or without normals of any length. Positions of x and y alone, whose z is 0, are a flat skin
-    /// with axes along z.
+    /// Creates the content of a layout file from its points, with or without normals of any length. Normals that are [placeholders](placeholder) count as none.
+    /// Points of x and y alone are a flat skin with axes along z.
     ///
     /// # Errors
-    /// If a normal has no position or no direction, a mesh is given beside normals, or neither is given for positions in space. The last error consists of the two
+    /// If a normal has no position or no direction, a mesh is given beside normals, or neither is given for points in space. The last error consists of the two
     /// texts `without_normals`: what is given, and what else is allowed.
-    fn of_positions(
+    fn of_points(
         place: &str,
-        (positions, is_flat): (Vec<DVec3>, bool),
+        mut points: Points,
         normals: Option<Vec<DVec3>>,
-        mesh: Option<&TriangleMesh>,
+        options: LayoutOptions,
         without_normals: (&str, &str),
     ) -> Result<Self> {
-        match (normals, mesh) {
-            (Some(normals), None) => Self::from_points(place, positions, normals),
+        if let Some(unit) = options.unit {
+            points
+                .positions
+                .iter_mut()
+                .for_each(|position| *position *= unit.metres());
+        }
+        let Points {
+            positions,
+            rows,
+            is_flat,
+        } = &points;
+        let placeholder = normals
+            .as_ref()
+            .and_then(|normals| placeholder(positions, normals));
+        let normals = normals.filter(|_| placeholder.is_none());
+        let mut notes = Vec::new();
+        let normals = match (normals, options.mesh) {
+            (Some(normals), None) => normals,
             (Some(_), Some(_)) => {
                 let allowed = "none: the file has normals of its own";
-                Err(Error::input(place, "a mesh for normals", allowed))
+                return Err(Error::input(place, "a mesh for normals", allowed));
             }
-            (None, Some(mesh)) => Self::on_surface(place, positions, mesh),
-            (None, None) if is_flat => {
-                let normals = vec![DVec3::Z; positions.len()];
-                let note = format!(
-                    "{place}: positions x and y alone are read as a flat skin with normals along z"
+            (None, Some(mesh)) => {
+                notes.extend(
+                    placeholder
+                        .map(|given| format!("{place}: {given}; the mesh gives the normals")),
                 );
-                Ok(Self {
-                    notes: vec![note],
-                    ..Self::from_points(place, positions, normals)?
-                })
+                normals::surface_normals(place, (positions, rows), mesh)?
+            }
+            (None, None) if *is_flat && placeholder.is_none() => {
+                notes.push(format!(
+                    "{place}: positions x and y alone are read as a flat skin with normals along z"
+                ));
+                vec![DVec3::Z; positions.len()]
             }
             (None, None) => {
                 let (given, allowed) = without_normals;
+                let given = placeholder.unwrap_or_else(|| given.to_owned());
                 let allowed = format!("{allowed}a mesh beside it, whose surface gives the normals");
-                Err(Error::input(place, given, allowed))
+                return Err(Error::input(place, given, allowed));
             }
-        }
+        };
+        let taxels = points.positions.into_iter().zip(normals).collect();
+        Ok(Self {
+            notes,
+            ..Self::new(place, taxels, &points.rows)?
+        })
     }
 
     /// Sets the row and column of each taxel in the sensor's image. If the taxels are numbered row by row in a complete image, the layout has its sides.
@@ -261,6 +295,65 @@ impl LayoutFile {
             .get(nearest.len() / 2)
             .map_or(1e-3, |pitch| 0.5 * pitch)
     }
+}
+
+/// Positions of taxels in a layout file.
+struct Points {
+    /// Rest centres of the taxels, in the unit of the options or in metres.
+    positions: Vec<DVec3>,
+    /// Number of each taxel's row in the file, for messages.
+    rows: Vec<usize>,
+    /// Whether the file contains x and y alone; z is then 0.
+    is_flat: bool,
+}
+
+/// Returns a description of normals that cannot be those of the taxels' surface; `None` for other normals. Such placeholders are zeros, or one normal n of several
+/// taxels that are not in a plane across n. For a pad that is slightly uneven or inclined, the variance along n may be a hundredth of the smallest variance
+/// across n. A further ten-thousandth of the whole variance allows for rounded numbers.
+fn placeholder(positions: &[DVec3], normals: &[DVec3]) -> Option<String> {
+    let first = *normals.first()?;
+    if normals.iter().any(|normal| *normal != first) {
+        return None;
+    }
+    if first == DVec3::ZERO {
+        return Some(format!("all {} normals have length zero", normals.len()));
+    }
+    let n = first.try_normalize()?;
+    let (u, v) = n.any_orthonormal_pair();
+    let mean = positions.iter().sum::<DVec3>() / positions.len() as f64;
+    let (mut along, mut squares, mut product) = (0.0, DVec2::ZERO, 0.0);
+    for position in positions {
+        let offset = *position - mean;
+        let across = DVec2::new(offset.dot(u), offset.dot(v));
+        along += offset.dot(n).powi(2);
+        squares += across * across;
+        product += across.x * across.y;
+    }
+    let total = squares.x + squares.y;
+    let least = 0.5 * (total - (squares.x - squares.y).hypot(2.0 * product));
+    let is_placeholder = along > 1e-2 * least + 1e-4 * (total + along);
+    is_placeholder.then(|| {
+        let n_taxels = normals.len();
+        format!("the normal {first} of all {n_taxels} taxels is not perpendicular to their surface")
+    })
+}
+
+/// Usual lengths of a layout, metres: from the smallest sensor arrays to the limbs of a robot. Files in another unit are beyond them by a factor of 100 or 1000.
+const USUAL_LENGTHS: std::ops::RangeInclusive<f64> = 1e-3..=1.0;
+
+/// Returns a note on the length of a layout of several taxels outside the usual lengths.
+fn unusual_size(place: &str, layout: &Layout) -> Option<String> {
+    let centers = layout.centers().iter().copied();
+    let low = centers.clone().fold(DVec3::INFINITY, DVec3::min);
+    let high = centers.fold(DVec3::NEG_INFINITY, DVec3::max);
+    let length = (high - low).max_element();
+    let is_unusual = layout.n_taxels() > 1 && !USUAL_LENGTHS.contains(&length);
+    is_unusual.then(|| {
+        format!(
+            "{place}: the layout is {} mm long; 1 mm to 1 m is usual: if the file is in another unit, give it (--unit, or unit= in Python)",
+            (1e6 * length).round() / 1e3
+        )
+    })
 }
 
 /// Maximum number of taxels whose nearest neighbours are searched; the distances determine the default radius. A larger number takes longer and hardly changes

@@ -1,14 +1,13 @@
 //! Layouts stored as NumPy archives, in one of two forms. The first form has `positions` (n × 3, metres), `normals` (n × 3), and optionally `radii` (n, metres)
 //! and `pixels` (n × 2: row, column). The second form, used for Analog Devices' DEX-01, has `poses` (n × 3 × 4) and `taxel2pixel` (n × 2), and optionally
 //! `radii`. A pose is a rotation matrix, whose third column is the normal, followed by the position in metres. Other names
-//! such as `points`, `centers` and `axes` are read too.
+//! such as `points`, `centers` and `axes` are read too. The options may contain another unit than metres.
 
-use super::LayoutFile;
+use super::{LayoutFile, LayoutOptions, Points};
 use crate::error::{Error, Result};
 use crate::geometry::written_rotation_matrix;
 use crate::inputs::arrays::csv_table::TableContent;
 use crate::inputs::arrays::file_array::FileArray;
-use crate::mesh::TriangleMesh;
 use glam::{DMat3, DVec3};
 use ndarray::{Array1, Array2, Array3, ArrayD};
 use ndarray_npy::{NpzWriter, WriteNpzError};
@@ -26,7 +25,7 @@ const NAMES: [&[&str]; 5] = [
 const ALLOWED: &str = "positions and normals, or poses";
 
 /// Reads a layout of taxels from a `.npz` archive of NumPy arrays.
-pub(super) fn read(path: &Path, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
+pub(super) fn read(path: &Path, options: LayoutOptions) -> Result<LayoutFile> {
     let place = path.display().to_string();
     let names = crate::inputs::arrays::member_names(path)?;
     let mut found = [None; NAMES.len()];
@@ -54,13 +53,13 @@ pub(super) fn read(path: &Path, mesh: Option<&TriangleMesh>) -> Result<LayoutFil
             allowed.join(" × "),
         ))
     };
-    let (positions, normals) = match (poses, positions) {
+    let (positions, is_flat, normals) = match (poses, positions) {
         (Some(poses), None) => {
             let (positions, normals) =
                 from_poses(&place, &read(poses, &[None, Some(3), Some(4)])?)?
                     .into_iter()
                     .unzip();
-            ((positions, false), Some(normals))
+            (positions, false, Some(normals))
         }
         (None, Some(positions)) => {
             let is_flat = normals.is_none()
@@ -71,7 +70,7 @@ pub(super) fn read(path: &Path, mesh: Option<&TriangleMesh>) -> Result<LayoutFil
             };
             let normals = normals.map(|normals| read(normals, &[Some(positions.len()), Some(3)]));
             let normals = normals.transpose()?.map(|normals| vectors(&normals));
-            ((positions, is_flat), normals)
+            (positions, is_flat, normals)
         }
         _ => {
             let given = match names.is_empty() {
@@ -81,7 +80,12 @@ pub(super) fn read(path: &Path, mesh: Option<&TriangleMesh>) -> Result<LayoutFil
             return Err(Error::input(place, given, ALLOWED));
         }
     };
-    let n = positions.0.len();
+    let n = positions.len();
+    let points = Points {
+        rows: (1..=n).collect(),
+        positions,
+        is_flat,
+    };
     let given = format!("no array normals (the arrays {})", names.join(", "));
     let without_normals = (&given[..], "positions and normals, or poses, or ");
     let pixels = pixels.map(|name| -> Result<_> {
@@ -100,6 +104,7 @@ pub(super) fn read(path: &Path, mesh: Option<&TriangleMesh>) -> Result<LayoutFil
             .map(|pixel| [pixel[0], pixel[1]])
             .collect())
     });
+    let metres = options.unit.unwrap_or_default().metres();
     let radii = radii.map(|name| {
         let radii = read(name, &[Some(n)])?.into_iter().collect::<Vec<f64>>();
         match radii
@@ -108,18 +113,14 @@ pub(super) fn read(path: &Path, mesh: Option<&TriangleMesh>) -> Result<LayoutFil
         {
             Some(row) => {
                 let place = format!("{place}, {name}, row {}", row + 1);
-                Err(Error::input(
-                    place,
-                    radii[row],
-                    "a positive number of metres",
-                ))
+                Err(Error::input(place, radii[row], "a positive length"))
             }
-            None => Ok(radii),
+            None => Ok(radii.into_iter().map(|radius| metres * radius).collect()),
         }
     });
     let read = LayoutFile {
         radii: radii.transpose()?,
-        ..LayoutFile::of_positions(&place, positions, normals, mesh, without_normals)?
+        ..LayoutFile::of_points(&place, points, normals, options, without_normals)?
     };
     Ok(match pixels.transpose()? {
         Some(pixels) => read.with_pixels(pixels),

@@ -1,13 +1,12 @@
 //! Taxel positions of PaXini's tactile sensors as JSON, mm: `{"units": "mm", "taxels_mm": [[x, y, z], …]}`, or a list of positions. With `rotation`, a list of
 //! rotation matrices by columns, the third column is the normal of a taxel. The normals may also be a list `normals`. Without both, the normals are taken from a
-//! mesh. The units of `taxels` and `points` may be mm, cm or m. A position may also be an object with the members
+//! mesh. The member `units` of `taxels` and `points` may be mm, cm or m; without it, the options may contain the unit. A position may also be an object with the members
 //! `x`, `y` and `z`, or `x_mm`, `y_mm` and `z_mm`, and optionally its normal `nx`, `ny` and `nz`.
 
-use super::LayoutFile;
 use super::millimetres::scaled;
+use super::{LayoutFile, LayoutOptions, Points};
 use crate::error::{Error, Result};
 use crate::geometry::written_rotation_matrix;
-use crate::mesh::TriangleMesh;
 use glam::{DMat3, DVec3};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -17,7 +16,7 @@ const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
 const ALLOWED: &str = "points [x, y, z] in mm: a list, or the member taxels_mm, taxels or points";
 
 /// Reads a layout of taxels from the text of a PaXini JSON file. If the file has no normals, they are computed from the mesh.
-pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
+pub(super) fn read(place: &str, text: &str, options: LayoutOptions) -> Result<LayoutFile> {
     let text = text.trim_start_matches('\u{feff}');
     // Python writes NaN and Infinity, which are not JSON. As texts, they are refused with their row.
     let json: Value = serde_json::from_str(text)
@@ -25,11 +24,16 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
         .map_err(|e| Error::input(place, e, ALLOWED))?;
     let units = json.get("units").or_else(|| json.get("unit"));
     let exponent = match units {
+        // The positions are numbers of the unit of the options.
+        None if options.unit.is_some() => Some(0),
         None => Some(-3),
         Some(units) => exponent_of(&units.as_str().unwrap_or_default().to_lowercase()),
     };
     let is_millimetres = json.get("taxels_mm").is_some();
-    let Some(exponent) = exponent.filter(|&exponent| exponent == -3 || !is_millimetres) else {
+    let mut states_unit = units.is_some() || is_millimetres;
+    let Some(exponent) =
+        exponent.filter(|&exponent| exponent == -3 || !is_millimetres || units.is_none())
+    else {
         let given = format!("units {}", units.unwrap_or(&Value::Null));
         let allowed = "\"mm\"; \"cm\" or \"m\" for the members taxels and points";
         return Err(Error::input(place, given, allowed));
@@ -69,6 +73,7 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
                 let names = ["x", "y", "z"].map(|axis| format!("{axis}{ending}"));
                 if names.iter().all(|name| members.contains_key(name)) {
                     exponent = of_unit;
+                    states_unit |= !ending.is_empty();
                     let normal = NORMAL.map(|name| members.get(name).and_then(Value::as_f64));
                     let has_normal = normal.iter().all(Option::is_some);
                     normals_of_points.extend(
@@ -100,6 +105,10 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
     };
     let points = points.iter().enumerate().map(&mut point);
     let points = points.collect::<Result<Vec<_>>>()?;
+    if options.unit.is_some() && states_unit {
+        let allowed = "none: the file states its unit";
+        return Err(Error::input(place, "a unit", allowed));
+    }
     if points.is_empty() {
         return Err(Error::input(place, "no taxel", "at least one taxel"));
     }
@@ -163,13 +172,13 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
     } else {
         normals
     };
-    let mut file = LayoutFile::of_positions(
-        place,
-        (points, false),
-        normals,
-        mesh,
-        ("points without normals", ""),
-    )?;
+    let points = Points {
+        rows: (1..=points.len()).collect(),
+        positions: points,
+        is_flat: false,
+    };
+    let without_normals = ("points without normals", "");
+    let mut file = LayoutFile::of_points(place, points, normals, options, without_normals)?;
     if !unused.is_empty() {
         let unused: Vec<String> = unused.into_iter().collect();
         file.notes.push(format!(

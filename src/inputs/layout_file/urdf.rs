@@ -7,60 +7,53 @@ use crate::geometry::Pose;
 use crate::world::{Joint, JointKind, Robot};
 use glam::DVec3;
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 
 /// Reads a layout of taxels from the text of a URDF file. The name of a tactile sensor, or of the link that carries the taxels' prismatic joints, is `sensor`.
 /// The name may be omitted if there is only one.
 pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<LayoutFile> {
-    let robot = Robot::from_urdf(place, text)?;
+    let (robot, sensors) = Robot::with_all_sensors(place, text)?;
     let mut all = BTreeMap::new();
-    for sensor in robot.tactile_sensors() {
-        all.insert(sensor.name.clone(), LayoutFile::of_sensor(place, sensor));
+    // If two sensors have one name, the fault of the second sensor remains.
+    for (name, sensor) in sensors {
+        all.insert(
+            name,
+            sensor.and_then(|sensor| LayoutFile::of_sensor(place, &sensor)),
+        );
     }
     let (prismatic, fault) = prismatic_taxels(place, &robot);
     for (link, taxels) in prismatic {
-        if let Entry::Vacant(place_of_link) = all.entry(link.clone()) {
-            let file = taxels.and_then(|taxels| LayoutFile::in_order(place, taxels));
-            place_of_link.insert(file.map(|file| LayoutFile {
+        all.entry(link.clone()).or_insert_with(|| {
+            let file = LayoutFile::in_order(place, taxels?)?;
+            Ok(LayoutFile {
                 link: Some(link),
                 ..file
-            }));
-        }
-    }
-    // The reader of robots omits an invalid sensor. Here, the fault of the sensor is the error.
-    let missing = |given: String, allowed: String| match Robot::check_tactile_sensors(place, text) {
-        Err(fault) => fault,
-        Ok(()) => Error::input(place, given, allowed),
-    };
-    if let (true, Some(fault)) = (all.is_empty(), fault) {
-        Robot::check_tactile_sensors(place, text)?;
-        return Err(fault);
+            })
+        });
     }
     let names = all.keys().map(String::as_str);
     let names = names.collect::<Vec<_>>().join(", ");
     let name = match (sensor, all.len()) {
         (_, 0) => {
             let allowed = "a <sensor> with <tactile>, or taxels of three prismatic joints";
-            return Err(missing("no tactile sensor".to_owned(), allowed.to_owned()));
+            let none = || Error::input(place, "no tactile sensor", allowed);
+            return Err(fault.unwrap_or_else(none));
         }
         (Some(name), _) => name.to_owned(),
         (None, 1) => names.clone(),
         (None, n) => {
             let given = format!("{n} tactile sensors");
-            return Err(Error::input(
-                place,
-                given,
-                format!("the name of one: {names}"),
-            ));
+            let allowed = format!("the name of one: {names}");
+            return Err(Error::input(place, given, allowed));
         }
     };
-    let found = all.remove(&name);
-    found.unwrap_or_else(|| {
-        Err(missing(
+    let missing = || {
+        Error::input(
+            place,
             format!("no sensor `{name}`"),
             format!("one of {names}"),
-        ))
-    })
+        )
+    };
+    all.remove(&name).unwrap_or_else(|| Err(missing()))
 }
 
 /// Position (metres) and normal of a taxel in the frame of its link.

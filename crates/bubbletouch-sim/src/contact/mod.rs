@@ -34,6 +34,7 @@
 //! **Friction** is optional. With [`Shear`](crate::world::Shear) springs the objects drag the taxels sideways until they slip. With friction each taxel
 //! measures a three-axis force ([`FrictionState`] has the equations). Without friction, and also with μ = 0, the forces are bitwise equal to `spring_load`.
 
+mod assigned_loads;
 mod damper;
 pub mod equilibrium;
 mod force_goal;
@@ -55,6 +56,7 @@ mod tree;
 mod workspace;
 mod wrench;
 
+pub use assigned_loads::{AssignedLoads, LoadRange, LoadedPatch, assign_loads};
 pub use damper::{DamperState, Relaxation, relaxation_factor};
 pub use friction::{ContactMode, ContactModeCounts, FrictionLoad, FrictionState, NormalForce};
 pub use grid::{Lines, Row};

@@ -17,10 +17,11 @@
 
 use super::root_search::{Sample, crossing};
 use super::wrench::Wrench;
+use crate::geometry::Pose;
 use crate::world::Patch;
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
-/// Contact force on a patch, in the patch frame.
+/// Contact force on a patch, in the patch frame or in the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PointLoad {
     /// Point of contact, metres.
@@ -31,6 +32,19 @@ pub struct PointLoad {
     pub friction: DVec3,
     /// Torque of the contact about its point (torsional and rolling friction), N·m.
     pub torque: DVec3,
+}
+
+impl PointLoad {
+    /// Returns the load in the frame with the given pose.
+    pub fn seen_from(&self, frame: &Pose) -> Self {
+        let inverse = frame.inverse();
+        Self {
+            point: inverse.transform_point(self.point),
+            normal: inverse.transform_vector(self.normal),
+            friction: inverse.transform_vector(self.friction),
+            torque: inverse.transform_vector(self.torque),
+        }
+    }
 }
 
 /// Part of the contact forces that the taxels carry.
@@ -82,13 +96,10 @@ impl Spring {
     }
 }
 
-/// Returns the direction, a unit vector in the patch frame, in which a patch travels under its loads: z for a flat patch, otherwise against the mean force.
-pub fn travel_direction(patch: &Patch, loads: &[PointLoad]) -> DVec3 {
+/// Returns the direction, a unit vector in the patch frame, in which a curved patch travels under its loads: against the mean force. A flat patch travels along z.
+pub fn travel_direction(loads: &[PointLoad]) -> DVec3 {
     let against: DVec3 = loads.iter().map(|load| -load.normal).sum();
-    match is_flat(patch) {
-        true => DVec3::Z,
-        false => against.try_normalize().unwrap_or(DVec3::Z),
-    }
+    against.try_normalize().unwrap_or(DVec3::Z)
 }
 
 /// Returns whether all taxels point along z.
@@ -437,7 +448,6 @@ fn solve_semidefinite(mut matrix: [[f64; 6]; 6], mut values: [f64; 6]) -> [f64; 
 mod tests {
     use super::*;
     use crate::contact::{Workspace, press_at_pose};
-    use crate::geometry::Pose;
     use crate::objects::{Model, Sphere, SphereUnion};
     use crate::random::Seed;
     use crate::world::{Grid, Taxel};

@@ -53,6 +53,7 @@ pub(crate) use sphere_clusters::{Cluster, ClusterBounds, MAX_IN_CLUSTER};
 pub use sphere_csv::{read_spheres, write_spheres};
 pub use sphere_union::{Represented, SphereUnion};
 pub use surface_error::{SurfaceError, surface_error};
+pub(crate) use vertex_spheres::nearest_distances;
 pub use vertex_spheres::vertex_spheres;
 
 /// Named object that a patch can touch.

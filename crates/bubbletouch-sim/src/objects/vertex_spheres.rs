@@ -31,7 +31,7 @@ pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
 ///
 /// The points lie in the cells of a uniform grid. Rings of cells around a point's own cell are searched until no remaining
 /// cell can contain a nearer point.
-fn nearest_distances(points: &[DVec3]) -> Vec<f64> {
+pub(crate) fn nearest_distances(points: &[DVec3]) -> Vec<f64> {
     let grid = PointGrid::new(points);
     (0..points.len()).map(|i| grid.nearest(i)).collect()
 }

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 import bubbletouch._core as _core
 
+# Least tolerance of ellipsoids and round ends, relative to their mean radius. If smaller, large ones have millions of triangles; if larger, facets of a few
+# centimetres are coarser than taxels.
+RELATIVE = 1e-4
 
 
 def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5, *, hulls: bool = False) -> _core.Mesh | _core.SphereUnion:
@@ -18,12 +21,11 @@ def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5, *, h
 
     A plane is a box of 2 km whose upper face is in the plane. A height field is the solid of MuJoCo's prisms. A mesh is the mesh itself or, with
     `hulls`, its convex hull, which MuJoCo's contacts use. A closed mesh whose triangles point inwards is turned outwards with a warning. A signed distance
-    field (SDF) is the mesh that MuJoCo samples from the field. The tolerance of large ellipsoids and round ends is at least 1e-5 of their size. Raises
+    field (SDF) is the mesh that MuJoCo samples from the field. The tolerance of large ellipsoids and round ends is at least 1e-4 of their mean radius. Raises
     ValueError if `hulls` is set and the model has no hull of the mesh.
     """
     kind, size = mujoco.mjtGeom(model.geom_type[geom]), model.geom_size[geom]
     kinds = mujoco.mjtGeom
-    tolerance = max(tolerance, 1e-5 * float(size.max()))
     if kind == kinds.mjGEOM_SPHERE:
         return _core.SphereUnion(np.zeros((1, 3)), size[:1])
     if kind == kinds.mjGEOM_BOX:
@@ -32,9 +34,9 @@ def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5, *, h
         box = _core.Mesh.box([2e3, 2e3, 2e3])
         return _core.Mesh(box.vertices - [0.0, 0.0, 1e3], box.triangles)
     if kind == kinds.mjGEOM_ELLIPSOID:
-        return _core.Mesh.ellipsoid(size, tolerance)
+        return _core.Mesh.ellipsoid(size, max(tolerance, RELATIVE * float(np.cbrt(size.prod()))))
     if kind == kinds.mjGEOM_CAPSULE:
-        return _core.Mesh.capsule(size[0], 2.0 * size[1], tolerance)
+        return _core.Mesh.capsule(size[0], 2.0 * size[1], max(tolerance, RELATIVE * float(size[0])))
     if kind == kinds.mjGEOM_CYLINDER:
         return _core.Mesh.cylinder(size[0], 2.0 * size[1], tolerance)
     if kind == kinds.mjGEOM_HFIELD:

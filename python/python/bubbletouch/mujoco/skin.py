@@ -28,7 +28,7 @@ class Skin:
     layout: patches by the name of the site or body that carries each. If a site and a body have one name, the site carries the patch. "geom:NAME"
         is the frame of a geom, as for a patch draped on its geom_surface; "site:NAME" and "body:NAME" are possible, too. Taxels of a flat patch
         point along z of the frame.
-    geoms: "all", or names or numbers of the geoms that can touch the skin. With "all", a geom can touch a patch if MuJoCo can create a contact between the
+    geoms: "all", or names or numbers of the geoms that can touch the skin. The name of an unnamed geom is geom_ID. With "all", a geom can touch a patch if MuJoCo can create a contact between the
         geom and the body of the patch, by contype and conaffinity, `<pair>`, `<exclude>`, and the filter of parent and child. Given geoms can touch the
         patches of all bodies to which they are not welded. Flexes never touch the skin; a warning says so.
     tolerance: largest distance of the facets of cylinders and ellipsoids from the surface, metres. Planes, spheres, boxes, capsules, meshes and height
@@ -317,6 +317,8 @@ def _carrier(model: mujoco.MjModel, name: str) -> tuple[str, int]:
         if (number := mujoco.mj_name2id(model, kinds[kind], name)) >= 0:
             return kind, number
     prefix, _, rest = name.partition(":")
+    if prefix == "geom":
+        return prefix, _geom(model, rest)
     if prefix in kinds:
         return prefix, _identity(model, kinds[prefix], rest)
     raise ValueError(f"layout: {name!r}; a site ({_names(model, kinds['site'])}), a body ({_names(model, kinds['body'])}) or geom:NAME")
@@ -352,7 +354,8 @@ def _structure(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> list[bytes]:
 
 def _geom(model: mujoco.MjModel, geom: str | int) -> int:
     if isinstance(geom, str):
-        return _identity(model, mujoco.mjtObj.mjOBJ_GEOM, geom)
+        unnamed = [number for number in range(model.ngeom) if geom == f"geom_{number}" and not model.geom(number).name]
+        return unnamed[0] if unnamed else _identity(model, mujoco.mjtObj.mjOBJ_GEOM, geom)
     if not 0 <= geom < model.ngeom:
         raise ValueError(f"geoms: {geom}; a name, or a number from 0 to {model.ngeom - 1}")
     return int(geom)

@@ -1,9 +1,9 @@
 //! Readers of robots from a URDF or MJCF file, its bytes, or its text.
 
-use super::Robot;
 use super::mjcf::read_mjcf;
 use super::text::{decoded, root_name};
-use super::urdf::{check_sensors, read_urdf};
+use super::urdf::read_urdf;
+use super::{Robot, TactileSensor};
 use crate::error::{Error, Result};
 use crate::files::check_content;
 use std::path::Path;
@@ -14,15 +14,19 @@ impl Robot {
     /// # Errors
     /// If a part that determines poses of links is invalid. The message begins with `place`, the file's name, and contains the line.
     pub fn from_urdf(place: &str, text: &str) -> Result<Self> {
-        read_urdf(place, text)
+        read_urdf(place, text).map(|(robot, _)| robot)
     }
 
-    /// Checks the tactile sensors in the text of a URDF file, which `from_urdf` omits with a note if they are invalid.
+    /// Reads a robot, as `from_urdf` does, and the name and content of each tactile sensor. The error of an unreadable sensor, which the robot omits with a note,
+    /// contains the line.
     ///
     /// # Errors
-    /// If the text is no XML, or a tactile sensor is invalid. The message begins with `place`, the file's name, and contains the line.
-    pub fn check_tactile_sensors(place: &str, text: &str) -> Result<()> {
-        check_sensors(place, text)
+    /// Returns the errors of `from_urdf`.
+    pub fn with_all_sensors(
+        place: &str,
+        text: &str,
+    ) -> Result<(Self, Vec<(String, Result<TactileSensor>)>)> {
+        read_urdf(place, text)
     }
 
     /// Reads a robot from the text of an MJCF file; `place` is the path of the file. Files of `<include>` are read from the folder of the file. The links are
@@ -60,7 +64,7 @@ impl Robot {
         let (text, note) = decoded(place, bytes);
         let mut robot = match root_name(&text).as_deref() {
             Some("mujoco") => read_mjcf(place, &text)?,
-            _ => read_urdf(place, &text)?,
+            _ => Self::from_urdf(place, &text)?,
         };
         robot.notes.splice(0..0, note);
         Ok(robot)

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
 use glam::DVec3;
 use roxmltree::Node;
+use std::collections::HashMap;
 
 /// Tactile sensor that a robot's file declares: the poses of its taxels on a link.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,40 +29,38 @@ pub struct TactileSensor {
 /// Largest allowed number of taxels of an array. A larger number indicates a mistake in the file.
 const MAX_TAXELS: usize = 1_000_000;
 
-/// Returns the tactile sensors that a robot's file declares. An incomplete sensor becomes a note that names the sensor and its link.
-pub(super) fn read_tactile_sensors(robot: Element) -> Vec<TactileSensor> {
+/// Returns the tactile sensors that a robot's file declares, in the order of the file: the name of each sensor and its content, or the fault that makes it
+/// unreadable. A sensor with the name of an earlier sensor is unreadable. Notes name each unreadable sensor and its link.
+pub(super) fn read_tactile_sensors(robot: Element) -> Vec<(String, Result<TactileSensor>)> {
+    let mut first_lines = HashMap::new();
     let all = robot.node.descendants();
     let elements = all.filter(|node| node.tag_name().name() == "tactile");
-    let sensors = elements.filter_map(|node| {
+    let sensors = elements.map(|node| {
         let tactile = Element { node, ..robot };
         let place = Place::new(node);
-        let consequence = format!(
-            "tactile sensor `{}` on link `{}` is not read",
-            place.name.unwrap_or("without a name"),
-            place.link.unwrap_or("without a name"),
-        );
-        let sensor = read_sensor(tactile, &place);
-        for note in sensor.iter().flat_map(|sensor| &sensor.notes) {
-            tactile.lines.note(note.clone());
+        let name = place.name.unwrap_or("without a name");
+        let first_line = place.name.and_then(|name| first_lines.get(name));
+        let sensor = match first_line {
+            None => read_sensor(tactile, &place),
+            Some(line) => {
+                let given = format!("a second sensor `{name}` (the first is on line {line})");
+                Err(tactile.refuse(given, "a name of its own"))
+            }
+        };
+        first_lines.entry(name).or_insert_with(|| tactile.line());
+        match &sensor {
+            Ok(sensor) => sensor
+                .notes
+                .iter()
+                .for_each(|note| robot.lines.note(note.clone())),
+            Err(fault) => robot.lines.note(format!(
+                "{fault}: tactile sensor `{name}` on link `{}` is not read",
+                place.link.unwrap_or("without a name")
+            )),
         }
-        tactile.or_note(sensor.map(Some), None, &consequence)
+        (name.to_owned(), sensor)
     });
     sensors.collect()
-}
-
-/// Returns the first fault of a tactile sensor.
-///
-/// # Errors
-/// If a sensor is incomplete or has an invalid value; the error contains its line.
-pub(super) fn check_tactile_sensors(robot: Element) -> Result<()> {
-    let mut elements = robot.node.descendants();
-    elements
-        .by_ref()
-        .filter(|node| node.tag_name().name() == "tactile")
-        .try_for_each(|node| {
-            let tactile = Element { node, ..robot };
-            read_sensor(tactile, &Place::new(node)).map(drop)
-        })
 }
 
 /// Origin of a tactile sensor in the file: its XML element, its name, and the name of its link.

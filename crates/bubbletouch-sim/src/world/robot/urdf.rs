@@ -5,7 +5,7 @@
 
 use super::link::read_link;
 use super::mimic::{Drive, drives};
-use super::tactile::{check_tactile_sensors, read_tactile_sensors};
+use super::tactile::{TactileSensor, read_tactile_sensors};
 use super::text::{parsed, repaired, unreadable};
 use super::tree::Tree;
 use super::xml::{Element, Lines};
@@ -26,8 +26,9 @@ const UNLIMITED: &str = "it does not limit the joint";
 const FIXED: &str = "the joint is fixed";
 const ALONE: &str = "the joint mimics none";
 
-/// Reads a robot from the text of a URDF file; errors begin with `place`, the file's name.
-pub(super) fn read_urdf(place: &str, text: &str) -> Result<Robot> {
+/// Reads a robot, and all tactile sensors by name, from the text of a URDF file; errors begin with `place`, the file's name. An unreadable sensor is an error in
+/// the list, and the robot does not have it.
+pub(super) fn read_urdf(place: &str, text: &str) -> Result<(Robot, Vec<NamedSensor>)> {
     let lines = Lines::new(place, text);
     let text = repaired(place, text, &lines);
     let document = parsed(&text).map_err(|e| unreadable(place, &text, &e, "URDF"))?;
@@ -48,19 +49,15 @@ pub(super) fn read_urdf(place: &str, text: &str) -> Result<Robot> {
     let sensors = read_tactile_sensors(root);
     let notes = lines.into_notes();
     let robot = Robot::assembled((name, place), links, joints, tree, drives, notes)?;
-    Ok(robot.with_tactile_sensors(sensors))
+    let readable = sensors
+        .iter()
+        .filter_map(|(_, sensor)| sensor.as_ref().ok());
+    let robot = robot.with_tactile_sensors(readable.cloned().collect());
+    Ok((robot, sensors))
 }
 
-/// Returns the first fault of a tactile sensor in the text of a URDF file.
-pub(super) fn check_sensors(place: &str, text: &str) -> Result<()> {
-    let lines = Lines::new(place, text);
-    let text = repaired(place, text, &lines);
-    let document = parsed(&text).map_err(|e| unreadable(place, &text, &e, "URDF"))?;
-    check_tactile_sensors(Element {
-        node: document.root_element(),
-        lines: &lines,
-    })
-}
+/// Name of a tactile sensor, and its content or fault.
+type NamedSensor = (String, Result<TactileSensor>);
 
 type Parts = (String, Vec<Link>, Vec<Joint>, Tree, Vec<Drive>);
 
@@ -204,7 +201,15 @@ fn read_joints<'a>(
     let names = elements.iter().map(Element::name);
     let names = names.collect::<Result<Vec<_>>>()?;
     let joint_of = index_of_each("joint", names.iter().copied(), &elements)?;
-    let ends = Ends { links, link_of };
+    let parents = elements.iter().filter_map(|joint| {
+        let mut parents = joint.children("parent");
+        parents.next()?.node.attribute("link")
+    });
+    let ends = Ends {
+        links,
+        link_of,
+        parents: parents.collect(),
+    };
     let joints = elements.iter().zip(names);
     let joints = joints.map(|(element, name)| read_joint(*element, name, &ends, &joint_of));
     Ok((joints.collect::<Result<_>>()?, elements))
@@ -236,12 +241,20 @@ fn read_joint(
         }
     };
     let mimic = read_mimic(element, name, kind, joint_of);
+    let [parent, child] = ["parent", "child"].map(|tag| ends.read(element, name, tag));
+    let (parent, child) = (parent?, child?);
+    let slip = element.check_origin();
+    match kind == JointKind::Fixed && ends.is_frame(child) {
+        // A pose that only a frame without shapes has; all readers of URDF ignore unknown attributes.
+        true => element.or_note(slip, (), "the attribute is ignored"),
+        false => slip?,
+    }
     Ok(Joint {
         name: name.to_owned(),
         kind,
-        parent: ends.read(element, name, "parent")?,
-        child: ends.read(element, name, "child")?,
-        origin: element.origin()?,
+        parent,
+        child,
+        origin: element.origin_ignoring_slips()?,
         axis,
         anchor: DVec3::ZERO,
         reference: 0.0,
@@ -276,9 +289,17 @@ fn drop_mimics_of_several(joints: &mut [Joint], elements: &[Element]) {
 struct Ends<'a> {
     links: &'a [Link],
     link_of: &'a HashMap<&'a str, usize>,
+    /// Names of the links that joints have as parents.
+    parents: HashSet<&'a str>,
 }
 
 impl Ends<'_> {
+    /// Returns whether a link is only a coordinate frame: a link without shapes that moves no other link.
+    fn is_frame(&self, link: usize) -> bool {
+        let Link { name, shapes } = &self.links[link];
+        shapes.is_empty() && !self.parents.contains(name.as_str())
+    }
+
     /// Returns the index of the link that a joint's `<parent>` or `<child>` element names.
     fn read(&self, joint: Element, name: &str, tag: &'static str) -> Result<usize> {
         let end = joint.needed_child(tag)?;

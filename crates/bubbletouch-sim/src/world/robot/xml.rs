@@ -196,10 +196,23 @@ impl<'a> Element<'a> {
     /// Returns the pose in the child element `<origin>`; the identity if there is none. The attribute `rpy` rotates about the fixed axes x, y, z in this
     /// order; `quat_xyzw` (URDF 1.1) replaces this attribute.
     pub fn origin(self) -> Result<Pose> {
+        self.check_origin()?;
+        self.origin_ignoring_slips()
+    }
+
+    /// Returns an error if an attribute of `<origin>` is a misspelling.
+    pub fn check_origin(self) -> Result<()> {
+        let origin = self.child("origin")?;
+        origin.map_or(Ok(()), |origin| {
+            origin.check_attributes(&["xyz", "rpy", "quat_xyzw"])
+        })
+    }
+
+    /// Returns the pose as [`origin`](Self::origin) does, but ignores misspelt attributes.
+    pub fn origin_ignoring_slips(self) -> Result<Pose> {
         let Some(origin) = self.child("origin")? else {
             return Ok(Pose::IDENTITY);
         };
-        origin.check_attributes(&["xyz", "rpy", "quat_xyzw"])?;
         let xyz = origin.numbers("xyz")?.unwrap_or([0.0; 3]);
         let rotation = match (origin.numbers("rpy")?, origin.numbers("quat_xyzw")?) {
             (Some(_), Some(_)) => {

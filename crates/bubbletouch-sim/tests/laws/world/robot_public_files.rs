@@ -514,6 +514,43 @@ fn a_missing_link_that_carries_the_whole_robot_is_its_base() {
     );
 }
 
+/// A joint's misspelt pose concerns only its own frame if the link has no shapes and moves no other link.
+#[test]
+fn a_misspelt_attribute_of_a_fixed_frame_is_ignored_with_a_note() {
+    let frame = |child: &str, kind: &str, more: &str| {
+        let text = format!(
+            r#"<robot name="r"><link name="a"/>{child}
+<joint name="j" type="{kind}"><parent link="a"/><child link="b"/><origin xyz="0.02 0 0.005" rrpy="0 0.1 0"/>
+<limit lower="0" upper="1"/></joint>{more}</robot>"#
+        );
+        Robot::from_urdf("r.urdf", &text)
+    };
+    let bare = r#"<link name="b"/>"#;
+    let robot = frame(bare, "fixed", "").unwrap();
+    has_note(
+        &robot,
+        "r.urdf, line 2: `rrpy` in <origin>; perhaps `rpy`: the attribute is ignored",
+    );
+    assert_eq!(
+        second(&robot),
+        Pose::from_translation(DVec3::new(0.02, 0.0, 0.005))
+    );
+    let solid =
+        r#"<link name="b"><collision><geometry><sphere radius="1"/></geometry></collision></link>"#;
+    let below = r#"<link name="c"/><joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint>"#;
+    for (child, kind, more) in [
+        (solid, "fixed", ""),
+        (bare, "revolute", ""),
+        (bare, "fixed", below),
+    ] {
+        let error = frame(child, kind, more).unwrap_err().to_string();
+        assert!(
+            error.contains("line 2: `rrpy` in <origin>; perhaps `rpy`"),
+            "{error}"
+        );
+    }
+}
+
 #[test]
 fn a_second_end_tag_of_the_root_is_read_with_a_note() {
     let text = "<robot name='r'><link name='a'/></robot>\n";
