@@ -1238,6 +1238,7 @@ class LinearModel:
         features: ArrayLike,
         labels: ArrayLike,
         c: float,
+        is_balanced: bool,
         tolerance: float,
         max_passes: int,
         seed: int,

@@ -5,7 +5,7 @@
 //! A first line of texts above texts is then a header, too.
 //!
 //! **Columns that are left out.** A column without a name, or with the name `Unnamed: …` of pandas, is left out. A column that counts the rows from 0 or 1 is an
-//! index and is left out; the count may begin again with each touch. So is a column of at least 8 consecutive integers. An empty column behind the last separator of all lines is no column. A note states what
+//! index and is left out; the count may begin again with each touch. So is a column of at least 8 consecutive integers. Empty columns behind the last separators of all lines are no columns. A note states what
 //! was left out.
 //!
 //! **Readings.** The columns of frames have names of one family (module `column_names`), or match given patterns.
@@ -85,7 +85,11 @@ impl Table {
             notes: Vec::new(),
             separator,
         };
-        table.drop_empty_end();
+        if table.drop_empty_end() {
+            let note = "the lines end with a separator; no column follows it";
+            table.notes.push(format!("{}: {note}", table.place));
+            while table.drop_empty_end() {}
+        }
         table.check_widths()?;
         table.check_decimal_points()?;
         if table.has_header(n_rows) {
@@ -296,8 +300,9 @@ impl Table {
         Ok(())
     }
 
-    /// Removes the empty cell behind the last separator of all lines. The first line may have a name in its place, which makes it a column, or no cell.
-    fn drop_empty_end(&mut self) {
+    /// Removes the empty cell behind the last separator of all lines. The first line may have a name in its place, which makes it a column, or no cell. Returns
+    /// whether a cell was removed.
+    fn drop_empty_end(&mut self) -> bool {
         let is_empty = |(_, cells): &(usize, Vec<String>)| {
             cells.len() > 1 && cells.last().is_some_and(String::is_empty)
         };
@@ -313,14 +318,13 @@ impl Table {
         let n_shortened = match (is_of_header, is_of_all) {
             (true, _) => 1,
             (false, true) => self.rows.len(),
-            (false, false) => return,
+            (false, false) => return false,
         };
         let mut rows = self.rows.iter_mut().take(n_shortened);
         rows.by_ref().filter(|row| is_empty(row)).for_each(|row| {
             row.1.pop();
         });
-        let note = "the lines end with a separator; no column follows it";
-        self.notes.push(format!("{}: {note}", self.place));
+        true
     }
 
     fn check_widths(&self) -> Result<()> {
