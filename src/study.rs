@@ -8,8 +8,8 @@ pub use crate::inputs::content_hash::sha256;
 pub use crate::inputs::memory;
 pub use crate::inputs::npy::{write_integers, write_npy, write_texts};
 pub use crate::inputs::object_files::{
-    NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
-    load_spheres, objects_content, read_mesh, read_mesh_file,
+    NamedMesh, file_content, is_built_in, load_catalogue, load_mesh, load_named_meshes,
+    load_objects, load_spheres, objects_content, read_mesh, read_mesh_file,
 };
 pub use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
 pub use crate::inputs::packings::{Packed, pack_with, pack_within, packing_path};

@@ -8,6 +8,7 @@ use bubbletouch::recognition::classifiers::class_model::ClassModel;
 use bubbletouch::recognition::classifiers::linear_svm::{LinearSvm, LinearSvmParams};
 use bubbletouch::recognition::data::dataset::{Dataset, dataset};
 use bubbletouch::recognition::data::split::Split;
+use bubbletouch::recognition::svm::class_weight::ClassWeight;
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose};
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
@@ -109,6 +110,7 @@ struct SvmArguments {
     c: f64,
     tolerance: f64,
     multiclass: String,
+    is_balanced: bool,
     memory_bytes: usize,
 }
 
@@ -141,10 +143,18 @@ impl SvmArguments {
             kernel,
             multiclass,
             c: self.c,
+            class_weight: class_weight(self.is_balanced),
             tolerance: self.tolerance,
             memory_bytes: self.memory_bytes,
             ..SvmParams::default()
         })
+    }
+}
+
+fn class_weight(is_balanced: bool) -> ClassWeight {
+    match is_balanced {
+        true => ClassWeight::Balanced,
+        false => ClassWeight::Uniform,
     }
 }
 
@@ -249,7 +259,7 @@ impl KernelSvm {
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct LinearModel {
     svm: LinearSvm,
-    asked: (f64, f64, usize, u64),
+    asked: (f64, bool, f64, usize, u64),
     data: Arc<Dataset>,
 }
 
@@ -261,6 +271,7 @@ impl LinearModel {
         features: &Bound<PyAny>,
         labels: &Bound<PyAny>,
         c: f64,
+        is_balanced: bool,
         tolerance: f64,
         max_passes: i64,
         seed: u64,
@@ -270,6 +281,7 @@ impl LinearModel {
                 .map_err(|_| bad_input("max_iter", max_passes, "at least 1"))?;
             let params = LinearSvmParams {
                 c,
+                class_weight: class_weight(is_balanced),
                 tolerance,
                 max_passes,
             };
@@ -277,7 +289,7 @@ impl LinearModel {
             let (svm, data) = trained(features, labels, move |rows| {
                 Ok(params.train(rows, &seeded)?)
             })?;
-            let asked = (c, tolerance, max_passes, seed);
+            let asked = (c, is_balanced, tolerance, max_passes, seed);
             Ok(Self { svm, asked, data })
         })
     }
@@ -337,8 +349,16 @@ impl LinearModel {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let train = py.get_type::<Self>().getattr("train")?;
         let (features, labels) = arrays_of(py, &self.data);
-        let (c, tolerance, max_passes, seed) = &self.asked;
-        let given = (features, labels, c, tolerance, max_passes, seed);
+        let (c, is_balanced, tolerance, max_passes, seed) = &self.asked;
+        let given = (
+            features,
+            labels,
+            c,
+            is_balanced,
+            tolerance,
+            max_passes,
+            seed,
+        );
         Ok((train, given.into_pyobject(py)?))
     }
 }

@@ -24,8 +24,8 @@ from sklearn.utils.estimator_checks import parametrize_with_checks
 # The small, unscaled data of scikit-learn's checks causes this warning.
 pytestmark = pytest.mark.filterwarnings("ignore:.*stopped at max_iter = 1000")
 
-# Checks that are expected to fail: none.
-FAILING: dict[str, str] = {}
+# Checks that are expected to fail.
+FAILING: dict[str, str] = {"check_class_weight_classifiers": "class_weight is None or balanced, not a dict"}
 
 
 @parametrize_with_checks(
@@ -72,6 +72,30 @@ def test_the_linear_one_finds_what_liblinear_finds(data) -> None:  # type: ignor
     theirs = svm.LinearSVC(loss="hinge", tol=1e-8, max_iter=1_000_000).fit(features, labels)
     np.testing.assert_allclose(ours.coef_, theirs.coef_, atol=1e-3)
     np.testing.assert_allclose(ours.intercept_, theirs.intercept_, atol=1e-3)
+
+
+def test_balanced_classes_have_the_weights_of_scikit_learn(data) -> None:  # type: ignore[no-untyped-def]
+    features, labels = data
+    # 4 classes of unequal size; two of them for LinearSVC, whose rows of other classes have another weight in LIBLINEAR.
+    kept = np.arange(600) % (labels + 1) == 0
+    features, labels, rest = features[kept], labels[kept], features[~kept]
+    assert len(set(np.bincount(labels))) == 4
+    for kernel in ("linear", "rbf"):
+        keys = {"kernel": kernel, "tol": 1e-6, "class_weight": "balanced"}
+        ours = SVC(**keys).fit(features, labels)
+        theirs = svm.SVC(**keys, decision_function_shape="ovo").fit(features, labels)
+        np.testing.assert_allclose(ours.decision_values(rest), theirs.decision_function(rest), atol=2e-4)
+        assert not np.allclose(ours.decision_values(rest), SVC(kernel=kernel).fit(features, labels).decision_values(rest), atol=1e-2)
+        again = pickle.loads(pickle.dumps(ours))
+        np.testing.assert_array_equal(again.decision_values(rest), ours.decision_values(rest))
+    two = labels % 3 == 0
+    features, labels = features[two], labels[two]
+    ours = LinearSVC(tol=1e-8, max_iter=100_000, class_weight="balanced").fit(features, labels)
+    theirs = svm.LinearSVC(loss="hinge", tol=1e-8, max_iter=1_000_000, class_weight="balanced").fit(features, labels)
+    np.testing.assert_allclose(ours.decision_function(rest), theirs.decision_function(rest), atol=1e-4)
+    for estimator in (SVC(class_weight="even"), LinearSVC(class_weight="even")):
+        with pytest.raises(ValueError, match="class_weight: `even`; None or balanced"):
+            estimator.fit(features, labels)
 
 
 def test_names_are_classes_too(data) -> None:  # type: ignore[no-untyped-def]

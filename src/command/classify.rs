@@ -15,6 +15,7 @@ use bubbletouch::recognition::data::split::{Split, group_k_fold, stratified_k_fo
 use bubbletouch::recognition::statistics::grouped::{
     FEW_GROUPS, GroupedTest, count_groups, interval_of,
 };
+use bubbletouch::recognition::svm::class_weight::ClassWeight;
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen};
 use bubbletouch::recognition::svm::{Multiclass, Solver};
 use bubbletouch::recognition::{ClassifierKind, ModelFile};
@@ -45,7 +46,7 @@ pub struct Args {
     /// Apply the trained classifier that --save wrote
     ///
     /// The test rows are predicted, or all rows if the folder has no test rows. With labels, the accuracy is printed.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["classifier", "groups", "c", "c_grid", "gamma_grid", "cv_folds", "solver", "multiclass", "tolerance", "train_rows", "save"], help_heading = "Input")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["classifier", "groups", "c", "c_grid", "gamma_grid", "cv_folds", "class_weight", "solver", "multiclass", "tolerance", "train_rows", "save"], help_heading = "Input")]
     model: Option<PathBuf>,
     /// Read the group of every row (pose, grasp, day, …)
     ///
@@ -77,6 +78,9 @@ pub struct Args {
     /// Use K folds [default: 5]
     #[arg(long, value_name = "K", help_heading = "Cross-validation")]
     cv_folds: Option<usize>,
+    /// Weigh the classes: uniform, or balanced by their number of rows [default: uniform]
+    #[arg(long, value_name = "HOW", value_parser = word::<ClassWeight>, help_heading = "Classifier")]
+    class_weight: Option<ClassWeight>,
     /// Train an SVM by smo or coordinate_descent [default: smo]
     #[arg(long, value_name = "NAME", value_parser = word::<Solver>, help_heading = "Classifier")]
     solver: Option<Solver>,
@@ -148,6 +152,8 @@ struct Findings {
     /// Multi-class strategy; `None` for classifiers other than kernel SVMs.
     multiclass: Option<Multiclass>,
     scaling: Scaling,
+    /// Weights of the classes; `None` for classifiers without.
+    class_weight: Option<ClassWeight>,
     /// Solver that trained the SVM; `None` for classifiers other than kernel SVMs.
     solver: Option<Solver>,
     /// Penalty C that was used; `None` for classifiers without C.
@@ -207,17 +213,18 @@ pub fn classify(args: &Args) -> Result<()> {
         Some(path) => set.with_groups(path)?,
     };
     let (findings, predicted, classifier) = args.train_and_test(kind, &set)?;
-    if let Some(path) = &args.predictions {
-        write_predictions(path, &set.classes, &predicted)?;
-    }
+    // A kind of classifier that cannot be saved is refused before other files are written.
     if let Some(path) = &args.save {
-        let classes = set.classes;
+        let classes = set.classes.clone();
         let file = ModelFile {
             kind,
             classes,
             classifier,
         };
         file.write(path)?;
+    }
+    if let Some(path) = &args.predictions {
+        write_predictions(path, &set.classes, &predicted)?;
     }
     match args.json {
         true => {
@@ -337,6 +344,7 @@ impl Args {
             classifier: kind,
             multiclass: is_svm.then_some(classifier.multiclass),
             scaling: self.scaling,
+            class_weight: kind.uses("class_weight").then_some(classifier.class_weight),
             solver: is_svm.then_some(classifier.solver),
             c: trained.c(),
             chosen: trained.chosen().cloned(),
@@ -386,6 +394,7 @@ impl Args {
             ("c", self.c.is_some()),
             ("c_grid", chooses),
             ("gamma_grid", chooses_gamma),
+            ("class_weight", self.class_weight.is_some()),
             ("multiclass", self.multiclass.is_some()),
             ("solver", self.solver.is_some()),
             ("tolerance", self.tolerance.is_some()),
@@ -404,6 +413,7 @@ impl Args {
         Ok(Classifier {
             scaling: self.scaling,
             multiclass: self.multiclass.unwrap_or(usual.multiclass),
+            class_weight: self.class_weight.unwrap_or(usual.class_weight),
             solver: self.solver.unwrap_or(usual.solver),
             c: match &self.c_grid[..] {
                 [] => Cost::Fixed(self.c.unwrap_or(1.0)),

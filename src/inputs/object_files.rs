@@ -78,7 +78,7 @@ pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
     let mut content = BTreeMap::new();
     for set in &spec.sets {
         for entry in set_entries(set, spec.names.as_deref())? {
-            content.insert(entry.name, sha256(format!("{:?}", entry.solid)));
+            content.insert(entry.name.clone(), solid_content(&entry));
         }
     }
     if let Some(folder) = &spec.meshes {
@@ -87,6 +87,21 @@ pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
         }
     }
     Ok(content)
+}
+
+/// Returns the SHA-256 hash of a solid. Other versions of the program may compute another hash.
+fn solid_content(entry: &Entry) -> String {
+    sha256(format!("{:?}", entry.solid))
+}
+
+/// Returns whether an object with this name and SHA-256 hash is a built-in object of this version of the program.
+///
+/// # Errors
+/// If the built-in catalogue cannot be read.
+pub fn is_built_in(name: &str, hash: &str) -> Result<bool> {
+    let builtin = Catalogue::builtin()?;
+    let mut entries = builtin.entries().iter();
+    Ok(entries.any(|entry| entry.name == name && solid_content(entry) == hash))
 }
 
 /// Returns the SHA-256 hash of a file's content.

@@ -410,6 +410,13 @@ fn objects_that_changed_after_the_run_are_refused() {
     };
     case.file("meshes/small.obj", tetrahedron(0.031));
     refused("found: object small: was changed after the run");
+    // The file is compared with the run of another version of the program, too.
+    let manifest = fs::read_to_string(case.path("found/manifest.json")).unwrap();
+    let source = manifest.lines().find(|line| line.contains("\"source\": "));
+    let other = manifest.replace(source.unwrap(), "  \"source\": \"other\",");
+    fs::write(case.path("found/manifest.json"), &other).unwrap();
+    refused("found: object small: was changed after the run");
+    fs::write(case.path("found/manifest.json"), manifest).unwrap();
     case.file("meshes/small.obj", tetrahedron(0.03));
     case.file("meshes/third.obj", tetrahedron(0.05));
     refused("found: object third: is not in the run");

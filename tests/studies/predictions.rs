@@ -2,7 +2,7 @@
 
 use crate::command::Case;
 use crate::recorded_sensors::{SKIN, planned};
-use crate::study::Study;
+use crate::study::{Study, small_study};
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{write_integers, write_npy};
@@ -12,20 +12,12 @@ use ndarray_npy::{NpzWriter, read_npy};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 
-const STUDY: &str = r#"
-question = "Which touches are recognised as what?"
+const STUDY: &str = small_study!(
+    r#"question = "Which touches are recognised as what?"
 trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "bowl"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 64.0
-stroke_mm = 5.0
-
+"#,
+    r#"["mug", "banana", "scissors", "bowl"]"#,
+    r#"
 [touches]
 per_object = 24
 offset_x_mm = { uniform = [-10.0, 10.0] }
@@ -42,7 +34,8 @@ measurements = 6
 classifier = ["linear_svm", "rbf_svm", "nearest_centroid", "naive_bayes", "logistic_regression", "k_nearest", "random_forest"]
 class_imbalance = 3.0
 touches_per_decision = [1, 3]
-"#;
+"#
+);
 
 const REPORT: &str = r#"
 [report]
@@ -176,6 +169,22 @@ fn a_folder_gives_the_predictions_that_were_written() {
             (&made[file].csv, made[file].n_rows)
         );
         assert_eq!(read.columns, made[file].columns);
+    }
+}
+
+#[test]
+fn merged_shards_give_the_predictions_of_one_run() {
+    let case = Case::new();
+    case.file("study.toml", format!("{STUDY}{REPORT}"));
+    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    for shard in ["1/2", "2/2"] {
+        case.succeeds(&["run", "study.toml", "--out", "parts", "--shard", shard]);
+    }
+    case.succeeds(&["merge", "study.toml", "--out", "parts"]);
+    for file in ["predictions.csv", "recall.csv"] {
+        let [whole, parts] =
+            ["whole", "parts"].map(|folder| std::fs::read(case.path(folder).join(file)).unwrap());
+        assert!(!whole.is_empty() && whole == parts, "{file}");
     }
 }
 

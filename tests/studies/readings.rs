@@ -1,7 +1,7 @@
 //! Several readings of each training touch, each with its own noise.
 
 use crate::standard_errors::{assert_expected, of_std};
-use crate::study::laid_out;
+use crate::study::{laid_out, small_study};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost};
@@ -10,20 +10,12 @@ use bubbletouch::study::progress::Silent;
 use ndarray::{Axis, s};
 use std::collections::BTreeSet;
 
-const STUDY: &str = r#"
-question = "What does another reading bring?"
+const STUDY: &str = small_study!(
+    r#"question = "What does another reading bring?"
 trials = 1
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 64.0
-stroke_mm = 5.0
-
+"#,
+    r#"["mug", "banana", "scissors", "power_drill", "fork", "bowl"]"#,
+    r#"
 [touches]
 per_object = 20
 offset_x_mm = { uniform = [-10.0, 10.0] }
@@ -39,7 +31,8 @@ ensemble = "identity"
 [recognition]
 classifier = "linear_svm"
 c = 0.1
-"#;
+"#
+);
 
 fn with(keys: &str) -> String {
     format!("{STUDY}{keys}\n")

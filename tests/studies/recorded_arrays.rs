@@ -247,11 +247,33 @@ fn labels_of_every_form_are_the_same_classes() {
         let words = "key recorded.names: no name \"ball\"; each text of ";
         assert!(said.contains(words), "{said}");
     }
-    let found = study(&keys(folder, "frames.npy", "any.npy")).unwrap();
-    assert_eq!(
-        found.first().touched.class_names(),
-        ["class -70", "class 30", "class 130"]
-    );
+    let class_names = |name: &str| {
+        let found = study(&keys(folder, "frames.npy", name)).unwrap();
+        let names = found.first().touched.class_names();
+        names.into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let expected = ["class -70", "class 30", "class 130"];
+    assert_eq!(class_names("any.npy"), expected);
+    let lines = |texts: [&[u8]; 3]| {
+        let lines = labels.iter().map(|&label| [texts[label], b"\n"].concat());
+        lines.collect::<Vec<_>>().concat()
+    };
+    case.file("latin1.csv", lines([b"caf\xe9", b"th\xe9", b"ma\xdf"]));
+    assert_eq!(class_names("latin1.csv"), ["café", "thé", "maß"]);
+    case.file("padded.csv", lines([b"007", b"7", b"8"]));
+    assert_eq!(class_names("padded.csv"), ["007", "7", "8"]);
+    // 2⁵³ + 1 is no number of f64, and would be the class 2⁵³.
+    case.file("large.csv", lines([b"1", b"9007199254740993", b"2"]));
+    let large = labels.iter().map(|&label| (1 << 53) + label);
+    write_integers(&case.path("large.npy"), large).unwrap();
+    for (name, position) in [("large.csv", 20), ("large.npy", 0)] {
+        let said = error(&keys(folder, "frames.npy", name));
+        let place = format!("{name}, position {position}: 9007199254740992; one class");
+        assert!(
+            said.contains(&place) && said.contains("below 2^53"),
+            "{said}"
+        );
+    }
 }
 
 /// Writes a `.npz` archive of `.npy` files, stored or compressed.
@@ -325,8 +347,13 @@ fn an_offset_is_subtracted_before_it_costs_digits() {
         &frames().mapv(|reading| reading + 1e8),
     )
     .unwrap();
-    let keys = keys(folder, "offset.npy", "labels.npy") + "zero = 1e8\nfull_scale = 100000001.5";
+    let offset = keys(folder, "offset.npy", "labels.npy");
+    let keys = offset.clone() + "zero = 1e8\nfull_scale = 100000001.5";
     assert_eq!(scores(&keys), usual);
+    // Frames are kept in single precision, whose numbers are 8 apart here.
+    let said = error(&(offset + "full_scale = 100000001.5"));
+    let words = "far from recorded.zero: single precision would round their changes off; recorded.zero = the reading of an untouched taxel";
+    assert!(said.contains(words), "{said}");
 }
 
 #[test]

@@ -194,6 +194,10 @@ fn every_reader_finds_the_readings_of_tables_of_pandas_and_of_loggers() {
             table("s0,s1,s2,s3,,", |_, cells| format!("{cells},,")),
         ),
         (
+            "two commas at the end of each line but of the header",
+            table("s0,s1,s2,s3", |_, cells| format!("{cells},,")),
+        ),
+        (
             "a comma at the end of the header",
             table("s0,s1,s2,s3,", plain),
         ),

@@ -2,7 +2,7 @@
 
 use crate::command::Case;
 use crate::kinds::Kind;
-use crate::study::{Study, trials_of};
+use crate::study::{Study, small_study, trials_of};
 use bubbletouch::study::{sample_frames, simulate_array};
 use std::fs;
 
@@ -30,20 +30,12 @@ fn another_seed_is_another_experiment_and_the_study_that_it_wrote_down_repeats_i
 }
 
 /// Study with one configuration per ensemble; the tests add values to its axes.
-const NARROW: &str = r#"
-question = "What does a configuration depend on?"
+const NARROW: &str = small_study!(
+    r#"question = "What does a configuration depend on?"
 trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 64.0
-stroke_mm = 5.0
-
+"#,
+    r#"["mug", "banana", "scissors", "power_drill"]"#,
+    r#"
 [touches]
 per_object = 24
 offset_x_mm = { uniform = [-10.0, 10.0] }
@@ -62,7 +54,8 @@ ratio = 16
 classifier = "linear_svm"
 c = 1.0
 train_touches = 12
-"#;
+"#
+);
 
 #[test]
 fn a_cell_does_not_depend_on_the_other_cells_of_its_study() {

@@ -20,13 +20,19 @@ pub enum ClassWeight {
 impl ClassWeight {
     /// Returns the weight of each class, shape (n_classes,), given the class of each training row as an index.
     pub fn of_classes(self, label: &[usize], n_classes: usize) -> Array1<f64> {
-        match self {
-            Self::Uniform => Array1::ones(n_classes),
-            Self::Balanced => {
-                let mut counts = Array1::zeros(n_classes);
-                label.iter().for_each(|&class| counts[class] += 1.0);
-                (label.len() as f64 / n_classes as f64) / counts
-            }
+        let mut sizes = vec![0; n_classes];
+        label.iter().for_each(|&class| sizes[class] += 1);
+        self.of_sizes(sizes)
+    }
+
+    /// Returns the weight of each class, shape (n_classes,), given its number of training rows. A class without training rows does not count.
+    pub(crate) fn of_sizes(self, sizes: impl IntoIterator<Item = usize>) -> Array1<f64> {
+        let sizes = Array1::from_iter(sizes);
+        if self == Self::Uniform {
+            return Array1::ones(sizes.len());
         }
+        let n_classes = sizes.iter().filter(|&&n| n > 0).count();
+        let mean = sizes.sum() as f64 / n_classes as f64;
+        sizes.mapv(|n| if n > 0 { mean / n as f64 } else { 0.0 })
     }
 }

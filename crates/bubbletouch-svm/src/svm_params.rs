@@ -7,6 +7,7 @@ use linfa::traits::Fit;
 use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
 
+use crate::class_weight::ClassWeight;
 use crate::dataset::{Dataset, check_labels, distinct};
 use crate::gram::sorted::Sorted;
 use crate::kernel::{Kernel, KernelFunction};
@@ -16,7 +17,7 @@ use crate::predict::decision::DecisionFunctions;
 use crate::predict::svm_model::{Decision, SvmModel};
 use crate::row_statistics::RowStatistics;
 use crate::smo::SolverScalar;
-use crate::training::Goal;
+use crate::training::{Goal, KernelStorage, Stored};
 use crate::{Error, Result};
 
 /// Solver that trains the binary classifiers of an SVM.
@@ -51,6 +52,9 @@ pub struct SvmParams {
     /// Penalty C > 0 per unit of margin violation. With a larger C, the training rows are fitted more closely, and training takes longer. The solver of a
     /// binary problem stops after 10 million iterations, or 100 per row if that is more.
     pub c: f64,
+    /// Weights of the classes: the penalty of a row is C times the weight of its class among all training rows. LIBLINEAR's one-vs-rest differs: rows of the
+    /// other classes have the weight 1 there.
+    pub class_weight: ClassWeight,
     /// Stopping tolerance, above 0: the largest violation of the optimality (KKT) conditions, in units of the decision value. LIBSVM's default is 1e-3.
     pub tolerance: f64,
     /// Solver that trains the binary classifiers.
@@ -67,6 +71,7 @@ impl Default for SvmParams {
             kernel: Kernel::Linear,
             multiclass: Multiclass::OneVsOne,
             c: 1.0,
+            class_weight: ClassWeight::Uniform,
             tolerance: 1e-3,
             solver: Solver::Smo,
             memory_bytes: DEFAULT_MEMORY_BYTES,
@@ -133,31 +138,31 @@ impl SvmParams {
     fn train_smo(&self, sorting: Sorting, goal: Goal) -> Vec<SvmModel> {
         let (data, classes, kernel, centre) = sorting;
         let n_rows = data.records.nrows();
-        if !self.needs_double(n_rows, kernel, goal.path, 0.0) {
-            let sorted = Sorted::<f32>::new(data, classes, kernel, centre);
-            if !self.needs_double(n_rows, kernel, goal.path, sorted.farthest()) {
+        if !self.needs_double(n_rows, kernel, goal.path, (0.0, 1.0)) {
+            let sorted =
+                Sorted::<f32>::new(data, classes, kernel, centre).weighted(self.class_weight);
+            if !self.needs_double(n_rows, kernel, goal.path, sorted.farthest_and_heaviest()) {
                 return self.solve_sorted(sorted, goal);
             }
         }
-        let sorted = Sorted::<f64>::new(data, classes, kernel, centre);
+        let sorted = Sorted::<f64>::new(data, classes, kernel, centre).weighted(self.class_weight);
         self.solve_sorted(sorted, goal)
     }
 
     /// Returns whether kernel values must be computed in f64, depending on the number of rows, the tolerance and the penalty. The largest squared distance of a
-    /// row from the centre is `farthest`.
+    /// row from the centre is `farthest`, and the largest weight of a class is `heaviest`.
     pub(crate) fn needs_double(
         &self,
         n_rows: usize,
         kernel: KernelFunction,
         path: &[f64],
-        farthest: f64,
+        (farthest, heaviest): (f64, f64),
     ) -> bool {
         let Some(largest) = kernel.largest_in_single(farthest) else {
             return true;
         };
-        let c = path.iter().copied().fold(0.0, f64::max);
-        n_rows < SINGLE_FROM_ROWS
-            || self.tolerance < SINGLE_TOLERANCE
+        let c = heaviest * path.iter().copied().fold(0.0, f64::max);
+        self.scalar_bytes(n_rows) == size_of::<f64>()
             || c * largest > SINGLE_MOST
             || largest > SINGLE_MOST
     }
@@ -180,6 +185,43 @@ impl SvmParams {
             last.map(|trained| SvmModel::new(Cow::Owned(sorted), self.multiclass, trained)),
         );
         models
+    }
+
+    /// Estimates the size of the kernel values in memory while the SVM is trained on classes of equal size, bytes. For the choice of C and γ by cross-validation,
+    /// see [`choice_bytes`](Self::choice_bytes).
+    pub fn kernel_bytes(&self, n_rows: usize, n_classes: usize, n_features: usize) -> usize {
+        let start = |class: usize| class * n_rows / n_classes.max(1);
+        let ranges: Vec<_> = (0..n_classes)
+            .map(|class| start(class)..start(class + 1))
+            .collect();
+        let storage = KernelStorage {
+            multiclass: self.multiclass,
+            is_linear: self.kernel == Kernel::Linear,
+            n_features,
+            ranges: &ranges,
+        };
+        let stored = match self.scalar_bytes(n_rows) {
+            4 => storage.within::<f32>(self.memory_bytes),
+            _ => storage.within::<f64>(self.memory_bytes),
+        };
+        match stored {
+            Stored::NearMargin(bytes) | Stored::Whole(bytes) => bytes,
+            Stored::Rows => self.memory_bytes,
+        }
+    }
+
+    /// Estimates the size of the kernel values in memory while C and γ are chosen by cross-validation, bytes: the products, the kernel values, and the part of
+    /// a fold's training rows.
+    pub fn choice_bytes(&self, n_rows: usize) -> usize {
+        3 * n_rows * n_rows * self.scalar_bytes(n_rows)
+    }
+
+    /// Returns the size of a kernel value, bytes, unless large features or penalties need f64.
+    fn scalar_bytes(&self, n_rows: usize) -> usize {
+        match n_rows < SINGLE_FROM_ROWS || self.tolerance < SINGLE_TOLERANCE {
+            true => size_of::<f64>(),
+            false => size_of::<f32>(),
+        }
     }
 
     /// Checks the parameters; returns an error if they are invalid for every data set.

@@ -19,6 +19,7 @@ use crate::gram::sorted::Sorted;
 use crate::gram::sorted::pairs;
 use crate::kernel::KernelFunction;
 use crate::linalg::transposed::write_columns;
+use crate::multiclass::Multiclass;
 use crate::screening::first_rows::{PairsNearMargin, few_dimensions};
 use crate::screening::near_margin::NearMargin;
 use crate::smo::Smo;
@@ -47,34 +48,71 @@ pub(crate) struct Goal<'a> {
     pub memory: usize,
 }
 
+/// Sizes of a training set, which determine the kernel values that training stores.
+pub(crate) struct KernelStorage<'a> {
+    pub multiclass: Multiclass,
+    pub is_linear: bool,
+    pub n_features: usize,
+    /// Range of each class's rows, sorted by class.
+    pub ranges: &'a [Range<usize>],
+}
+
+/// Kernel values that training stores at one time, with their size in bytes.
+pub(crate) enum Stored {
+    /// Values of rows near the decision boundaries.
+    NearMargin(usize),
+    /// All values of each group of classes, or of all rows.
+    Whole(usize),
+    /// Values of the most recent rows, within the memory limit.
+    Rows,
+}
+
+impl KernelStorage<'_> {
+    /// Returns the kernel values that training stores within a memory limit, bytes. Screening (training on the rows near the decision boundaries) is used if it
+    /// is faster than computing the inner products of all rows.
+    pub fn within<T: SolverScalar>(&self, memory: usize) -> Stored {
+        let n_rows = self.ranges.last().map_or(0, |last| last.end);
+        let whole = match self.multiclass {
+            Multiclass::OneVsOne => {
+                let is_worth_screening = self.is_linear
+                    && self.n_features >= SCREENING_FROM_FEATURES
+                    && n_rows >= SCREENING_FROM_ROWS * self.ranges.len();
+                let most = NearMargin::<T>::most_bytes(self.ranges, self.n_features);
+                if is_worth_screening && most <= memory {
+                    return Stored::NearMargin(most);
+                }
+                let largest = self.ranges.iter().map(Range::len).max().unwrap_or(0);
+                Group::<T>::bytes(self.ranges) + Dense::<T>::bytes(2 * largest)
+            }
+            // Two copies are in memory: the matrix product, and the padded matrix of the solver.
+            Multiclass::OneVsRest => 2 * Dense::<T>::bytes(n_rows),
+        };
+        match whole <= memory {
+            true => Stored::Whole(whole),
+            false => Stored::Rows,
+        }
+    }
+}
+
 impl<T: SolverScalar> Sorted<T> {
+    fn storage(&self, multiclass: Multiclass) -> KernelStorage<'_> {
+        KernelStorage {
+            multiclass,
+            is_linear: self.kernel() == KernelFunction::Linear,
+            n_features: self.centre().len(),
+            ranges: self.ranges(),
+        }
+    }
+
     /// Solves the binary problem of every pair of classes. Returns, for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
     pub fn one_vs_one(&self, goal: Goal) -> Vec<Trained<T>> {
-        if self.is_worth_screening(goal.memory) {
-            return self.pairs_near_margin(goal);
-        }
         let mut problems = vec![Vec::new(); goal.path.len()];
-        if self.fits(goal.memory) {
-            self.pairs_from_blocks(goal, &mut problems);
-        } else {
-            self.pairs_from_rows(goal, &mut problems);
+        match self.storage(Multiclass::OneVsOne).within::<T>(goal.memory) {
+            Stored::NearMargin(_) => return self.pairs_near_margin(goal),
+            Stored::Whole(_) => self.pairs_from_blocks(goal, &mut problems),
+            Stored::Rows => self.pairs_from_rows(goal, &mut problems),
         }
         without_normals(problems)
-    }
-
-    /// Returns whether the kernel values for one-vs-one training fit into memory: blocks within and between groups of classes, and the largest pair.
-    fn fits(&self, memory: usize) -> bool {
-        let largest = self.ranges().iter().map(Range::len).max().unwrap_or(0);
-        Group::bytes(self, &groups(self.ranges())) + Dense::<T>::bytes(2 * largest) <= memory
-    }
-
-    /// Returns whether screening (training on the rows near the decision boundaries) is faster than computing the inner products of all rows.
-    fn is_worth_screening(&self, memory: usize) -> bool {
-        let most = || NearMargin::most_bytes(self);
-        self.kernel() == KernelFunction::Linear
-            && self.centre().len() >= SCREENING_FROM_FEATURES
-            && self.points().len() >= SCREENING_FROM_ROWS * self.ranges().len()
-            && most() <= memory
     }
 
     fn pairs_near_margin(&self, goal: Goal) -> Vec<Trained<T>> {
@@ -157,10 +195,12 @@ impl<T: SolverScalar> Sorted<T> {
         let n_first = self.ranges()[a].len();
         let mut labels = vec![1.0; n_first];
         labels.resize(gram.len(), -1.0);
+        let mut limits = vec![self.weights()[a]; n_first];
+        limits.resize(gram.len(), -self.weights()[b]);
         let sides = (self.classes()[a], Some(self.classes()[b]));
         self.solve(
             gram,
-            (&labels, &self.pair_rows(a, b)),
+            (&labels, &limits, &self.pair_rows(a, b)),
             sides,
             goal,
             problems,
@@ -170,8 +210,8 @@ impl<T: SolverScalar> Sorted<T> {
     /// Solves one binary problem for each class, which separates the class from all others. Returns, for each C of the path, one problem per class.
     pub fn one_vs_rest(&self, goal: Goal) -> Vec<Trained<T>> {
         let mut problems = vec![Vec::new(); goal.path.len()];
-        // Two copies are in memory: the matrix product, and the padded matrix of the solver.
-        if 2 * Dense::<T>::bytes(self.points().len()) <= goal.memory {
+        let storage = self.storage(Multiclass::OneVsRest);
+        if let Stored::Whole(_) = storage.within::<T>(goal.memory) {
             let all = self.points().all();
             let mut gram = Dense::default();
             gram.of_whole(all.own_kernel(&self.kernel()).view());
@@ -193,7 +233,13 @@ impl<T: SolverScalar> Sorted<T> {
         for (range, &class) in self.ranges().iter().zip(self.classes()) {
             let mut labels = vec![-1.0; rows.len()];
             labels[range.clone()].fill(1.0);
-            self.solve(gram, (&labels, &rows), (class, None), goal, problems);
+            let mut limits = labels.clone();
+            for (range, weight) in self.ranges().iter().zip(self.weights()) {
+                let limits = limits[range.clone()].iter_mut();
+                limits.for_each(|limit| *limit *= weight);
+            }
+            let sides = (class, None);
+            self.solve(gram, (&labels, &limits, &rows), sides, goal, problems);
             // Restores the order of the training rows, which is common to all these problems.
             for problem in problems.iter_mut().filter_map(|path| path.last_mut()) {
                 let mut coefficients = vec![0.0; rows.len()];
@@ -206,16 +252,16 @@ impl<T: SolverScalar> Sorted<T> {
         }
     }
 
-    /// Solves one binary problem on the given sorted rows for each value of the penalty C.
+    /// Solves one binary problem on the given sorted rows, with their labels and limits, for each value of the penalty C.
     fn solve<G: Gram<T>>(
         &self,
         gram: &mut G,
-        (labels, rows): (&[f64], &[usize]),
+        (labels, limits, rows): (&[f64], &[f64], &[usize]),
         sides: (usize, Option<usize>),
         goal: Goal,
         problems: &mut [Vec<BinaryProblem>],
     ) {
-        let mut smo = Smo::new(gram, labels);
+        let mut smo = Smo::new(gram, labels).with_limits(limits);
         for (&c, problems) in goal.path.iter().zip(problems) {
             let solution = smo.solve(c, goal.tolerance);
             problems.push(self.problem(rows, sides, solution));

@@ -1240,6 +1240,7 @@ class LinearModel:
         features: ArrayLike,
         labels: ArrayLike,
         c: float,
+        is_balanced: bool,
         tolerance: float,
         max_passes: int,
         seed: int,

@@ -4,13 +4,14 @@ If scikit-learn is installed (`pip install 'bubbletouch[learning]'`), the classe
 and scores. Without scikit-learn they can be trained, used for prediction and pickled. Features should have similar scales: apply StandardScaler
 first.
 
-Differences from scikit-learn: there are no class or sample weights. `SVC` needs 4 · n_rows² to 8 · n_rows² bytes, at most `max_memory`; with less
+Differences from scikit-learn: there are no sample weights, and `class_weight` is None or "balanced". `SVC` needs 4 · n_rows² to 8 · n_rows² bytes, at most `max_memory`; with less
 memory, training is slower. Pickling a trained model stores its training rows; unpickling trains the model again. The unpickled model is bitwise
 equal, and unpickling takes as long as training.
 """
 
 from __future__ import annotations
 
+import inspect
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, cast
@@ -70,6 +71,13 @@ class _Classifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
             warnings.warn(said, ConvergenceWarning, stacklevel=3)
 
 
+def _is_balanced(class_weight: str | None) -> bool:
+    """Returns whether the classes have balanced weights. Raises ValueError for other weights."""
+    if class_weight not in (None, "balanced"):
+        raise ValueError(f"class_weight: `{class_weight}`; None or balanced")
+    return class_weight is not None
+
+
 class SVC(_Classifier):
     """Support vector machine with a kernel.
 
@@ -77,6 +85,7 @@ class SVC(_Classifier):
     kernel: rbf, laplacian (slower), linear or poly (with `degree` and `coef0`).
     gamma: "scale" (1 / (n_features · var X), for laplacian 1 / (n_features · std X)), "auto" (1 / n_features) or a number above 0.
     tol: allowed violation of the optimality conditions, in units of the decision value, above 0.
+    class_weight: "balanced" multiplies C for each row by n_rows / (n_classes · number of rows of its class), as in scikit-learn. Default: None.
     multi_class: "ovo" (one-vs-one: each pair of classes votes; the lowest class wins a tie, as in LIBSVM) or "ovr" (one-vs-rest).
     max_memory: maximum size of the stored kernel values, bytes.
 
@@ -98,6 +107,7 @@ class SVC(_Classifier):
         gamma: str | float = "scale",
         coef0: float = 0.0,
         tol: float = 1e-3,
+        class_weight: str | None = None,
         multi_class: str = "ovo",
         max_memory: int = 2 << 30,
     ) -> None:
@@ -107,6 +117,7 @@ class SVC(_Classifier):
         self.gamma = gamma
         self.coef0 = coef0
         self.tol = tol
+        self.class_weight = class_weight
         self.multi_class = multi_class
         self.max_memory = max_memory
 
@@ -129,6 +140,7 @@ class SVC(_Classifier):
             "c": real("C", self.C, above=0),
             "tolerance": real("tol", self.tol, above=0),
             "multiclass": self.multi_class,
+            "is_balanced": _is_balanced(self.class_weight),
             "memory_bytes": whole("max_memory", self.max_memory, least=0),
         }
 
@@ -188,6 +200,8 @@ class LinearSVC(_Classifier):
 
     C: penalty per unit of margin violation (hinge loss), above 0.
     tol: spread of the projected gradients at which the solver stops, above 0.
+    class_weight: "balanced" multiplies C for each row by n_rows / (n_classes · number of rows of its class). With three or more classes, scikit-learn
+    differs: rows of the other classes have the weight 1 there. Default: None.
     max_iter: maximum number of passes over the rows, at least 1.
     random_state: seed of the order in which rows are visited. Default: 0.
 
@@ -207,11 +221,13 @@ class LinearSVC(_Classifier):
         C: float = 1.0,
         *,
         tol: float = 1e-3,
+        class_weight: str | None = None,
         max_iter: int = 1000,
         random_state: int | None = None,
     ) -> None:
         self.C = C
         self.tol = tol
+        self.class_weight = class_weight
         self.max_iter = max_iter
         self.random_state = random_state
 
@@ -225,6 +241,7 @@ class LinearSVC(_Classifier):
             features,
             numbers,
             real("C", self.C, above=0),
+            _is_balanced(self.class_weight),
             real("tol", self.tol, above=0),
             whole("max_iter", self.max_iter, least=1),
             seed,
@@ -337,4 +354,4 @@ def _row_numbers(name: str, rows: ArrayLike, n_rows: int) -> NDArray[np.int64]:
     return chosen
 
 
-_SVC_NAMES = ("C", "kernel", "degree", "gamma", "coef0", "tol", "multi_class", "max_memory")
+_SVC_NAMES = tuple(inspect.signature(SVC).parameters)

@@ -2,8 +2,8 @@
 
 use crate::command::terminal::output::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};
-use bubbletouch::study::file_content;
 use bubbletouch::study::provenance::{Manifest, SOURCE};
+use bubbletouch::study::{file_content, is_built_in};
 use bubbletouch::{Error, Result};
 use std::path::Path;
 
@@ -56,21 +56,20 @@ pub fn load_study(
         ..Source::of_results(folder)?
     })?;
     let objects = &study.identity().objects;
-    // Other versions of the program may hash built-in objects in another way.
-    let comparable = manifest.filter(|of| of.source == SOURCE);
-    let of_run = comparable.map_or(objects, |of| &of.objects_sha256);
-    let mut names = of_run.keys().chain(objects.keys());
-    match names.find(|name| of_run.get(*name) != objects.get(*name)) {
-        None => Ok(study),
-        Some(name) => {
-            let given = match (of_run.get(name), objects.get(name)) {
-                (None, _) => "is not in the run",
-                (_, None) => "is missing",
-                _ => "was changed after the run",
-            };
-            let allowed = "the object that manifest.json names by its SHA-256";
-            let place = format!("{}: object {name}", folder.display());
-            Err(Error::input(place, given, allowed))
-        }
+    let of_run = manifest.map_or(objects, |of| &of.objects_sha256);
+    let is_same_version = manifest.is_none_or(|of| of.source == SOURCE);
+    for name in of_run.keys().chain(objects.keys()) {
+        let given = match (of_run.get(name), objects.get(name)) {
+            (before, now) if before == now => continue,
+            // A built-in object belongs to the version of the program.
+            (_, Some(now)) if !is_same_version && is_built_in(name, now)? => continue,
+            (None, _) => "is not in the run",
+            (_, None) => "is missing",
+            _ => "was changed after the run",
+        };
+        let allowed = "the object that manifest.json names by its SHA-256";
+        let place = format!("{}: object {name}", folder.display());
+        return Err(Error::input(place, given, allowed));
     }
+    Ok(study)
 }

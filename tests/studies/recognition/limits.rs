@@ -43,6 +43,7 @@ fn primal_linear_svms_close_their_gap_or_are_counted_as_capped_at_any_c() {
                 c: 10f64.powi(exponent),
                 tolerance: 0.01,
                 max_passes: 1000,
+                ..LinearSvmParams::default()
             };
             let svm = params.train(data, &Seed::new(5)).unwrap();
             let case = format!("{name}, C = 1e{exponent}");

@@ -73,6 +73,7 @@ impl HeldOut<'_> {
                     c: C / features.ncols() as f64,
                     tolerance: TOLERANCE,
                     max_passes: MAX_PASSES,
+                    ..LinearSvmParams::default()
                 };
                 let model = params.train(&dataset(features, labels)?, seed)?;
                 let values = match tested.nrows() {

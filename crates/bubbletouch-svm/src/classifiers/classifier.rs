@@ -56,7 +56,7 @@ pub struct Classifier {
     pub solver: Solver,
     /// Penalty C: a fixed value, or candidate values from which it is chosen.
     pub c: Cost,
-    /// Weights of the classes in training; logistic regression and random forests have them.
+    /// Weights of the classes in training; SVMs, logistic regression and random forests have them.
     pub class_weight: ClassWeight,
     /// Values of the parameters that the kind of classifier declares; see [`with`](Self::with).
     pub parameters: Parameters,
@@ -286,10 +286,26 @@ impl Classifier {
             kernel,
             multiclass: self.multiclass,
             c,
+            class_weight: self.class_weight,
             tolerance: self.tolerance,
             solver: self.solver,
             memory_bytes: self.memory_bytes,
         })
+    }
+
+    /// Estimates the size of the kernel values in memory while the classifier is trained on classes of equal size, bytes. C is chosen on `n_choice` rows, or on
+    /// none if it is given. Classifiers other than kernel SVMs store no kernel values.
+    pub fn kernel_bytes(
+        &self,
+        [n_rows, n_choice]: [usize; 2],
+        n_classes: usize,
+        n_features: usize,
+    ) -> usize {
+        let bytes = |params: SvmParams| {
+            let trained = params.kernel_bytes(n_rows, n_classes, n_features);
+            trained.max(params.choice_bytes(n_choice))
+        };
+        self.kernel_svm(1.0).map_or(0, bytes)
     }
 
     /// Checks that the parameters allow training on `n_rows` rows.

@@ -51,6 +51,7 @@ impl ClassifierAbout {
     ) -> Self {
         Self {
             has_c: true,
+            has_class_weights: true,
             parameters,
             kernel: Some(kernel),
             ..Self::new(words, |classifier, scaled, c, seed| {

@@ -244,14 +244,14 @@ fn on_one_matrix(
 ) -> Result<(Array3<usize>, usize)> {
     let centre = kernels[0].centre(statistics);
     let n_rows = training.records.nrows();
-    let needs_double = |farthest: f64| {
+    let needs_double = |rows: (f64, f64)| {
         let mut kernels = kernels.iter();
-        kernels.any(|&kernel| params.needs_double(n_rows, kernel, goal.path, farthest))
+        kernels.any(|&kernel| params.needs_double(n_rows, kernel, goal.path, rows))
     };
     let data = (training, centre.view());
-    if !needs_double(0.0) {
-        let sorted = by_fold::<f32>(data, folds, kernels[0]);
-        if !needs_double(sorted.farthest()) {
+    if !needs_double((0.0, 1.0)) {
+        let sorted = by_fold::<f32>(data, folds, kernels[0]).weighted(params.class_weight);
+        if !needs_double(sorted.farthest_and_heaviest()) {
             return grid(params, &sorted, folds, kernels, goal);
         }
     }
@@ -294,6 +294,7 @@ fn grid<T: SolverScalar>(
         sorted,
         folds,
         multiclass: params.multiclass,
+        class_weight: params.class_weight,
     };
     Ok(grid.n_correct(kernels, goal))
 }
@@ -301,6 +302,7 @@ fn grid<T: SolverScalar>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::class_weight::ClassWeight;
     use crate::dataset::dataset;
     use crate::multiclass::Multiclass;
     use ndarray::Array2;
@@ -355,9 +357,17 @@ mod tests {
     #[test]
     fn one_matrix_gives_the_accuracies_of_training_every_candidate() {
         let data = overlapping(150);
-        let folds = folds_of(data.records.nrows(), 3);
+        // 50, 25 and 50 rows, so that classes and folds have different weights.
+        let kept: Vec<usize> = (0..150).filter(|row| row % 6 != 1).collect();
+        let unequal = rows(&data, &kept).unwrap();
         let path = [0.01, 1.0, 100.0];
-        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+        for (multiclass, class_weight, data) in [
+            (Multiclass::OneVsOne, ClassWeight::Uniform, &data),
+            (Multiclass::OneVsRest, ClassWeight::Uniform, &data),
+            (Multiclass::OneVsOne, ClassWeight::Balanced, &unequal),
+            (Multiclass::OneVsRest, ClassWeight::Balanced, &unequal),
+        ] {
+            let folds = folds_of(data.records.nrows(), 3);
             for kernel in [
                 Kernel::Linear,
                 Kernel::Rbf {
@@ -367,19 +377,20 @@ mod tests {
                 let params = SvmParams {
                     kernel,
                     multiclass,
+                    class_weight,
                     tolerance: 1e-8,
                     ..SvmParams::default()
                 };
                 let statistics = RowStatistics::new(data.records.view()).unwrap();
-                let kernels = kernels(&params, (&data, &statistics), &[0.3, 3.0]).unwrap();
+                let kernels = kernels(&params, (data, &statistics), &[0.3, 3.0]).unwrap();
                 let goal = Goal {
                     path: &path,
                     tolerance: params.tolerance,
                     memory: params.memory_bytes,
                 };
-                let rows = (&data, &statistics);
+                let rows = (data, &statistics);
                 let fast = on_one_matrix(&params, rows, &folds, &kernels, goal).unwrap();
-                let slow = one_by_one(&params, &data, &folds, &kernels, goal).unwrap();
+                let slow = one_by_one(&params, data, &folds, &kernels, goal).unwrap();
                 assert_eq!(fast, slow, "{kernel:?} {multiclass:?}");
                 assert_eq!(fast.0.dim().0, if kernel == Kernel::Linear { 1 } else { 2 });
             }

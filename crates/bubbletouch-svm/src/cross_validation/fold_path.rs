@@ -8,8 +8,7 @@ use std::ops::Range;
 
 use super::alpha_seeding::AlphaSeeding;
 use crate::gram::matrix::{Dense, Gram};
-use crate::smo::Smo;
-use crate::smo::SolverScalar;
+use crate::smo::{Smo, SolverScalar, are_within};
 use crate::training::Goal;
 
 /// Solutions of a binary problem on the training rows of one fold, for all values of C.
@@ -36,10 +35,10 @@ pub(crate) struct FoldSolution {
 
 impl FoldPath {
     /// Solves the problem of a pair of classes on all cross-validation folds; passes each solved fold to a callback. The argument `folds` contains the
-    /// labels of each fold, one per row of the Gram matrix. Rows in the range `positive` have the label 1.
+    /// labels of each fold, one per row of the Gram matrix, and `limits` the limits of the coefficients. Rows in the range `positive` have the label 1.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
-        (folds, positive): (Vec<Vec<f64>>, &Range<usize>),
+        (folds, limits, positive): (Vec<Vec<f64>>, Vec<Vec<f64>>, &Range<usize>),
         goal: Goal,
         mut told: impl FnMut(&Self),
     ) {
@@ -48,8 +47,9 @@ impl FoldPath {
         let all: Vec<f64> = (0..n).map(label).collect();
         let sums = sums_of_folds(gram, &all, &folds);
         let mut last: Option<Self> = None;
-        for (labels, sums) in folds.into_iter().zip(sums) {
-            let smo = Smo::new(gram, &labels).at_bounds(goal.path[0], &sums);
+        for ((labels, limits), sums) in folds.into_iter().zip(limits).zip(sums) {
+            let smo = Smo::new(gram, &labels).with_limits(&limits);
+            let smo = smo.at_bounds(goal.path[0], &sums);
             let seeding = |last: Self| {
                 let seeding = AlphaSeeding::new((&last.labels, &labels), positive);
                 (last, seeding)
@@ -57,7 +57,8 @@ impl FoldPath {
             let last_and_exchange = last.take().map(seeding);
             let seed = |gram: &mut Dense<T>, number: usize| {
                 let (last, seeding) = last_and_exchange.as_ref()?;
-                last.moved(number, (&labels, seeding), gram)
+                let moved = last.moved(number, (&labels, seeding), gram);
+                moved.filter(|(beta, _)| are_within(beta, &limits, goal.path[number]))
             };
             let solutions = along(smo, goal, seed);
             told(last.insert(Self { labels, solutions }));
@@ -69,12 +70,12 @@ impl FoldPath {
     /// from zero, as in training.
     pub fn of_class<T: SolverScalar>(
         gram: &mut Dense<T>,
-        folds: Vec<Vec<f64>>,
+        (folds, limits): (Vec<Vec<f64>>, Vec<Vec<f64>>),
         goal: Goal,
         mut told: impl FnMut(&Self),
     ) {
-        for labels in folds {
-            let smo = Smo::new(gram, &labels);
+        for (labels, limits) in folds.into_iter().zip(limits) {
+            let smo = Smo::new(gram, &labels).with_limits(&limits);
             let solutions = along(smo, goal, |_, _| None);
             told(&Self { labels, solutions });
         }
@@ -111,7 +112,7 @@ fn along<T: SolverScalar>(
         let reached = smo.reach(c, goal.tolerance, |gram| seed(gram, number));
         let (beta, f) = smo.variables();
         // If no multiplier is at its upper bound, a larger C does not change the solution.
-        let holds_for_larger = reached.is_solved && beta.iter().all(|beta| beta.abs() < c);
+        let holds_for_larger = reached.is_solved && smo.is_below_limits(c);
         let end = if holds_for_larger { n_path } else { number + 1 };
         solutions.push(FoldSolution {
             numbers: number..end,
@@ -197,8 +198,9 @@ mod tests {
                 assert_eq!(path.solutions.len() < goal.path.len(), gamma > 1.0);
                 fold += 1;
             };
-            FoldPath::of_pair(&mut whole, (folds.clone(), &POSITIVE), goal, &mut check);
-            FoldPath::of_class(&mut whole, folds.clone(), goal, &mut check);
+            let pairs = (folds.clone(), folds.clone(), &POSITIVE);
+            FoldPath::of_pair(&mut whole, pairs, goal, &mut check);
+            FoldPath::of_class(&mut whole, (folds.clone(), folds.clone()), goal, &mut check);
             assert_eq!(fold, 6);
         }
     }

@@ -4,9 +4,12 @@
 //! solver starts from the solution of the previous C. For the first C, a pair starts with all multipliers at their bounds, or from the previous fold
 //! (`alpha_seeding`) if that start is closer. Validation rows are scored by the problems of their own class first (`validation_scorer`).
 
+use std::ops::Range;
+
 use ndarray::{Array1, Array3};
 
 use super::validation_scorer::ValidationScorer;
+use crate::class_weight::ClassWeight;
 use crate::cross_validation::fold_path::FoldPath;
 use crate::gram::matrix::Dense;
 use crate::gram::product_kernel::ProductKernel;
@@ -33,6 +36,8 @@ pub(crate) struct Grid<'a, T> {
     pub folds: &'a [Split],
     /// Multi-class strategy: one-vs-one or one-vs-rest.
     pub multiclass: Multiclass,
+    /// Weights of the classes among the training rows of a fold.
+    pub class_weight: ClassWeight,
 }
 
 /// Cross-validation fold, given by row positions in the sorted order.
@@ -41,6 +46,8 @@ struct Fold {
     is_training: Vec<bool>,
     /// Whether the fold has at least one training row of each class.
     is_class: Vec<bool>,
+    /// Weight of each class in training.
+    weights: Array1<f64>,
     validation: Vec<usize>,
 }
 
@@ -78,10 +85,14 @@ impl<T: SolverScalar> Grid<'_, T> {
         let ranges = self.sorted.ranges().iter();
         let mut validation: Vec<usize> = split.test.iter().map(|&row| place[row]).collect();
         validation.sort_unstable();
+        let n_training = |range: &Range<usize>| {
+            let rows = is_training[range.clone()].iter();
+            rows.filter(|is_training| **is_training).count()
+        };
+        let sizes: Vec<usize> = ranges.map(n_training).collect();
         Fold {
-            is_class: ranges
-                .map(|range| is_training[range.clone()].contains(&true))
-                .collect(),
+            is_class: sizes.iter().map(|&n| n > 0).collect(),
+            weights: self.class_weight.of_sizes(sizes),
             is_training,
             validation,
         }
@@ -109,7 +120,7 @@ impl<T: SolverScalar> Grid<'_, T> {
                 takes_part(fold, problem.0) && problem.1.is_none_or(|class| takes_part(fold, class))
             });
             let (folds, scorers): (Vec<&Fold>, Vec<_>) = both.unzip();
-            let labels = self.labels(problem, &folds);
+            let (labels, limits) = self.labels_and_limits(problem, &folds);
             let mut scorers = scorers.into_iter();
             let score = |path: &FoldPath| {
                 let scorer = scorers.next().expect("each fold has one");
@@ -120,9 +131,9 @@ impl<T: SolverScalar> Grid<'_, T> {
             match problem.1 {
                 Some(_) => {
                     let positive = 0..self.sorted.ranges()[problem.0].len();
-                    FoldPath::of_pair(&mut gram, (labels, &positive), goal, score);
+                    FoldPath::of_pair(&mut gram, (labels, limits, &positive), goal, score);
                 }
-                None => FoldPath::of_class(&mut gram, labels, goal, score),
+                None => FoldPath::of_class(&mut gram, (labels, limits), goal, score),
             }
         }
         scorers
@@ -145,24 +156,29 @@ impl<T: SolverScalar> Grid<'_, T> {
         problems
     }
 
-    /// Returns the labels of a binary problem's rows for each fold; held-out rows have the label 0.
-    fn labels(
+    /// Returns the labels of a binary problem's rows for each fold, and the limits of their coefficients. Held-out rows have the label and the limit 0.
+    fn labels_and_limits(
         &self,
         (positive, negative): (usize, Option<usize>),
         folds: &[&Fold],
-    ) -> Vec<Vec<f64>> {
+    ) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
         let ranges = self.sorted.ranges();
-        let all = 0..self.sorted.points().len();
-        let rows = match negative {
-            Some(negative) => ranges[positive].clone().chain(ranges[negative].clone()),
-            None => all.chain(0..0),
+        let classes = match negative {
+            Some(negative) => vec![positive, negative],
+            None => (0..ranges.len()).collect(),
         };
-        let label = |fold: &Fold, row: usize| match fold.is_training[row] {
-            false => 0.0,
-            true if ranges[positive].contains(&row) => 1.0,
-            true => -1.0,
+        let of_fold = |fold: &&Fold| {
+            let rows = classes.iter().flat_map(|&class| {
+                let sign = if class == positive { 1.0 } else { -1.0 };
+                let limit = sign * fold.weights[class];
+                let rows = fold.is_training[ranges[class].clone()].iter();
+                rows.map(move |&is_training| match is_training {
+                    true => (sign, limit),
+                    false => (0.0, 0.0),
+                })
+            });
+            rows.unzip()
         };
-        let of_fold = |fold: &&Fold| rows.clone().map(|row| label(fold, row)).collect();
-        folds.iter().map(of_fold).collect()
+        folds.iter().map(of_fold).unzip()
     }
 }

@@ -45,9 +45,11 @@ impl<'a, T: Scalar> Group<'a, T> {
         }
     }
 
-    /// Returns the size in bytes of the kernel values within all groups of classes and between two groups.
-    pub fn bytes(sorted: &Sorted<T>, groups: &[Range<usize>]) -> usize {
-        let sizes = || groups.iter().map(|group| sorted.rows_of(group).len());
+    /// Returns the size in bytes of the kernel values within all groups of classes and between two groups, given the row range of each class.
+    pub fn bytes(ranges: &[Range<usize>]) -> usize {
+        let groups = groups(ranges);
+        let size = |group: &Range<usize>| ranges[group.end - 1].end - ranges[group.start].start;
+        let sizes = || groups.iter().map(size);
         let squares: usize = sizes().map(|n| n * n).sum();
         let largest = sizes().max().unwrap_or(0);
         (squares + largest * largest) * size_of::<T>()

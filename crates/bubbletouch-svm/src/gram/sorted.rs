@@ -5,6 +5,7 @@ use std::ops::Range;
 use ndarray::{Array1, ArrayView1, ArrayView2};
 
 use crate::binary_problem::BinaryProblem;
+use crate::class_weight::ClassWeight;
 use crate::dataset::Dataset;
 use crate::gram::centered_rows::CenteredRows;
 use crate::kernel::KernelFunction;
@@ -29,6 +30,8 @@ pub(crate) struct Sorted<T> {
     /// Range of each class's rows in the sorted order.
     ranges: Vec<Range<usize>>,
     classes: Vec<usize>,
+    /// Weight of each class in training.
+    weights: Vec<f64>,
     kernel: KernelFunction,
     centre: Array1<f64>,
     /// Largest squared distance between a row and the centre.
@@ -82,11 +85,21 @@ impl<T: Scalar> Sorted<T> {
             farthest,
             order,
             place,
+            weights: vec![1.0; classes.len()],
             ranges,
             classes: classes.to_vec(),
             kernel,
             centre: centre.to_owned(),
             centre_products,
+        }
+    }
+
+    /// Sets the weights of the classes in training.
+    pub fn weighted(self, class_weight: ClassWeight) -> Self {
+        let sizes = self.ranges.iter().map(Range::len);
+        Self {
+            weights: class_weight.of_sizes(sizes).to_vec(),
+            ..self
         }
     }
 
@@ -98,6 +111,7 @@ impl<T: Scalar> Sorted<T> {
             place: self.place.clone(),
             ranges: self.ranges.clone(),
             classes: self.classes.clone(),
+            weights: self.weights.clone(),
             kernel: self.kernel,
             centre: Array1::zeros(directions.nrows()),
             farthest: self.farthest,
@@ -135,9 +149,10 @@ impl<T: Scalar> Sorted<T> {
         self.centre.view()
     }
 
-    /// Returns the largest squared distance between a row and the centre.
-    pub fn farthest(&self) -> f64 {
-        self.farthest
+    /// Returns the largest squared distance between a row and the centre, and the largest weight of a class in training.
+    pub fn farthest_and_heaviest(&self) -> (f64, f64) {
+        let weights = self.weights.iter().copied();
+        (self.farthest, weights.fold(0.0, f64::max))
     }
 
     /// Returns the offset ρ of a binary problem's decision function for centred rows.
@@ -162,6 +177,11 @@ impl<T: Scalar> Sorted<T> {
     /// Returns the class labels, ascending.
     pub fn classes(&self) -> &[usize] {
         &self.classes
+    }
+
+    /// Returns the weight of each class in training.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
     }
 
     /// Returns the classes, each with the range of its rows in the sorted order.

@@ -1,7 +1,7 @@
 //! Dual coordinate descent for the binary linear SVM with hinge loss [Hsieh et al. 2008, algorithm 3; LIBLINEAR].
 //!
-//! The method minimises `½|w|² − Σ_i a_i` over `0 ≤ a_i ≤ C`, with `w = Σ_i y_i a_i x_i`. The coordinates are updated one by one, in random order. Each a_i is
-//! set to its optimum `clamp(a_i − G/|x_i|², 0, C)` with `G = y_i w·x_i − 1`, and w is updated.
+//! The method minimises `½|w|² − Σ_i a_i` over `0 ≤ a_i ≤ C_i`, with `w = Σ_i y_i a_i x_i`. The coordinates are updated one by one, in random order. Each a_i is
+//! set to its optimum `clamp(a_i − G/|x_i|², 0, C_i)` with `G = y_i w·x_i − 1`, and w is updated.
 //!
 //! Shrinking: a row is skipped if its multiplier is at a bound and its gradient towards the bound exceeds every violation of the last pass. When the
 //! remaining rows have converged, all rows are visited again.
@@ -69,11 +69,11 @@ impl Rows {
     }
 }
 
-/// Solves one binary problem, given the label ±1 of each row; returns the label times the multiplier of each row.
+/// Solves one binary problem, given the label ±1 and the penalty C_i of each row; returns the label times the multiplier of each row.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn solve(
     rows: &Rows,
-    sign: &[f64],
+    (sign, penalties): (&[f64], &[f64]),
     params: &LinearSvmParams,
     rng: &mut impl Rng,
 ) -> Solved {
@@ -94,7 +94,7 @@ pub(crate) fn solve(
             let i = order[visited];
             let x = rows.row(i);
             let gradient = sign[i] * dot(&w, x) - 1.0;
-            let (at_lower, at_upper) = (alpha[i] <= 0.0, alpha[i] >= params.c);
+            let (at_lower, at_upper) = (alpha[i] <= 0.0, alpha[i] >= penalties[i]);
             if (at_lower && gradient > bounds.1) || (at_upper && gradient < bounds.0) {
                 n_active -= 1;
                 order.swap(visited, n_active);
@@ -106,7 +106,7 @@ pub(crate) fn solve(
             seen = (seen.0.min(projected), seen.1.max(projected));
             if projected.abs() > ROUNDING {
                 let old = alpha[i];
-                alpha[i] = (old - gradient / rows.squared_norm(i)).clamp(0.0, params.c);
+                alpha[i] = (old - gradient / rows.squared_norm(i)).clamp(0.0, penalties[i]);
                 add_scaled(&mut w, (alpha[i] - old) * sign[i], x);
             }
         }

@@ -44,6 +44,8 @@ impl LinearSvmParams {
         let classes = checked_classes(data)?;
         let rows = Rows::new(data.records.view())?;
         let label = positions(data.targets.view(), &classes);
+        let weights = self.class_weight.of_classes(&label, classes.len());
+        let penalties: Vec<f64> = label.iter().map(|&class| self.c * weights[class]).collect();
         let mut multipliers = Array2::zeros((classes.len(), label.len()));
         let mut ends = Vec::with_capacity(classes.len());
         for class in 0..classes.len() {
@@ -52,51 +54,57 @@ impl LinearSvmParams {
                 .map(|&label| if label == class { 1.0 } else { -1.0 })
                 .collect();
             let mut rng = seed.named("class").numbered(class as u64).rng();
-            let solved = coordinate_descent::solve(&rows, &sign, self, &mut rng);
+            let solved = coordinate_descent::solve(&rows, (&sign, &penalties), self, &mut rng);
             multipliers
                 .row_mut(class)
                 .assign(&Array1::from(solved.multipliers));
             ends.push((solved.n_passes, solved.is_capped));
         }
-        Ok(self.against_rest(data, classes, &label, multipliers, &ends))
-    }
-
-    /// Returns the weights and biases of the model, and the duality gap of each binary problem, given the multipliers (n_classes × n_rows).
-    fn against_rest(
-        &self,
-        data: &Dataset,
-        classes: Vec<usize>,
-        label: &[usize],
-        multipliers: Array2<f64>,
-        ends: &[(usize, bool)],
-    ) -> LinearSvm {
-        let model = weights(&multipliers, data.records.view());
-        let values = data.records.dot(&model.weights.t()) + &model.bias;
-        let squares = squared_norms(&model);
-        let convergence = (0..classes.len())
-            .map(|class| {
-                let loss: f64 =
-                    Zip::from(values.column(class))
-                        .and(label)
-                        .fold(0.0, |sum, &value, &label| {
-                            let sign = if label == class { 1.0 } else { -1.0 };
-                            sum + (1.0 - sign * value).max(0.0)
-                        });
-                let half = 0.5 * squares[class];
-                let sum = multipliers.row(class).mapv(f64::abs).sum();
-                Convergence {
-                    primal: half + self.c * loss,
-                    dual: sum - half,
-                    n_passes: ends[class].0,
-                    is_capped: ends[class].1,
-                }
-            })
-            .collect();
-        LinearSvm {
+        Ok(against_rest(
+            data,
             classes,
-            model,
-            convergence,
-        }
+            (&label, &penalties),
+            multipliers,
+            &ends,
+        ))
+    }
+}
+
+/// Returns the weights and biases of the model, and the duality gap of each binary problem, given the class and the penalty of each row, and the
+/// multipliers (n_classes × n_rows).
+fn against_rest(
+    data: &Dataset,
+    classes: Vec<usize>,
+    (label, penalties): (&[usize], &[f64]),
+    multipliers: Array2<f64>,
+    ends: &[(usize, bool)],
+) -> LinearSvm {
+    let model = weights(&multipliers, data.records.view());
+    let values = data.records.dot(&model.weights.t()) + &model.bias;
+    let squares = squared_norms(&model);
+    let convergence = (0..classes.len())
+        .map(|class| {
+            let loss: f64 = Zip::from(values.column(class))
+                .and(label)
+                .and(penalties)
+                .fold(0.0, |sum, &value, &label, &penalty| {
+                    let sign = if label == class { 1.0 } else { -1.0 };
+                    sum + penalty * (1.0 - sign * value).max(0.0)
+                });
+            let half = 0.5 * squares[class];
+            let sum = multipliers.row(class).mapv(f64::abs).sum();
+            Convergence {
+                primal: half + loss,
+                dual: sum - half,
+                n_passes: ends[class].0,
+                is_capped: ends[class].1,
+            }
+        })
+        .collect();
+    LinearSvm {
+        classes,
+        model,
+        convergence,
     }
 }
 

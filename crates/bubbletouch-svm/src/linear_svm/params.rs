@@ -1,5 +1,6 @@
 //! Parameters of linear SVMs that are trained by coordinate descent.
 
+use crate::class_weight::ClassWeight;
 use crate::{Error, Result};
 
 /// Default maximum number of passes over the rows, as in scikit-learn's LinearSVC.
@@ -10,6 +11,9 @@ pub const MAX_PASSES: usize = 1000;
 pub struct LinearSvmParams {
     /// Penalty C for each unit of margin violation, above 0.
     pub c: f64,
+    /// Weights of the classes: the penalty of a row is C times the weight of its class. LIBLINEAR's one-vs-rest differs: rows of the other classes have the
+    /// weight 1 there.
+    pub class_weight: ClassWeight,
     /// Stopping tolerance, above 0: difference between the largest and smallest projected gradient, in units of the margin.
     pub tolerance: f64,
     /// Maximum number of passes over the rows, at least 1. At this limit, the solver stops and marks the problem as capped.
@@ -21,6 +25,7 @@ impl Default for LinearSvmParams {
     fn default() -> Self {
         Self {
             c: 1.0,
+            class_weight: ClassWeight::Uniform,
             tolerance: 1e-3,
             max_passes: MAX_PASSES,
         }

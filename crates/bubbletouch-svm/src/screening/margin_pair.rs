@@ -69,6 +69,8 @@ impl<T> Default for PairWorkspace<'_, T> {
 /// Binary problem of two classes, reduced to active rows near the decision boundary, with its solution; the first class is positive.
 pub(crate) struct MarginPair<T> {
     classes: [usize; 2],
+    /// Weights of the two classes in training.
+    weights: [f64; 2],
     /// Active rows of both classes, in the order in which they became active.
     rows: Sides,
     /// Whether each row of the first and of the second class is active.
@@ -87,10 +89,11 @@ pub(crate) struct MarginPair<T> {
 }
 
 impl<T: SolverScalar> MarginPair<T> {
-    /// Creates a pair of classes with the given numbers of rows, none of which is active.
-    pub fn new(classes: [usize; 2], sizes: [usize; 2]) -> Self {
+    /// Creates a pair of classes with the given numbers of rows, none of which is active, and weights.
+    pub fn new(classes: [usize; 2], sizes: [usize; 2], weights: [f64; 2]) -> Self {
         Self {
             classes,
+            weights,
             rows: [Vec::new(), Vec::new()],
             takes_part: sizes.map(|n| vec![false; n]),
             across: [Vec::new(), Vec::new()],
@@ -190,8 +193,8 @@ impl<T: SolverScalar> MarginPair<T> {
             }
         };
         let mut gram = Part::new(diagonal(0).chain(diagonal(1)), write, workspace);
-        let labels = self.labels();
-        let given = (&labels[..], (beta, f), self.c);
+        let (labels, limits) = (self.of_sides(SIGNS), self.limits());
+        let given = ((&labels[..], &limits[..]), (beta, f), self.c);
         let (variables, reached) = reach_by_equations(&mut gram, given, goal);
         (self.beta, self.f) = variables;
         self.c = goal.c;
@@ -199,10 +202,16 @@ impl<T: SolverScalar> MarginPair<T> {
         self.is_solved = reached.is_solved;
     }
 
-    fn labels(&self) -> Vec<f64> {
-        let mut labels = vec![SIGNS[0]; self.rows[0].len()];
-        labels.resize(labels.len() + self.rows[1].len(), SIGNS[1]);
-        labels
+    /// Returns the limits of the coefficients of the active rows.
+    fn limits(&self) -> Vec<f64> {
+        self.of_sides([0, 1].map(|side| SIGNS[side] * self.weights[side]))
+    }
+
+    /// Returns a value for each active row, given the value of the rows of each class.
+    fn of_sides(&self, values: [f64; 2]) -> Vec<f64> {
+        let mut all = vec![values[0]; self.rows[0].len()];
+        all.resize(all.len() + self.rows[1].len(), values[1]);
+        all
     }
 
     /// Returns the active rows as triples: class (0 or 1), row number within the class, and coefficient.
@@ -222,7 +231,7 @@ impl<T: SolverScalar> MarginPair<T> {
         goal: PairGoal,
         scratch: &mut PairWorkspace<T>,
     ) -> Option<Sides> {
-        let (highest, lowest) = extremes(&self.beta, &self.labels(), &self.f, goal.c);
+        let (highest, lowest) = extremes(&self.beta, &self.limits(), &self.f, goal.c);
         let middle = (highest + lowest) / 2.0;
         // Rows that violate the conditions, ascending by violation.
         let violating = &mut scratch.ranked;
@@ -273,10 +282,10 @@ impl<T: SolverScalar> MarginPair<T> {
             is_solved: self.is_solved,
             n_iterations: std::mem::take(&mut self.n_iterations),
         };
-        let variables = (&self.beta[..], &self.labels()[..], &self.f[..]);
+        let variables = (&self.beta[..], &self.of_sides(SIGNS)[..], &self.f[..]);
         DualSolution {
             coefficients,
-            ..reached.solution(variables, self.c)
+            ..reached.solution(variables, (&self.limits(), self.c))
         }
     }
 }

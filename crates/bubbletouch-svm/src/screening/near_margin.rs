@@ -55,6 +55,11 @@ impl<'a, T: SolverScalar> Classes<'a, T> {
         classes.map(|class| self.sorted.ranges()[class].start)
     }
 
+    /// Returns the weights of the two given classes in training.
+    fn weights(&self, classes: [usize; 2]) -> [f64; 2] {
+        classes.map(|class| self.sorted.weights()[class])
+    }
+
     /// Returns the numbers of rows of the two given classes.
     fn sizes(&self, classes: [usize; 2]) -> [usize; 2] {
         classes.map(|class| self.sorted.ranges()[class].len())
@@ -95,7 +100,9 @@ impl<T> Round<T> {
 impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
     /// Creates the unsolved problems of the given pairs of classes, which start with the given active rows.
     pub fn new(classes: &'c Classes<'a, T>, pairs: &[(usize, usize)], rows: &[Sides]) -> Self {
-        let pair = |&(a, b): &(usize, usize)| MarginPair::new([a, b], classes.sizes([a, b]));
+        let pair = |&(a, b): &(usize, usize)| {
+            MarginPair::new([a, b], classes.sizes([a, b]), classes.weights([a, b]))
+        };
         let mut all = Self {
             classes,
             pairs: pairs.iter().map(pair).collect(),
@@ -109,17 +116,17 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         all
     }
 
-    /// Returns the maximum memory of the screening, bytes. The sum contains the inner products of all pairs if all their rows are active, the hyperplanes of a
+    /// Returns the maximum memory of the screening, bytes, given the row range of each class. The sum contains the inner products of all pairs if all their rows are active, the hyperplanes of a
     /// round, and the projected rows.
-    pub fn most_bytes(sorted: &Sorted<T>) -> usize {
-        let sizes = || sorted.ranges().iter().map(Range::len);
+    pub fn most_bytes(ranges: &[Range<usize>], n_features: usize) -> usize {
+        let sizes = || ranges.iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
         let largest = sizes().max().unwrap_or(0);
         let n_pairs = CLASSES_AT_ONCE * OTHERS_AT_ONCE;
         // Each pair is counted in both orders.
         let across = n_pairs * 2 * largest.pow(2);
-        let normals = n_pairs * (sorted.centre().len() + 2 * largest);
-        let few = sorted.points().len() * FEW_DIMENSIONS;
+        let normals = n_pairs * (n_features + 2 * largest);
+        let few = sizes().sum::<usize>() * FEW_DIMENSIONS;
         (2 * within + across + normals + few) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
     }
 

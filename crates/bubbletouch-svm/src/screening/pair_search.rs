@@ -23,28 +23,32 @@ pub(crate) struct PairGoal {
 /// State of the solver: the coefficients β, and the gradient f of the dual objective.
 pub(crate) type State = (Vec<f64>, Vec<f64>);
 
+/// Labels of the rows of a binary problem, and the limits of their coefficients.
+type LabelsAndLimits<'a> = (&'a [f64], &'a [f64]);
+
 /// Solves a binary problem from a given start: pairwise steps to a rough tolerance, followed by active-set steps. If the active-set steps do not reach the
-/// tolerance, pairwise steps continue. The problem is given with its labels and the C of the state.
+/// tolerance, pairwise steps continue. The problem is given with its labels, the limits of its coefficients, and the C of the
+/// state.
 pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
     gram: &mut G,
-    (labels, state, c): (&[f64], State, f64),
+    (rows, state, c): (LabelsAndLimits, State, f64),
     goal: PairGoal,
 ) -> (State, Reached) {
     if goal.tolerance >= EQUATIONS_FROM {
-        return reach(gram, (labels, state, c), goal);
+        return reach(gram, (rows, state, c), goal);
     }
     let rough = PairGoal {
         tolerance: EQUATIONS_FROM,
         ..goal
     };
-    let ((mut beta, mut f), first) = reach(gram, (labels, state, c), rough);
+    let ((mut beta, mut f), first) = reach(gram, (rows, state, c), rough);
     let by_equations = ActiveSetGoal {
         c: goal.c,
         tolerance: goal.tolerance,
-        max_steps: labels.len() as u64,
+        max_steps: rows.0.len() as u64,
     };
-    let n_steps = solve_by_active_set(gram, labels, (&mut beta, &mut f), by_equations);
-    let (state, last) = reach(gram, (labels, (beta, f), goal.c), goal);
+    let n_steps = solve_by_active_set(gram, rows.1, (&mut beta, &mut f), by_equations);
+    let (state, last) = reach(gram, (rows, (beta, f), goal.c), goal);
     let n_iterations = first.n_iterations + n_steps + last.n_iterations;
     let reached = Reached {
         n_iterations,
@@ -55,10 +59,10 @@ pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
 
 fn reach<T: SolverScalar, G: Gram<T>>(
     gram: &mut G,
-    (labels, state, c): (&[f64], State, f64),
+    ((labels, limits), state, c): (LabelsAndLimits, State, f64),
     goal: PairGoal,
 ) -> (State, Reached) {
-    let mut smo = Smo::from_start(gram, labels, state, c);
+    let mut smo = Smo::from_start(gram, labels, state, c).with_limits(limits);
     if let Some(most_iterations) = goal.most_iterations {
         smo = smo.with_max_iterations(most_iterations);
     }

@@ -1,6 +1,7 @@
 //! Sequential minimal optimisation (SMO) of one binary soft-margin problem.
 //!
-//! With `β_i = y_i a_i`, the dual problem is: maximise `Σ_i y_i β_i − ½ Σ_ij β_i β_j K_ij` subject to `0 ≤ y_i β_i ≤ C` and `Σ_i β_i = 0`. The gradient is `f =
+//! With `β_i = y_i a_i`, the dual problem is: maximise `Σ_i y_i β_i − ½ Σ_ij β_i β_j K_ij` subject to `0 ≤ y_i β_i ≤ C w_i` and `Σ_i β_i = 0`, where
+//! w_i is the weight of the row's class. The gradient is `f =
 //! y − Kβ`. A solution β is optimal if max f over the variables that can increase does not exceed min f over the variables that can decrease. Each iteration
 //! chooses one variable of each kind by second-order information [Fan, Chen, Lin 2005]. The iteration moves the two variables to the optimum along their line,
 //! in two passes over f (`passes`).
@@ -27,3 +28,4 @@ pub(crate) mod variables;
 pub(crate) use active_set::{ActiveSetGoal, solve_by_active_set};
 pub(crate) use problem::Smo;
 pub(crate) use solver_scalar::SolverScalar;
+pub(crate) use variables::are_within;

@@ -14,6 +14,8 @@ pub(crate) struct Smo<'a, G> {
     pub(super) gram: &'a mut G,
     /// Label of each row: 1, −1, or 0 for a row that is excluded from the problem.
     pub(super) y: &'a [f64],
+    /// Limit of each coefficient β: its label times its weight in training. β is between 0 and C times its limit.
+    pub(super) limits: &'a [f64],
     pub(super) beta: Vec<f64>,
     /// Gradient `y − Kβ` of the dual objective, where y are the labels and K is the Gram matrix.
     pub(super) f: Vec<f64>,
@@ -34,6 +36,11 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
+    /// Sets the limits of the coefficients: the label of each row times its weight in training. By default, all weights are 1.
+    pub fn with_limits(self, limits: &'a [f64]) -> Self {
+        Self { limits, ..self }
+    }
+
     /// Limits the solver to `max_iterations`; a problem that reaches the limit is reported as unsolved.
     pub fn with_max_iterations(self, max_iterations: u64) -> Self {
         Self {
@@ -52,6 +59,7 @@ impl<'a, G> Smo<'a, G> {
         Self {
             gram,
             y,
+            limits: y,
             beta,
             f,
             c,
@@ -67,12 +75,18 @@ impl<'a, G> Smo<'a, G> {
 
     /// Returns the offset ρ of the decision function, given the C of the solution.
     pub fn rho(&self, c: f64) -> f64 {
-        rho(&self.beta, self.y, &self.f, c)
+        rho(&self.beta, self.limits, &self.f, c)
     }
 
     /// Converts the problem to its coefficients β and its gradient f.
     pub fn into_variables(self) -> (Vec<f64>, Vec<f64>) {
         (self.beta, self.f)
+    }
+
+    /// Returns whether no coefficient has reached its limit for the penalty `c`, except 0.
+    pub fn is_below_limits(&self, c: f64) -> bool {
+        let mut both = self.beta.iter().zip(self.limits);
+        both.all(|(beta, limit)| *beta == 0.0 || beta.abs() < c * limit.abs())
     }
 
     /// Recomputes the gradient f from the coefficients β in f64.
@@ -106,6 +120,6 @@ impl<'a, G> Smo<'a, G> {
     }
 
     pub(super) fn violation(&self, c: f64) -> f64 {
-        violation(&self.beta, self.y, &self.f, c)
+        violation(&self.beta, self.limits, &self.f, c)
     }
 }

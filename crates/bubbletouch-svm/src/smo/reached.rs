@@ -12,27 +12,32 @@ pub(crate) struct Reached {
 }
 
 impl Reached {
-    /// Creates the dual solution without its coefficients, given the coefficients β, the labels and the gradient f.
-    pub fn solution(self, variables: (&[f64], &[f64], &[f64]), c: f64) -> DualSolution {
+    /// Creates the dual solution without its coefficients, given the coefficients β, the labels, the gradient f, and the limits of
+    /// the coefficients for the penalty `c`.
+    pub fn solution(
+        self,
+        variables: (&[f64], &[f64], &[f64]),
+        (limits, c): (&[f64], f64),
+    ) -> DualSolution {
         let (beta, y, f) = variables;
         let (linear, quadratic) = linear_and_quadratic(beta, y, f);
         DualSolution {
             coefficients: Vec::new(),
-            rho: rho(beta, y, f, c),
+            rho: rho(beta, limits, f, c),
             is_capped: !self.is_solved,
             objective: linear - 0.5 * quadratic,
-            violation: Some(violation(beta, y, f, c).max(0.0)),
+            violation: Some(violation(beta, limits, f, c).max(0.0)),
             n_iterations: Some(self.n_iterations),
         }
     }
 }
 
-/// Returns the violation of the optimality conditions at the coefficients `beta` for the penalty `c`. The value is negative if the conditions hold strictly,
+/// Returns the violation of the optimality conditions at the coefficients `beta` with the given limits for the penalty `c`. The value is negative if the conditions hold strictly,
 /// and infinite if the gradient is not finite.
-pub(crate) fn violation(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
+pub(crate) fn violation(beta: &[f64], limits: &[f64], f: &[f64], c: f64) -> f64 {
     if !all_finite(f) {
         return f64::INFINITY;
     }
-    let (highest, lowest) = extremes(beta, y, f, c);
+    let (highest, lowest) = extremes(beta, limits, f, c);
     highest - lowest
 }

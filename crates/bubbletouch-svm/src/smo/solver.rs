@@ -42,7 +42,7 @@ impl<G> Smo<'_, G> {
         let variables = (&self.beta[..], self.y, &self.f[..]);
         DualSolution {
             coefficients: self.beta.clone(),
-            ..reached.solution(variables, c)
+            ..reached.solution(variables, (self.limits, c))
         }
     }
 
@@ -108,7 +108,7 @@ impl<G> Smo<'_, G> {
                     max_steps: self.y.len() as u64,
                 };
                 let variables = (&mut self.beta[..], &mut self.f[..]);
-                search.n_iterations += solve_by_active_set(self.gram, self.y, variables, goal);
+                search.n_iterations += solve_by_active_set(self.gram, self.limits, variables, goal);
             } else {
                 n_refreshes += 1;
             }
@@ -122,7 +122,7 @@ impl<G> Smo<'_, G> {
     where
         G: Gram<T>,
     {
-        let mut all = Variables::<T>::new(&self.beta, self.y, &self.f, c);
+        let mut all = Variables::<T>::new(&self.beta, self.limits, &self.f, c);
         let first_look = if is_first { SHRINK_PERIOD } else { 0 };
         let stop = T::run(self.gram, &mut all, search, first_look);
         self.beta.copy_from_slice(&all.beta);

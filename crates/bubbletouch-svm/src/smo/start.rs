@@ -2,13 +2,14 @@
 
 use super::problem::Smo;
 use super::solver_scalar::SolverScalar;
-use super::variables::linear_and_quadratic;
+use super::variables::{bounds, linear_and_quadratic};
 use crate::gram::matrix::Gram;
 use crate::gram::row_sums::add_row;
 
 impl<G> Smo<'_, G> {
     /// Returns the problem with a start for small C: all multipliers are C, except 0 for the surplus rows of the larger class. The surplus rows are its rows
-    /// that are farthest from the other class. If the objective with equal multipliers has its maximum below C, all multipliers start at 0. `sums` contains the
+    /// that are farthest from the other class. If the objective with equal multipliers has its maximum below C, or
+    /// if rows have weights, all multipliers start at 0. `sums` contains the
     /// product of the Gram matrix with the labels.
     pub fn at_bounds<T: SolverScalar>(mut self, c: f64, sums: &[f64]) -> Self
     where
@@ -18,7 +19,7 @@ impl<G> Smo<'_, G> {
         let curvature: f64 = y.iter().zip(sums).map(|(y, sum)| y * sum).sum();
         // The comparison is also false if kernel values are not finite.
         let still_rises = c * curvature <= y.iter().map(|y| y * y).sum::<f64>();
-        if !still_rises {
+        if !still_rises || self.limits != y {
             return self;
         }
         let balance: f64 = y.iter().sum();
@@ -42,12 +43,13 @@ impl<G> Smo<'_, G> {
         if self.c > 0.0 && self.c != c && quadratic > 0.0 {
             let most = c / self.c;
             let factor = (linear / quadratic).clamp(0.0, most);
-            for (beta, y) in self.beta.iter_mut().zip(self.y) {
-                let is_at_bound = *beta == self.c * y;
+            for (beta, limit) in self.beta.iter_mut().zip(self.limits) {
+                let is_at_bound = *beta == self.c * limit;
+                let (lowest, highest) = bounds(*limit, c);
                 *beta = if is_at_bound && factor == most {
-                    c * y
+                    c * limit
                 } else {
-                    (factor * *beta).clamp(-c, c)
+                    (factor * *beta).clamp(lowest, highest)
                 };
             }
             for (f, y) in self.f.iter_mut().zip(self.y) {

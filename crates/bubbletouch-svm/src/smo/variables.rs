@@ -21,21 +21,29 @@ fn mark<T: Scalar>(can_move: bool) -> T {
 
 /// Sets the marks of every variable. The mark `up` is 0 if the coefficient β can increase, and `low` is 0 if it can decrease; otherwise they are −∞.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
+fn mark_all<T: Scalar>(beta: &[f64], limits: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
     let n = beta.len();
-    let (y, up, low) = (&y[..n], &mut up[..n], &mut low[..n]);
+    let (limits, up, low) = (&limits[..n], &mut up[..n], &mut low[..n]);
     for i in 0..n {
-        let (lowest, highest) = bounds(y[i], c);
+        let (lowest, highest) = bounds(limits[i], c);
         up[i] = mark(beta[i] < highest);
         low[i] = mark(beta[i] > lowest);
     }
 }
 
-/// Returns the lower and upper bound of a row's coefficient, given its label y and the penalty C. The bounds are (0, C) for y = 1, (−C, 0) for y = −1, and (0,
-/// 0) for an excluded row (y = 0).
+/// Returns the lower and upper bound of a row's coefficient, given the penalty C and the row's limit: its label times its weight in training. The bounds are
+/// (0, C) for the limit 1, (−C, 0) for −1, and (0, 0) for an excluded row (limit 0).
 #[inline(always)]
-pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
-    (c * y.min(0.0), c * y.max(0.0))
+pub(crate) fn bounds(limit: f64, c: f64) -> (f64, f64) {
+    (c * limit.min(0.0), c * limit.max(0.0))
+}
+
+/// Returns whether every coefficient is within its bounds for the penalty `c`.
+pub(crate) fn are_within(beta: &[f64], limits: &[f64], c: f64) -> bool {
+    beta.iter().zip(limits).all(|(beta, limit)| {
+        let (lowest, highest) = bounds(*limit, c);
+        (lowest..=highest).contains(beta)
+    })
 }
 
 /// Variables of a binary problem during the pairwise steps of the solver. Slices are padded to whole lanes with variables that cannot move.
@@ -43,7 +51,8 @@ pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
 pub(crate) struct Variables<T> {
     /// Coefficient of each row: its label times its multiplier.
     pub beta: Vec<f64>,
-    y: Vec<f64>,
+    /// Limit of each coefficient: its label times its weight in training; see [`bounds`].
+    limits: Vec<f64>,
     c: f64,
     /// Gradient of the dual objective along each coefficient: `y − Kβ`, where y are the labels and K is the Gram matrix.
     pub f: Vec<T>,
@@ -56,36 +65,36 @@ pub(crate) struct Variables<T> {
 }
 
 impl<T: Scalar> Variables<T> {
-    pub fn new(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> Self {
+    pub fn new(beta: &[f64], limits: &[f64], f: &[f64], c: f64) -> Self {
         let n = beta.len();
         let mut own_f = Vec::with_capacity(padded(n));
         own_f.extend(f.iter().map(|&f| T::from_f64(f)));
         own_f.resize(padded(n), T::zero());
         let mut variables = Self {
             beta: beta.to_vec(),
-            y: y.to_vec(),
+            limits: limits.to_vec(),
             c,
             f: own_f,
             up: vec![T::neg_infinity(); padded(n)],
             low: vec![T::neg_infinity(); padded(n)],
             gains: vec![T::zero(); padded(n)],
         };
-        mark_all(beta, y, c, &mut variables.up, &mut variables.low);
+        mark_all(beta, limits, c, &mut variables.up, &mut variables.low);
         variables
     }
 
     /// Returns a copy that contains only the variables at the given indices.
     pub fn select(&self, indices: &[usize]) -> Self {
         let beta: Vec<f64> = indices.iter().map(|&i| self.beta[i]).collect();
-        let y: Vec<f64> = indices.iter().map(|&i| self.y[i]).collect();
+        let limits: Vec<f64> = indices.iter().map(|&i| self.limits[i]).collect();
         let f: Vec<f64> = indices.iter().map(|&i| self.f[i].wide()).collect();
-        Self::new(&beta, &y, &f, self.c)
+        Self::new(&beta, &limits, &f, self.c)
     }
 
     /// Updates the marks of variable i; writes only changed marks, because vector loads after scalar stores are slow.
     #[inline(always)]
     fn mark(&mut self, i: usize) {
-        let (lowest, highest) = bounds(self.y[i], self.c);
+        let (lowest, highest) = bounds(self.limits[i], self.c);
         let (up, low) = (mark(self.beta[i] < highest), mark(self.beta[i] > lowest));
         if self.up[i] != up {
             self.up[i] = up;
@@ -99,7 +108,10 @@ impl<T: Scalar> Variables<T> {
     #[inline(always)]
     pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
         let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
-        let (lowest, highest) = (bounds(self.y[j], self.c).0, bounds(self.y[i], self.c).1);
+        let (lowest, highest) = (
+            bounds(self.limits[j], self.c).0,
+            bounds(self.limits[i], self.c).1,
+        );
         let (room_i, room_j) = (highest - self.beta[i], self.beta[j] - lowest);
         let step = wanted.min(room_i).min(room_j);
         // β is set exactly to a reached bound, without rounding error.
@@ -137,19 +149,22 @@ impl<T: Scalar> Variables<T> {
     }
 }
 
-/// Returns the largest gradient f of variables that can increase and the smallest f of variables that can decrease, given feasible coefficients β.
+/// Returns the largest gradient f of variables that can increase and the smallest f of variables that can decrease, given feasible coefficients β and
+/// their limits.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
+pub(crate) fn extremes(beta: &[f64], limits: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     // Each lane has its own extreme; the lanes are combined by halving.
     let mut highest = [f64::NEG_INFINITY; EXTREMES_LANES];
     let mut lowest = [f64::INFINITY; EXTREMES_LANES];
-    let chunks = beta.chunks(EXTREMES_LANES).zip(y.chunks(EXTREMES_LANES));
-    for ((beta, y), f) in chunks.zip(f.chunks(EXTREMES_LANES)) {
+    let chunks = beta
+        .chunks(EXTREMES_LANES)
+        .zip(limits.chunks(EXTREMES_LANES));
+    for ((beta, limits), f) in chunks.zip(f.chunks(EXTREMES_LANES)) {
         let n = beta.len();
-        let (y, f) = (&y[..n], &f[..n]);
+        let (limits, f) = (&limits[..n], &f[..n]);
         let (highest, lowest) = (&mut highest[..n], &mut lowest[..n]);
         for at in 0..n {
-            let (low, high) = bounds(y[at], c);
+            let (low, high) = bounds(limits[at], c);
             let raised = if beta[at] < high {
                 f[at]
             } else {
@@ -208,23 +223,23 @@ pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, 
 
 /// Returns the sum of the gradient f over the variables between their bounds, and the number of these variables.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn sum_of_free(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
+fn sum_of_free(beta: &[f64], limits: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     let (beta, last_beta) = beta.as_chunks::<LANES>();
-    let (y, last_y) = y.as_chunks::<LANES>();
+    let (limits, last_limits) = limits.as_chunks::<LANES>();
     let (f, last_f) = f.as_chunks::<LANES>();
     let n = beta.len();
-    let (y, f) = (&y[..n], &f[..n]);
+    let (limits, f) = (&limits[..n], &f[..n]);
     // Each lane has its own sum; the lanes are added at the end.
     let (mut sum, mut n_free) = ([0.0; LANES], [0.0; LANES]);
     for at in 0..n {
         for lane in 0..LANES {
-            let is_free = weight_if_free(beta[at][lane], y[at][lane], c);
+            let is_free = weight_if_free(beta[at][lane], limits[at][lane], c);
             sum[lane] += is_free * f[at][lane];
             n_free[lane] += is_free;
         }
     }
     for at in 0..last_beta.len() {
-        let is_free = weight_if_free(last_beta[at], last_y[at], c);
+        let is_free = weight_if_free(last_beta[at], last_limits[at], c);
         sum[at] += is_free * last_f[at];
         n_free[at] += is_free;
     }
@@ -233,19 +248,19 @@ fn sum_of_free(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
 
 /// Returns 1 for a variable between its bounds, otherwise 0.
 #[inline(always)]
-fn weight_if_free(beta: f64, y: f64, c: f64) -> f64 {
-    let (low, high) = bounds(y, c);
+fn weight_if_free(beta: f64, limit: f64, c: f64) -> f64 {
+    let (low, high) = bounds(limit, c);
     f64::from(u8::from((beta > low) & (beta < high)))
 }
 
 /// Returns the offset ρ: the mean of −f over the variables between their bounds. If there are none, returns the middle of the interval that the others allow
 /// (LIBSVM's rule).
-pub(super) fn rho(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
-    let (sum, n_free) = sum_of_free(beta, y, f, c);
+pub(super) fn rho(beta: &[f64], limits: &[f64], f: &[f64], c: f64) -> f64 {
+    let (sum, n_free) = sum_of_free(beta, limits, f, c);
     if n_free > 0.0 {
         return -sum / n_free;
     }
-    match extremes(beta, y, f, c) {
+    match extremes(beta, limits, f, c) {
         (highest, lowest) if highest.is_finite() && lowest.is_finite() => -(highest + lowest) / 2.0,
         (highest, _) if highest.is_finite() => -highest,
         (_, lowest) => -lowest,

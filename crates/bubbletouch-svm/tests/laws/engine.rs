@@ -3,6 +3,7 @@
 
 use crate::drawn::{folds, rng};
 use crate::svm_conditions::{Worth, kernel_value};
+use bubbletouch_svm::class_weight::ClassWeight;
 use bubbletouch_svm::cross_validation::choice::{Candidates, Chosen, choose};
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
 use bubbletouch_svm::kernel::{Gamma, Kernel};
@@ -161,11 +162,16 @@ fn each_model_of_a_path_is_that_of_training_its_c_alone_in_the_order_asked() {
 #[test]
 fn wide_rows_that_few_support_are_solved_to_the_optimum_of_all_rows() {
     // With this many features, only rows near a margin are multiplied with each other; the classes are far apart, touching, or mixed.
-    for (apart, counts) in [
-        (1.0, [90, 80, 70]),
-        (0.12, [90, 80, 70]),
-        (0.0, [90, 80, 100]),
+    for (apart, counts, class_weight) in [
+        (1.0, [90, 80, 70], ClassWeight::Uniform),
+        (0.12, [90, 80, 70], ClassWeight::Uniform),
+        (0.0, [90, 80, 100], ClassWeight::Uniform),
+        (0.12, [40, 80, 120], ClassWeight::Balanced),
     ] {
+        let params = |kernel, c, tolerance| SvmParams {
+            class_weight,
+            ..params(kernel, c, tolerance)
+        };
         let data = clouds(&counts, 130, apart, 11);
         for tolerance in [1e-3, 1e-6] {
             let path = [0.001, 0.1, 1.0];
@@ -448,6 +454,26 @@ fn optimal(params: SvmParams, data: &Dataset) -> SvmModel {
     }
     assert_eq!(model.n_capped(), 0, "{params:?}");
     model
+}
+
+#[test]
+fn balanced_classes_are_solved_to_the_optimum_with_a_penalty_per_row() {
+    // Kernel values in f64, and in f32 with omitted variables.
+    for (counts, tolerance) in [(vec![40, 10, 25], 1e-8), (vec![1000, 50], 1e-3)] {
+        let data = clouds(&counts, 5, 0.6, 13);
+        for kernel in KERNELS {
+            for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+                for c in [0.01, 1.0, 100.0] {
+                    let params = SvmParams {
+                        multiclass,
+                        class_weight: ClassWeight::Balanced,
+                        ..params(kernel, c, tolerance)
+                    };
+                    optimal(params, &data);
+                }
+            }
+        }
+    }
 }
 
 fn multipliers(model: &SvmModel) -> Vec<f64> {

@@ -11,10 +11,11 @@ use bubbletouch_svm::classifiers::classifier::{Classifier, Cost};
 use bubbletouch_svm::classifiers::logistic_regression::LogisticParams;
 use bubbletouch_svm::cross_validation::choice::Candidates;
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
+use bubbletouch_svm::kernel::{Gamma, Kernel};
 use bubbletouch_svm::linear_svm::{LinearSvm, LinearSvmParams};
-use bubbletouch_svm::{Multiclass, Solver};
+use bubbletouch_svm::{Multiclass, Solver, SvmParams};
 use linfa::traits::Fit;
-use ndarray::{Array1, Array2};
+use ndarray::{Array1, Array2, s};
 use rand::Rng;
 
 /// Returns 60 rows of 5 features in 4 alternating classes.
@@ -25,6 +26,13 @@ fn waves() -> Dataset {
     };
     let features = Array2::from_shape_fn((60, 5), value);
     dataset(features, Array1::from_iter((0..60).map(|i| i % 4))).unwrap()
+}
+
+/// Returns 15, 5 and 3 rows of the first three classes of [`waves`].
+fn unequal() -> Dataset {
+    let is_kept = |row: &usize| row.is_multiple_of(4) || row % 12 == 1 || row % 20 == 2;
+    let kept: Vec<usize> = (0..60).filter(is_kept).collect();
+    rows(&waves(), &kept).unwrap()
 }
 
 /// Returns overlapping clusters of unequal size.
@@ -43,6 +51,7 @@ fn train(data: &Dataset, c: f64, tolerance: f64) -> LinearSvm {
         c,
         tolerance,
         max_passes: 1_000_000,
+        ..LinearSvmParams::default()
     };
     params.train(data, &5_u64).unwrap()
 }
@@ -131,6 +140,7 @@ fn a_pass_cap_that_is_hit_is_counted() {
         c: 100.0,
         tolerance: 1e-9,
         max_passes: 2,
+        ..LinearSvmParams::default()
     };
     let svm = params.train(&data, &0_u64).unwrap();
     assert_eq!(svm.n_capped(), 3);
@@ -225,33 +235,106 @@ fn logistic_regression_reaches_its_tolerance_at_any_penalty_and_in_any_units() {
 
 #[test]
 fn balanced_weights_equal_repeated_rows() {
-    // Class 0 has three times the rows of class 1; repeating the rows of class 1 three times balances them.
-    let data = waves();
-    let is_kept = |row: &usize| row.is_multiple_of(4) || row % 12 == 1;
-    let few: Vec<usize> = (0..60).filter(is_kept).collect();
-    let repeated = few
-        .iter()
-        .flat_map(|&row| vec![row; if row % 4 == 0 { 1 } else { 3 }]);
-    let (few, repeated) = (
-        rows(&data, &few).unwrap(),
-        rows(&data, &repeated.collect::<Vec<_>>()).unwrap(),
-    );
-    let params = LogisticParams {
-        tolerance: 1e-12,
-        ..LogisticParams::default()
+    // Class 0 has three times the rows of class 1 and five times those of class 2; repeating their rows balances the classes.
+    let few = unequal();
+    let repeated = few.targets.iter().enumerate();
+    let repeated = repeated.flat_map(|(row, &class)| vec![row; [1, 3, 5][class]]);
+    let repeated = rows(&few, &repeated.collect::<Vec<_>>()).unwrap();
+    type Scores = Box<dyn Fn(&Dataset, ClassWeight, f64) -> Array2<f64>>;
+    let logistic = |data: &Dataset, class_weight, c| {
+        let params = LogisticParams {
+            c,
+            class_weight,
+            tolerance: 1e-12,
+            ..LogisticParams::default()
+        };
+        params
+            .train(data)
+            .unwrap()
+            .scores(waves().records.view())
+            .unwrap()
     };
-    // The weights of the rows are 2/3 and 2.
-    let balanced = LogisticParams {
+    let descent = |data: &Dataset, class_weight, c| {
+        let params = LinearSvmParams {
+            c,
+            class_weight,
+            tolerance: 1e-9,
+            max_passes: 1_000_000,
+        };
+        let svm = params.train(data, &5_u64).unwrap();
+        let ends = svm.convergence().iter();
+        assert!(ends.into_iter().all(|end| end.primal - end.dual < 1e-6));
+        svm.scores(waves().records.view()).unwrap()
+    };
+    let smo = |multiclass| {
+        move |data: &Dataset, class_weight, c| {
+            let params = SvmParams {
+                c,
+                class_weight,
+                multiclass,
+                tolerance: 1e-9,
+                ..SvmParams::default()
+            };
+            let svm = params.train(data).unwrap();
+            svm.decision_values(waves().records.view()).unwrap()
+        }
+    };
+    let all: [Scores; 4] = [
+        Box::new(logistic),
+        Box::new(descent),
+        Box::new(smo(Multiclass::OneVsOne)),
+        Box::new(smo(Multiclass::OneVsRest)),
+    ];
+    for (number, scores) in all.iter().enumerate() {
+        // The weights of the rows of class 0, 1 and 2 are 23/45, 23/15 and 23/9.
+        let balanced = scores(&few, ClassWeight::Balanced, 45.0 / 23.0);
+        let repeated = scores(&repeated, ClassWeight::Uniform, 1.0);
+        let worst = (&balanced - &repeated).fold(0.0, |worst: f64, error| error.abs().max(worst));
+        assert!(worst < 1e-5, "{number}: {worst}");
+    }
+}
+
+#[test]
+fn balanced_svms_equal_scikit_learns() {
+    // SVC(C=2, kernel, tol=1e-9, class_weight="balanced"), and LinearSVC(C=0.5, loss="hinge", dual=True, tol=1e-9, max_iter=10**6,
+    // class_weight="balanced") on the first two classes.
+    let data = unequal();
+    let gamma = Gamma::Scale;
+    for (kernel, expected) in [
+        (Kernel::Linear, [0.996787041, 1.850892466, 3.767750455]),
+        (
+            Kernel::Rbf { gamma },
+            [1.001789851, 1.002117366, 0.891388367],
+        ),
+    ] {
+        let params = SvmParams {
+            kernel,
+            c: 2.0,
+            class_weight: ClassWeight::Balanced,
+            tolerance: 1e-9,
+            ..SvmParams::default()
+        };
+        let svm = params.train(&data).unwrap();
+        let row = waves().records.slice_move(s![3..4, ..]);
+        assert_near(svm.decision_values(row.view()).unwrap(), &expected, 1e-6);
+    }
+    let two: Vec<usize> = (0..23).filter(|&row| data.targets[row] < 2).collect();
+    let params = LinearSvmParams {
+        c: 0.5,
         class_weight: ClassWeight::Balanced,
-        c: 1.5,
-        ..params
+        tolerance: 1e-9,
+        max_passes: 1_000_000,
     };
-    let (balanced, repeated) = (
-        balanced.train(&few).unwrap(),
-        params.train(&repeated).unwrap(),
-    );
-    let both = [balanced, repeated].map(|model| model.scores(data.records.view()).unwrap());
-    assert!((&both[0] - &both[1]).iter().all(|error| error.abs() < 1e-5));
+    let svm = params.train(&rows(&data, &two).unwrap(), &5_u64).unwrap();
+    let expected = [
+        0.12289134,
+        -0.75730316,
+        -0.27572295,
+        -0.24555794,
+        -0.80190534,
+    ];
+    assert_near(svm.model().weights.row(1).to_vec(), &expected, 1e-6);
+    assert_near([svm.model().bias[1]], &[0.56607845], 1e-6);
 }
 
 #[test]

@@ -5,6 +5,7 @@ use crate::report::csv_tables::{CAPPED_FITS, LIMITS_FILE, MISSED_TOUCHES};
 use crate::report::study_folder::words_of;
 use crate::report::swept::{Setting, Swept, without};
 use crate::report::terminal::paragraph;
+use crate::studies::recognition::charts::chance::ChanceLevels;
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::robustness::robustness_words;
 use crate::studies::recognition::charts::tables::CONFIGURATIONS;
@@ -160,34 +161,16 @@ fn effects(configurations: &Table) -> Option<Vec<String>> {
 /// Returns the accuracy of an answer that is always the same object, if objects have unequal numbers of test rows; `None` if they are about equal.
 fn always_one(tables: &[Table]) -> Option<String> {
     let confusion = filled(tables, "confusion.csv")?;
-    let counts = |rows: Vec<usize>| -> Vec<(usize, f64)> {
-        let of_objects = confusion.groups(&["object"], rows).into_iter();
-        let count = |rows: Vec<usize>| {
-            let n = rows.iter().map(|&row| confusion.number("count", row));
-            (rows[0], n.sum())
-        };
-        of_objects.map(count).collect()
-    };
-    let of_cells = confusion.groups(&["configuration"], 0..confusion.n_rows);
-    let shares = of_cells.into_iter().filter_map(|rows| {
-        let counts = counts(rows);
-        let &(row, most) = counts.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let all: f64 = counts.iter().map(|(_, n)| n).sum();
-        Some((row, most / all, counts.len()))
-    });
-    let (row, share, n) = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let object = confusion.word("object", row);
-    (share * n as f64 > UNEQUAL).then(|| {
-        format!(
-            "Objects have unequal numbers of test touches: the answer \"{object}\" alone has an accuracy of {share:.2}, and a balanced accuracy of {:.2} (1 in {n}).",
-            1.0 / n as f64
-        )
-    })
+    let chances = ChanceLevels::new(confusion);
+    let all = (0..confusion.n_rows).map(|row| chances.of(confusion.number("configuration", row)));
+    let (share, object, n) = all
+        .filter_map(|chance| Some((chance.accuracy, chance.object?, chance.n_objects)))
+        .reduce(|most, next| if next.0 > most.0 { next } else { most })?;
+    Some(format!(
+        "Objects have unequal numbers of test touches: the answer \"{object}\" alone has an accuracy of {share:.2}, and a balanced accuracy of {:.2} (1 in {n}).",
+        1.0 / n as f64
+    ))
 }
-
-/// Number of test rows of the most frequent object relative to the mean, above which objects have unequal numbers. With a smaller value, rounding of a split
-/// is reported; with a larger one, a chance level above 1 in n objects may be missed.
-const UNEQUAL: f64 = 1.1;
 
 /// Returns remarks on omitted touches, and on trained classifiers whose solver stopped at a limit. If there are too few trials for a p-value, a remark gives
 /// the required number.

@@ -1,6 +1,7 @@
 //! Charts, answers and further page sections of a recognition study.
 
 pub(crate) mod answers;
+pub(crate) mod chance;
 pub(crate) mod filled;
 pub(crate) mod robustness;
 pub(crate) mod sections;

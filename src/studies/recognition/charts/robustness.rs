@@ -16,11 +16,11 @@ use crate::random::Seed;
 use crate::report::swept::{Setting, Swept};
 use crate::row;
 use crate::statistics::p_status::CONFIDENCE;
+use crate::studies::recognition::charts::chance::ChanceLevels;
 use crate::table::{Data, File, Role, Table, Value};
 use rand_distr::{Beta, Distribution};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 
 pub(super) const ROBUSTNESS: File<Robustness> = File::new(
     "robustness.csv",
@@ -44,7 +44,8 @@ pub struct Robustness {
     clean_at: f64 => Note "most accurate at": Linear;
     /// Highest mean accuracy of the design over all values of the condition, 0 to 1.
     clean_accuracy: f64 => Note "accuracy there": Share;
-    /// Chance level of the accuracy, 0 to 1: one divided by the number of objects.
+    /// Chance level of the accuracy, 0 to 1: one divided by the number of objects, or the fraction of the most frequent object if objects have unequal
+    /// numbers of test touches.
     chance: f64 => Note: Share;
     /// Accuracy half-way between the highest accuracy and chance, 0 to 1: `chance + (clean_accuracy − chance) / 2`.
     half_accuracy: f64 => Note "half-way to chance": Share;
@@ -250,7 +251,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
             }
         }
     }
-    let n_objects = ObjectCounts::new(confusion);
+    let chances = ChanceLevels::new(confusion);
     let of_condition = curves.chunk_by(|a, b| a.0 == b.0);
     let rows = of_condition.flat_map(|curves| {
         let rows: Vec<usize> = curves
@@ -260,7 +261,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
             .collect();
         let settings = Swept::new(summary, &rows).free;
         let rows = curves.par_iter().flat_map_iter(|(condition, along)| {
-            both_sides(summary, &n_objects, (condition, along), &settings)
+            both_sides(summary, &chances, (condition, along), &settings)
         });
         rows.collect::<Vec<_>>()
     });
@@ -274,7 +275,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
 /// Returns one row for each direction, starting from the highest accuracy, in which the condition has further values.
 fn both_sides(
     summary: &Table,
-    n_objects: &ObjectCounts,
+    chances: &ChanceLevels,
     (condition, along): (&str, &[usize]),
     settings: &[Setting],
 ) -> Vec<Robustness> {
@@ -297,7 +298,7 @@ fn both_sides(
     let best = curve.best();
     let row = along[best];
     let configuration = summary.number("configuration", row);
-    curve.chance = 1.0 / n_objects.n_objects(configuration) as f64;
+    curve.chance = chances.of(configuration).accuracy;
     let said = |one: &&Setting| {
         let has_value = one.data.value(row).is_some() || !one.column.word("").is_empty();
         has_value && one.column.name != condition
@@ -331,35 +332,6 @@ fn both_sides(
     };
     let sides = [Direction::Larger, Direction::Smaller].map(side);
     sides.into_iter().flatten().collect()
-}
-
-/// Number of objects that each configuration distinguishes, derived from the confusion matrices.
-pub(super) struct ObjectCounts {
-    of_cells: HashMap<u64, usize>,
-    of_all: usize,
-}
-
-impl ObjectCounts {
-    pub(super) fn new(confusion: &Table) -> Self {
-        let mut of_cells = HashMap::new();
-        for rows in confusion.groups(&["configuration", "object"], 0..confusion.n_rows) {
-            let configuration = confusion.number("configuration", rows[0]);
-            *of_cells.entry(configuration.to_bits()).or_default() += 1;
-        }
-        let of_all = confusion.groups(&["object"], 0..confusion.n_rows).len();
-        Self { of_cells, of_all }
-    }
-
-    /// Returns the number of objects that a configuration distinguishes, at least 1. If only some confusion matrices are stored, all configurations have the
-    /// same objects.
-    fn n_objects(&self, configuration: f64) -> usize {
-        self.own(configuration).unwrap_or(self.of_all).max(1)
-    }
-
-    /// Returns the number of objects that a configuration recognises, or `None` if its confusion matrix is not stored.
-    pub(super) fn own(&self, configuration: f64) -> Option<usize> {
-        self.of_cells.get(&configuration.to_bits()).copied()
-    }
 }
 
 /// Returns a sentence for each condition: the value at which the most robust design has lost half of its accuracy above chance.

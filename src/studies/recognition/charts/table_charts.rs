@@ -6,6 +6,7 @@
 
 use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
+use crate::studies::recognition::charts::chance::ChanceLevels;
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::{
     CHANCE, CONFIGURATIONS, OVER_FOLDS, OVER_TRIAL, SELECTED_TAXELS, note_of_groups,
@@ -55,23 +56,19 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     charts
 }
 
-/// Returns a horizontal line at the chance level of the accuracy. If configurations differ in their number of objects, the line has one level per
-/// configuration.
+/// Returns a horizontal line at the chance level of the accuracy. If configurations differ in it, the line has one level per configuration.
 fn chance(configurations: &Table, confusion: Option<&Table>) -> Option<Rule> {
     if configurations.numbers(CHANCE).is_some() {
         return Some(Rule {
             along: Along::Y,
             at: At::Column(CHANCE.to_owned()),
-            words: "chance (1 in the objects of each configuration)".to_owned(),
+            words: "chance of each configuration".to_owned(),
         });
     }
     let confusion = confusion?;
-    let first = confusion
-        .groups(&["configuration"], 0..confusion.n_rows)
-        .swap_remove(0);
-    let n_objects = confusion.groups(&["object"], first).len();
-    let words = format!("chance (1 in {n_objects})");
-    Some(Rule::at(Along::Y, 1.0 / n_objects as f64, words))
+    let first = confusion.number("configuration", 0);
+    let chance = ChanceLevels::new(confusion).of(first);
+    Some(Rule::at(Along::Y, chance.accuracy, chance.words()))
 }
 
 /// Returns accuracy charts that together show every configuration. If signal settings vary one at a time, each has its own chart, with the setting along x.

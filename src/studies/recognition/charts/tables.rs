@@ -7,7 +7,8 @@ use crate::report::csv_tables::LIMITS_FILE;
 use crate::statistics::bootstrap::coverage_of_95;
 use crate::statistics::grouped::FEW_GROUPS;
 use crate::statistics::p_status::CONFIDENCE;
-use crate::studies::recognition::charts::robustness::{ObjectCounts, ROBUSTNESS, robustness};
+use crate::studies::recognition::charts::chance::ChanceLevels;
+use crate::studies::recognition::charts::robustness::{ROBUSTNESS, robustness};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
     Comparison, ConfigurationScore, Confused, Confusion, Limit, Pareto, Prediction, Predictions,
@@ -327,13 +328,13 @@ fn note_of_few_trials(table: &Table) -> Option<String> {
 /// Name of the column in [`CONFIGURATIONS`] that contains the chance level. The column is present only if configurations differ in it.
 pub(crate) const CHANCE: &str = "chance";
 
-/// Returns the column of chance levels, which is one divided by the number of objects of each configuration. Returns `None` if all configurations have equal
-/// levels, or if a confusion matrix is not stored.
+/// Returns the column of chance levels, one per configuration. Returns `None` if all configurations have equal levels, or if a confusion matrix is not
+/// stored.
 fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)> {
-    let n_objects = ObjectCounts::new(confusion);
+    let chances = ChanceLevels::new(confusion);
     let chance = (0..summary.n_rows).map(|row| {
-        let own = n_objects.own(summary.number("configuration", row));
-        own.map(|n| 1.0 / n as f64)
+        let own = chances.own(summary.number("configuration", row));
+        own.map(|chance| chance.accuracy)
     });
     let chance = Data::Numbers(chance.collect::<Option<_>>()?);
     let role = Role::Value(Better::Neither);

@@ -39,6 +39,12 @@ impl Frames {
         self.encoded.len()
     }
 
+    /// Returns the mean size of an encoded frame, bytes; 0 without frames.
+    pub(crate) fn mean_bytes(&self) -> f64 {
+        let sizes = self.encoded.iter().map(|frame| frame.len());
+        sizes.sum::<usize>() as f64 / self.n().max(1) as f64
+    }
+
     /// Decodes frame `number` into `frame`, shape (n_values,). Several threads may read at the same time.
     ///
     /// # Panics

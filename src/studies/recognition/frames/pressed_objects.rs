@@ -1,7 +1,7 @@
 //! Implementation of [`TouchSet`] for touches of pressed objects.
 
 use crate::contact::saturation_limit;
-use crate::engine::progress::Progress;
+use crate::engine::progress::{Progress, Silent};
 use crate::error::Result;
 use crate::objects::Model;
 use crate::random::Seed;
@@ -19,6 +19,10 @@ use crate::world::Touch;
 use ndarray::Array1;
 use rand::Rng;
 use rayon::prelude::*;
+
+/// Maximum number of touches of each object that are simulated to estimate the size of a frame. With a larger value, plans take longer; with a smaller value,
+/// the estimate of the memory is less accurate.
+const SAMPLED_TOUCHES: usize = 4;
 
 impl TouchSet for Vec<TouchedObject> {
     fn classes(&self) -> Vec<(&str, usize)> {
@@ -41,7 +45,11 @@ impl TouchSet for Vec<TouchedObject> {
     }
 
     fn simulate(&self, on: (&TaxelArray, usize), progress: &dyn Progress) -> Frames {
-        press_objects(self, on, progress)
+        press_objects(self, on, usize::MAX, progress)
+    }
+
+    fn frame_bytes(&self, on: (&TaxelArray, usize)) -> f64 {
+        press_objects(self, on, SAMPLED_TOUCHES, &Silent).mean_bytes()
     }
 
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {

@@ -23,10 +23,11 @@ pub fn simulate_array(
 /// Presses one array on every object, touch by touch; the results do not depend on the number of threads.
 ///
 /// A touch to depth d consists of F = `n_frames` frames, read at the depths d/F, 2d/F, …, d. If the array slides, the frames are read at F points of its path.
-/// Each frame is simulated as a separate touch, because a taxel at rest has no memory.
+/// Each frame is simulated as a separate touch, because a taxel at rest has no memory. At most `n_touches` touches of each object are simulated.
 pub(crate) fn press_objects(
     touched: &[TouchedObject],
     (array, n_frames): (&TaxelArray, usize),
+    n_touches: usize,
     progress: &dyn Progress,
 ) -> Frames {
     let mut frames = Frames::new((array.n_values(), n_frames));
@@ -38,7 +39,7 @@ pub(crate) fn press_objects(
     {
         let press = array.press(&object.model);
         let press =
-            |touch: &Touch, workspace: &mut ArrayWorkspace, mut rows: ArrayViewMut2<f32>| {
+            |touch: &&Touch, workspace: &mut ArrayWorkspace, mut rows: ArrayViewMut2<f32>| {
                 let pose = touch.patch_from_object(&rests[touch.rest]);
                 let mut last = None;
                 for (frame, row) in rows.outer_iter_mut().enumerate() {
@@ -49,7 +50,9 @@ pub(crate) fn press_objects(
                 let reads_any = |count: fn(Contact) -> usize| last.is_some_and(|c| count(c) > 0);
                 (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
             };
-        frames.make(touches, ArrayWorkspace::default, press, progress);
+        let step = touches.len().div_ceil(n_touches).max(1);
+        let touches: Vec<&Touch> = touches.iter().step_by(step).collect();
+        frames.make(&touches, ArrayWorkspace::default, press, progress);
     }
     frames
 }

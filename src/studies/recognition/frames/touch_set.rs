@@ -13,6 +13,7 @@ use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::touches::drawn_touches::touch_labels;
 use crate::world::Touch;
+use bubbletouch_sim::frame_coding::most_bytes;
 use ndarray::Array1;
 use std::collections::BTreeMap;
 
@@ -92,6 +93,11 @@ pub trait TouchSet: Sync {
 
     /// Simulates all touches on an array with the given number of frames per touch; the result does not depend on the number of threads.
     fn simulate(&self, on: (&TaxelArray, usize), progress: &dyn Progress) -> Frames;
+
+    /// Returns the mean size of an encoded frame on an array with the given number of frames per touch, bytes. The default is the largest possible size.
+    fn frame_bytes(&self, (array, _): (&TaxelArray, usize)) -> f64 {
+        most_bytes(array.n_values()) as f64
+    }
 
     /// Returns the random seed, the timing and the preceding touch of each touch in a trial. All random numbers are derived from `seed`. Pressed objects are
     /// read at a speed (m/s, 0 at rest), each touch after another randomly drawn touch.

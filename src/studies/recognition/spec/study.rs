@@ -152,8 +152,8 @@ pub struct RecognitionSpec {
     #[serde(default)]
     #[schemars(with = "Names<Multiclass>")]
     pub multiclass: Multiclass,
-    /// Weights of the objects in the training of logistic regressions and random forests: `uniform` (default), or `balanced`, as in scikit-learn: the weight of
-    /// an object is inverse to its number of training rows.
+    /// Weights of the objects in the training of SVMs, logistic regressions and random forests: `uniform` (default), or `balanced`, as in scikit-learn: the
+    /// weight of an object is inverse to its number of training rows.
     #[serde(default, skip_serializing_if = "is_default")]
     #[schemars(with = "Names<ClassWeight>")]
     pub class_weight: ClassWeight,

@@ -5,15 +5,17 @@ use crate::sensing::N_COMPONENTS;
 use crate::studies::recognition::measurements::measurement::UNTOUCHED;
 use crate::studies::recognition::measurements::measurement_inputs::MeasurementInputs;
 use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::image_features::join_values;
+use crate::studies::recognition::study::load::{SPLIT_BYTES, TOUCH_BYTES};
 use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::sweep::configurations::StudyPart;
 use crate::studies::recognition::sweep::learned_frames::WITH_COPIES;
-use crate::studies::recognition::training::evaluation_inputs::solver_memory;
+use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use bubbletouch_sim::frame_coding::most_bytes;
-use bubbletouch_svm::{Multiclass, Solver};
+use bubbletouch_svm::Multiclass;
+use std::collections::HashSet;
+use std::sync::Arc;
 
 /// Memory of the result rows of one configuration in one trial, bytes.
 const CELL_BYTES: f64 = 4e3;
@@ -21,6 +23,8 @@ const CELL_BYTES: f64 = 4e3;
 const TRAINING_BYTES: f64 = 32.0;
 /// Memory per feature value of the test rows, bytes. The memory covers three copies of a value: original, scaled, and in the format of the kernel.
 const TEST_BYTES: f64 = 20.0;
+/// Memory of an encoded frame beside its values, bytes: its place in the list and the header of its allocation.
+const FRAME_BYTES: f64 = 32.0;
 /// Memory of a score and of its share in decisions on several touches, bytes.
 const SCORE_BYTES: f64 = 16.0;
 
@@ -52,15 +56,18 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         let n_test = part.sweep.splits.iter().map(|split| split.test.len());
         let (n_test, n_classes) = (n_test.max().unwrap_or(0), part.touched.class_names().len());
         let n_read = n_classes * group.n_readings(&part.plan);
-        let bytes = |family: &[Configuration]| {
-            family_bytes(&part.plan, &family[0], n_test, (n_classes, n_read))
-        };
+        let bytes =
+            |family: &[Configuration]| family_bytes(part, family, n_test, (n_classes, n_read));
         largest(group.families().map(bytes))
     };
     // Separate test touches are in memory together with the training touches.
     let n_made = |(part, _): Placed| 1.0 + f64::from(u8::from(part.plan.tested.is_some()));
-    let frames = groups().map(|g| n_made(g) * n_frames(g) * (most_bytes(n_values(g)) + 16) as f64);
-    let frames = largest(frames);
+    let most = |g: &Placed| n_made(*g) * n_frames(*g) * most_bytes(n_values(*g)) as f64;
+    let largest_frames = groups().max_by(|a, b| most(a).total_cmp(&most(b)));
+    let frames = largest_frames.map_or(0.0, |g| {
+        let array = (&g.0.plan.arrays[g.1.array], g.1.frames);
+        n_made(g) * n_frames(g) * (g.0.touched.frame_bytes(array) + FRAME_BYTES)
+    });
     let n_touches = study.of_parts(|part| part.sweep.labels.len().to_string());
     let mut touches = match study.n_arrays() {
         1 => format!("{n_touches} on one array"),
@@ -74,10 +81,26 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         objects: study.of_parts(|part| part.touched.class_names().len().to_string()),
         touches,
         n_configurations: study.n_configurations(),
-        bytes: frames + CELL_BYTES * (study.n_configurations() * study.n_trials()) as f64,
+        bytes: frames
+            + touch_bytes(study)
+            + CELL_BYTES * (study.n_configurations() * study.n_trials()) as f64,
         // While a thread is blocked by other threads, it computes another group. Two items can therefore be in memory.
         item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
     }
+}
+
+/// Returns the memory of the touches of all parts and of their splits, bytes.
+fn touch_bytes(study: &RecognitionStudy) -> f64 {
+    let mut known = HashSet::new();
+    let parts = study.parts().iter();
+    let bytes = parts.map(|part| {
+        let sets = [&part.touched, &part.tested];
+        let new = sets.map(|set| known.insert(Arc::as_ptr(set).cast::<()>()));
+        let n_sets = new.into_iter().filter(|is_new| *is_new).count() as f64;
+        let of_splits = SPLIT_BYTES * part.sweep.splits.len() as f64;
+        part.sweep.labels.len() as f64 * (n_sets * TOUCH_BYTES + of_splits)
+    });
+    bytes.sum()
 }
 
 /// Returns the memory of learned ensembles and image estimators, bytes: the frames for fitting (n values each), and the fitted results.
@@ -92,12 +115,13 @@ fn learned_bytes(inputs: &MeasurementInputs, n: f64) -> f64 {
 
 /// Returns the memory for evaluating a family of configurations, bytes: training and test rows, scores, and kernel values.
 fn family_bytes(
-    plan: &Plan,
-    configuration: &Configuration,
+    part: &StudyPart,
+    family: &[Configuration],
     n_test: usize,
     (n_classes, n_read): (usize, usize),
 ) -> f64 {
-    let learned = &plan.spec.recognition;
+    let (learned, configuration) = (&part.plan.spec.recognition, &family[0]);
+    let training = FamilyInputs::new(&part.plan, &part.sweep, family).training;
     let fuses = learned.touches_per_decision.values().iter().any(|&k| k > 1);
     let n_scores = match (configuration.classifier.has_c(), learned.multiclass) {
         // Without decisions on several touches, test rows are processed in blocks.
@@ -106,16 +130,16 @@ fn family_bytes(
         _ => n_classes,
     };
     let n_copied = n_classes * configuration.tilt_augmentation.unwrap_or(0);
-    let n_train = (configuration.train_touches * (n_read + n_copied)) as f64;
-    let (m, n_test) = (configuration.n_features() as f64, n_test as f64);
-    let of_all = 8.0 * n_train * n_train;
-    let is_kernel_svm = configuration.classifier.about().kernel.is_some();
-    let kernel_values = match (learned.solver, learned.multiclass) {
-        _ if !is_kernel_svm => 0.0,
-        (Solver::CoordinateDescent, _) => 0.0,
-        // The solver keeps at most as many values as its limit allows.
-        _ => of_all.min(solver_memory(learned.solver_memory_gib) as f64),
+    let n_rows = |touches: usize| touches * (n_read + n_copied);
+    let n_train = n_rows(configuration.train_touches);
+    let n_choice = match training.c_grid.is_some() || training.gamma_grid.is_some() {
+        true => training.cv_touches.map_or(n_train, n_rows).min(n_train),
+        false => 0,
     };
+    let n_features = configuration.n_features();
+    let classifier = &training.classifier;
+    let kernel_values = classifier.kernel_bytes([n_train, n_choice], n_classes, n_features);
+    let (m, n_train, n_test) = (n_features as f64, n_train as f64, n_test as f64);
     // Inner folds exist beside the fit on all rows; the model of expected decisions has one table per object and test pose.
     let (n_copies, n_tables) = match learned.is_informed() {
         false => (1.0, 0),
@@ -125,7 +149,7 @@ fn family_bytes(
         + 8.0 * n_test * n_tables as f64
         + TEST_BYTES * n_test * m
         + SCORE_BYTES * n_test * n_scores as f64
-        + kernel_values
+        + kernel_values as f64
 }
 
 fn largest(values: impl Iterator<Item = f64>) -> f64 {

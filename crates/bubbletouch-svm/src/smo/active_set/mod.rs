@@ -34,14 +34,14 @@ pub(crate) struct ActiveSetGoal {
     pub max_steps: u64,
 }
 
-/// Improves the coefficients β by active-set steps and updates their gradient f. Returns the number of steps; 0 if fewer than two variables are free.
+/// Improves the coefficients β by active-set steps and updates their gradient f, given the limits of the coefficients. Returns the number of steps; 0 if fewer than two variables are free.
 pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     gram: &mut G,
-    labels: &[f64],
+    limits: &[f64],
     (beta, f): (&mut [f64], &mut [f64]),
     goal: ActiveSetGoal,
 ) -> u64 {
-    let Some(mut active_set) = ActiveSet::new(gram, labels, (beta, f), goal.c) else {
+    let Some(mut active_set) = ActiveSet::new(gram, limits, (beta, f), goal.c) else {
         return 0;
     };
     let (mut n_steps, mut n_repeats) = (0, 0);
@@ -63,7 +63,8 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
 
 /// State of the active-set method: coefficients, gradient, and factors of the linear equations.
 struct ActiveSet<'a> {
-    labels: &'a [f64],
+    /// Limit of each coefficient: its label times its weight in training.
+    limits: &'a [f64],
     beta: &'a mut [f64],
     /// Gradient `y − Kβ` of the dual objective before the latest changes of β; y are the labels and K is the Gram matrix.
     f: &'a mut [f64],
@@ -81,21 +82,21 @@ impl<'a> ActiveSet<'a> {
     /// Creates the state of the active-set method; returns `None` if fewer than two variables are between their bounds.
     fn new<T: Scalar, G: Gram<T>>(
         gram: &mut G,
-        labels: &'a [f64],
+        limits: &'a [f64],
         (beta, f): (&'a mut [f64], &'a mut [f64]),
         c: f64,
     ) -> Option<Self> {
         let is_free = |&i: &usize| {
-            let (lowest, highest) = bounds(labels[i], c);
+            let (lowest, highest) = bounds(limits[i], c);
             beta[i] > lowest && beta[i] < highest
         };
-        let free: Vec<usize> = (0..labels.len()).filter(is_free).take(MAX_FREE).collect();
+        let free: Vec<usize> = (0..limits.len()).filter(is_free).take(MAX_FREE).collect();
         (free.len() > 1).then(|| {
             let mut own = Self {
-                changes: vec![0.0; labels.len()],
+                changes: vec![0.0; limits.len()],
                 factor: FreeFactor::default(),
                 has_place: Vec::new(),
-                labels,
+                limits,
                 beta,
                 f,
                 c,
@@ -109,7 +110,7 @@ impl<'a> ActiveSet<'a> {
     /// Factorises the kernel matrix of the given free variables.
     fn take<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, free: &[usize]) {
         self.factor = FreeFactor::new(gram, free);
-        self.has_place = vec![false; self.labels.len()];
+        self.has_place = vec![false; self.limits.len()];
         for (_, variable) in self.factor.variables() {
             self.has_place[variable] = true;
         }
@@ -150,7 +151,7 @@ impl<'a> ActiveSet<'a> {
         let (mut share, mut blocked) = (1.0, None);
         for (place, variable) in self.factor.variables() {
             let (beta, step) = (self.beta[variable], steps[place]);
-            let (lowest, highest) = bounds(self.labels[variable], self.c);
+            let (lowest, highest) = bounds(self.limits[variable], self.c);
             let bound = if step > 0.0 { highest } else { lowest };
             if step != 0.0 && (bound - beta) / step <= share {
                 (share, blocked) = ((bound - beta) / step, Some((place, bound)));
@@ -166,7 +167,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     fn violation(&self) -> f64 {
-        violation(self.beta, self.labels, self.f, self.c)
+        violation(self.beta, self.limits, self.f, self.c)
     }
 
     /// Returns the variables at bounds that violate the optimality conditions most, if they violate them more than all free variables.
@@ -174,7 +175,7 @@ impl<'a> ActiveSet<'a> {
         let mut beyond = vec![0.0; self.beta.len()];
         let mut farthest = [0.0_f64; 2];
         for (i, beyond) in beyond.iter_mut().enumerate() {
-            let (lowest, highest) = bounds(self.labels[i], self.c);
+            let (lowest, highest) = bounds(self.limits[i], self.c);
             let by = self.f[i] - self.level;
             let rises = if self.beta[i] < highest { by } else { 0.0 };
             let falls = if self.beta[i] > lowest { -by } else { 0.0 };
