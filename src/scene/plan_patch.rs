@@ -80,7 +80,7 @@ impl Reader<'_> {
         let layout_key = &format!("{key}.layout");
         self.drape_on_own_link(layout_key, spec, robots)?;
         let (layout, radii, notes) = match self.listed_taxels(layout_key, spec, robots)? {
-            Some(listed) => listed,
+            Some((file, radii)) => (file.layout, radii, file.notes),
             None => {
                 let layout = self.layout(layout_key, spec, robots, &seed.named(&spec.name))?;
                 let half_pitch = spec.layout.pitch_mm().map(|pitch_mm| 0.5 * pitch_mm);
@@ -223,7 +223,7 @@ impl Reader<'_> {
         key: &str,
         spec: &mut PatchSpec,
         robots: &[PlannedRobot],
-    ) -> Result<Option<(Layout, PerTaxel<f64>, Vec<String>)>> {
+    ) -> Result<Option<(LayoutFile, PerTaxel<f64>)>> {
         let file = match &spec.layout {
             LayoutSpec::File(file) => self.layout_file(&format!("{key}.file"), file)?,
             LayoutSpec::Sensor(sensor) => {
@@ -256,7 +256,7 @@ impl Reader<'_> {
             Some(radii) => PerTaxel::Each(radii.iter().map(|radius| radius / MM).collect()),
             None => PerTaxel::Equal(file.default_radius() / MM),
         };
-        Ok(Some((file.layout, radii, file.notes)))
+        Ok(Some((file, radii)))
     }
 
     fn layout_file(&self, key: &str, spec: &FileLayoutSpec) -> Result<LayoutFile> {

@@ -1,9 +1,9 @@
 //! Readers of robots from a URDF or MJCF file, its bytes, or its text.
 
+use super::Robot;
 use super::mjcf::read_mjcf;
 use super::text::{decoded, root_name};
-use super::urdf::read_urdf;
-use super::{Robot, TactileSensor};
+use super::urdf::{NamedSensor, read_urdf};
 use crate::error::{Error, Result};
 use crate::files::check_content;
 use std::path::Path;
@@ -22,10 +22,7 @@ impl Robot {
     ///
     /// # Errors
     /// Returns the errors of `from_urdf`.
-    pub fn with_all_sensors(
-        place: &str,
-        text: &str,
-    ) -> Result<(Self, Vec<(String, Result<TactileSensor>)>)> {
+    pub fn with_all_sensors(place: &str, text: &str) -> Result<(Self, Vec<NamedSensor>)> {
         read_urdf(place, text)
     }
 

@@ -57,7 +57,7 @@ pub(super) fn read_urdf(place: &str, text: &str) -> Result<(Robot, Vec<NamedSens
 }
 
 /// Name of a tactile sensor, and its content or fault.
-type NamedSensor = (String, Result<TactileSensor>);
+pub(super) type NamedSensor = (String, Result<TactileSensor>);
 
 type Parts = (String, Vec<Link>, Vec<Joint>, Tree, Vec<Drive>);
 
