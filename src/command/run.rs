@@ -1,11 +1,14 @@
 //! `bubbletouch run`: runs a study file and writes its folder of results.
 
+use crate::command::options::study_args::QUICKSTART_FILE;
 use crate::command::options::study_run::{RunArgs, StudyRun};
 use crate::command::terminal::output::output_folder;
 use crate::command::terminal::signals::keep_journal_on_signals;
+use crate::command::terminal::streams::say;
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal, rename_old_results};
+use bubbletouch::study::provenance::Manifest;
 use bubbletouch::study::work_items::{Part, RunOptions};
 use bubbletouch::{Error, Result};
 use std::path::Path;
@@ -52,6 +55,15 @@ impl Args {
 }
 
 pub fn run(args: &Args) -> Result<()> {
+    if args.demonstration {
+        let folder = args.run.results.folder()?;
+        if Manifest::read(&folder)?.is_some_and(|earlier| !earlier.is_of_this_commit()) {
+            return say(format_args!(
+                "{} has results of another commit, which are kept. `bubbletouch run {QUICKSTART_FILE} --fresh` sets them aside and runs the study.",
+                folder.display()
+            ));
+        }
+    }
     let run = StudyRun::begin(&args.run, args.fresh)?;
     let (study, progress) = (run.study.as_ref(), run.progress.as_ref());
     if let Some(mixed) = args.run.results.study.mixed_touches()? {

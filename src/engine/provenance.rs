@@ -119,6 +119,11 @@ impl Manifest {
         }
     }
 
+    /// Returns whether the results were written by a program with the source code of this program.
+    pub fn is_of_this_commit(&self) -> bool {
+        self.commit == COMMIT
+    }
+
     /// Reads the manifest of a result folder. Returns `None` if there is no manifest, or only one written by `bubbletouch report`.
     ///
     /// # Errors

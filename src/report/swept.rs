@@ -4,6 +4,7 @@
 //! value; for example, m and the array determine the compression ratio. Dependent columns are not shown separately.
 
 use crate::table::{Column, Data, Role, Table, Value};
+use std::cmp::Reverse;
 use std::collections::HashSet;
 
 /// Setting of a table (choice, condition or subject): a column and its values.
@@ -78,6 +79,33 @@ impl<'a> Setting<'a> {
         }
     }
 
+    /// Returns the values of settings in a row in few words, such as `Gaussian, 64:1, touches 5`; settings that do not apply are omitted. A number has its name if it has no
+    /// unit, or if another setting has the same unit.
+    pub fn short_words(settings: &[Self], row: usize) -> String {
+        let said = settings.iter().filter(|one| one.applies(&[row]));
+        let said = said.map(|one| {
+            let unit = &one.column.unit;
+            let alike = settings.iter();
+            let n_alike = alike.filter(|other| other.is_number() && other.column.unit == *unit);
+            match one.is_number() && (unit.is_empty() || n_alike.count() > 1) {
+                true => one.short_phrase(row),
+                false => one.label(row),
+            }
+        });
+        said.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Returns the name and value of the setting in a row as text without what the name counts per, such as `touches 5` for touches per decision.
+    fn short_phrase(&self, row: usize) -> String {
+        let name = self.column.words.split(" per ").next().unwrap_or_default();
+        let words = name.to_owned().into();
+        let column = &Column {
+            words,
+            ..self.column.clone()
+        };
+        Setting { column, ..*self }.phrase(row)
+    }
+
     /// Returns the value of the setting in a row as text. For an absent value, returns the column's name for it, or "none".
     pub fn label(&self, row: usize) -> String {
         match self.data.value(row) {
@@ -124,7 +152,11 @@ impl<'a> Swept<'a> {
         let (mut free, fixed): (Vec<Setting>, Vec<Setting>) =
             all.partition(|one| !rows.is_empty() && one.varies(rows));
         let mut order = free.clone();
-        order.sort_by_key(|one| one.column.gives_way.unwrap_or(u8::MAX));
+        // Of two settings that determine each other, the one that was swept has fewer values.
+        order.sort_by_key(|one| {
+            let rank = one.column.gives_way.unwrap_or(u8::MAX);
+            (rank, Reverse(one.levels(rows).len()))
+        });
         let mut following = Vec::new();
         for one in order {
             let others = without(&free, &one);

@@ -78,10 +78,26 @@ struct TextColumn {
     /// Text of the column in each row of the table.
     said: Vec<String>,
     is_number: bool,
+    /// Largest width for which a column of words asks; longer texts wrap.
+    most: usize,
 }
 
+impl TextColumn {
+    /// Returns the smallest width of the column, characters. Headings and long texts wrap between words; numbers with units and intervals do not wrap.
+    fn least_width(&self) -> usize {
+        let widest = self.said.iter().map(|text| letters(text)).max();
+        let widest = widest.unwrap_or(0);
+        let most = if self.is_number { widest } else { self.most };
+        widest.min(most).max(longest_word(&self.head))
+    }
+}
+
+/// Largest width for which a column of words asks, characters. With a larger value, fewer columns fit; with a smaller value, more texts wrap.
+const WIDE: usize = 24;
+
 /// Returns a table as text without escape codes, in lines of at most `width` characters. Settings that are equal in all rows are stated once, at the start.
-/// Each row then has a line with its varying settings, values and costs, as far as there is space.
+/// Each row then has a line with its varying settings, values and costs. If the settings leave no space for a value, one column has all choices and conditions. A
+/// remark names the columns for which there is no space.
 ///
 /// A table of more than 40 rows is shown as a pivot table: one setting runs along the columns. If the settings do not distinguish all rows, the text contains
 /// the first 40 rows and the number of all rows.
@@ -92,16 +108,58 @@ pub fn table_text(table: &Table, width: usize) -> String {
         return text;
     }
     let n_lines = table.n_rows.min(MAX_LINES);
-    let columns = shown_columns(table).into_iter();
-    let columns = columns.map(|setting| TextColumn {
+    let of = |setting: &Setting| TextColumn {
         head: setting.column.words.to_string(),
         said: (0..n_lines)
             .map(|row| table.bounded(setting.column, row))
             .collect(),
         is_number: setting.is_number(),
-    });
-    let mut text = constants(table, width);
-    text += &columns_text(columns.collect(), n_lines, width).0;
+        most: WIDE,
+    };
+    let shown = shown_columns(table);
+    let mut columns: Vec<TextColumn> = shown.iter().map(of).collect();
+    let is_setting = |one: &&Setting| {
+        matches!(
+            one.column.role,
+            Role::Choice | Role::Condition | Role::Subject
+        )
+    };
+    let n_needed = 1 + shown.iter().filter(is_setting).count();
+    if n_fitting(&columns, width) < n_needed.min(columns.len()) {
+        let (settings, others): (Vec<Setting>, Vec<Setting>) = shown
+            .iter()
+            .copied()
+            .partition(|one| matches!(one.column.role, Role::Choice | Role::Condition));
+        let rows: Vec<usize> = (0..table.n_rows).collect();
+        let following = Swept::new(table, &rows).following;
+        let settings = following
+            .iter()
+            .fold(settings, |kept, one| without(&kept, one));
+        let heads: Vec<&str> = settings.iter().map(|one| &one.column.words[..]).collect();
+        let together = TextColumn {
+            head: heads.join(", "),
+            said: (0..n_lines)
+                .map(|row| Setting::short_words(&settings, row))
+                .collect(),
+            is_number: false,
+            most: width / 2,
+        };
+        columns = others.iter().map(of).collect();
+        let n_subjects = others
+            .iter()
+            .filter(|one| one.column.role == Role::Subject)
+            .count();
+        if !settings.is_empty() {
+            columns.insert(n_subjects, together);
+        }
+    }
+    let heads: Vec<String> = columns.iter().map(|column| column.head.clone()).collect();
+    let (lines, n_shown) = columns_text(columns, n_lines, width);
+    let mut text = constants(table, width) + &lines;
+    if let left_out @ [_, ..] = &heads[n_shown..] {
+        let remark = format!("Left out at this width: {}.", left_out.join(", "));
+        text += &paragraph(&remark, width);
+    }
     if table.n_rows > MAX_LINES {
         let (n, file) = (table.n_rows, table.file);
         let remark = format!("The first {MAX_LINES} of {n} rows; all are in {file}.");
@@ -141,23 +199,19 @@ fn is_informative(table: &Table, setting: &Setting) -> bool {
     }
 }
 
-/// Returns the first `n_lines` lines of the columns that fit into `width`, and the number of these columns.
-fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (String, usize) {
+/// Returns the number of columns that fit into `width`, from the first one.
+fn n_fitting(columns: &[TextColumn], width: usize) -> usize {
     let mut used = 0;
-    let fits = |column: &TextColumn| {
-        let widest = column.said.iter().map(|text| letters(text)).max();
-        let widest = widest.unwrap_or(0);
-        // A long note wraps, a number does not.
-        let wide = if column.is_number {
-            widest
-        } else {
-            widest.min(24)
-        };
-        let head = letters(&column.head).min(widest.max(longest_word(&column.head)));
-        used += wide.max(head) + COLUMN_GAP;
+    let fits = |column: &&TextColumn| {
+        used += column.least_width() + COLUMN_GAP;
         used <= width + COLUMN_GAP
     };
-    let n = columns.iter().map(fits).take_while(|fits| *fits).count();
+    columns.iter().take_while(fits).count()
+}
+
+/// Returns the first `n_lines` lines of the columns that fit into `width`, and the number of these columns.
+fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (String, usize) {
+    let n = n_fitting(&columns, width);
     columns.truncate(n.max(1));
     let mut shown = ruled_table(width);
     shown.set_header(columns.iter().map(|column| &column.head));
@@ -169,18 +223,16 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
         if text.is_number {
             column.set_cell_alignment(CellAlignment::Right);
         }
-        let is_interval = |text: &String| text.contains('[');
-        column.set_constraint(match text.said.iter().any(is_interval) {
-            // A wrapped interval would be hard to read.
-            true => ColumnConstraint::ContentWidth,
-            // Headings wrap between words; numbers with units do not wrap. The width includes the padding.
-            false => {
-                let widest = text.said.iter().map(|text| letters(text)).max();
-                let unbroken = widest.filter(|_| text.is_number).unwrap_or(0);
-                let least = unbroken.max(longest_word(&text.head)) + 2;
-                ColumnConstraint::LowerBoundary(Width::Fixed(least as u16))
-            }
-        });
+        // Headings and long texts wrap between words; numbers with units and intervals do not wrap. The width includes the padding.
+        let most = if text.is_number {
+            usize::MAX
+        } else {
+            text.most
+        };
+        let widest = text.said.iter().map(|text| letters(text)).max();
+        let unbroken = widest.unwrap_or(0).min(most);
+        let least = unbroken.max(longest_word(&text.head)) + 2;
+        column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(least as u16)));
     }
     let lines = shown.lines();
     let lines: String = lines
@@ -230,6 +282,7 @@ fn pivot_text(table: &Table, width: usize) -> Option<String> {
         head: one.column.words.to_string(),
         said: shown.iter().map(|line| one.label(line[0])).collect(),
         is_number: one.is_number(),
+        most: WIDE,
     });
     let alone = Column {
         interval: None,
@@ -245,6 +298,7 @@ fn pivot_text(table: &Table, width: usize) -> Option<String> {
         head: across.label(level),
         said: shown.iter().map(|line| at(line, level)).collect(),
         is_number: true,
+        most: WIDE,
     });
     let columns = labels.chain(values).collect();
     let (text, n_shown) = columns_text(columns, shown.len(), width);

@@ -21,13 +21,16 @@ pub struct ChartSpec {
     pub x_is: Option<Column>,
     /// Name of the column along the y axis. If the column has an interval, the chart shows a band or error bars.
     pub y: String,
-    /// Columns that divide the rows into lines or point colours, one for each combination of values. In a chart of tiles, each combination has its own row of
-    /// panels.
+    /// Column whose texts are written above the points; `None` for points without such labels.
+    pub label: Option<String>,
+    /// Columns that divide the rows into lines or point colours, one for each combination of values.
     pub lines: Vec<String>,
     /// Column that divides the rows into panels, one for each value; `None` for a single panel.
     pub panels: Option<String>,
     /// Type of the marks: lines, points or tiles.
     pub mark: Mark,
+    /// Rows whose results are right; the markers of other rows are crosses. `None` if all markers are alike.
+    pub right: Option<Shown>,
     /// Reference lines across the chart, such as the chance level, a limit or a published value.
     pub rules: Vec<Rule>,
     /// Whether the Pareto front of the points is drawn. The x axis is the cost, and the role of the y column defines the better direction.
@@ -90,7 +93,7 @@ impl Mark {
     /// Returns the name of the column that determines the colour of the marks; `None` if there is no such column.
     pub fn fill(&self) -> Option<&str> {
         match self {
-            Self::Tiles { fill, .. } => Some(fill),
+            Self::Tiles { fill } => Some(fill),
             _ => None,
         }
     }

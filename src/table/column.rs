@@ -73,7 +73,8 @@ pub struct Column {
     pub meaning: Words,
     /// Whether the column may be missing in a file, because only some studies have it.
     pub is_optional: bool,
-    /// Rank of a setting among the settings that charts omit if other settings determine them. The smallest rank is omitted first; `None` is omitted last.
+    /// Rank of a setting among the settings that charts omit if other settings determine them. The smallest rank is omitted first; `None` is omitted last. Of
+    /// equal ranks, the setting with more values is omitted first.
     pub gives_way: Option<u8>,
 }
 
@@ -157,6 +158,9 @@ impl Column {
     pub fn tick(&self, number: f64) -> String {
         if let Some(name) = self.name_of(&short_number(number)) {
             return name.to_owned();
+        }
+        if matches!(&self.name[..], "p_value" | "p_holm") && number < 0.001 {
+            return "< 0.001".to_owned();
         }
         match self.unit.as_ref() {
             // 100 × 0.07 is not 7 in floating point.

@@ -13,8 +13,6 @@ macro_rules! for_each_mark {
             Tiles {
                 /// Column that determines the colour of the tiles: outcomes with one colour each, or numbers on a sequential colour scale.
                 fill: String,
-                /// Column whose value is written on each tile. If the value is absent, the letter or number of `fill` is written.
-                sign: Option<String>,
             } tiles;
         }
     };

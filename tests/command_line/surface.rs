@@ -1,6 +1,7 @@
 //! Output of the command on its own abilities and on planned work.
 
 use crate::command::Case;
+use std::path::Path;
 
 const STUDY: &str = r#"
 question = "What would it do?"
@@ -229,4 +230,23 @@ fn without_a_subcommand_the_quickstart_is_what_would_run() {
     assert!(said.starts_with("quickstart: "), "{said}");
     let (help, _) = case.succeeds(&["--help"]);
     assert!(help.contains("experiments/quickstart.toml"), "{help}");
+}
+
+#[test]
+fn the_bare_command_keeps_results_of_another_commit() {
+    let case = Case::new();
+    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/quickstart");
+    std::fs::create_dir_all(case.path("results/quickstart")).unwrap();
+    for name in ["manifest.json", "summary.csv", "study.toml"] {
+        let text = std::fs::read_to_string(results.join(name)).unwrap();
+        case.file(&format!("results/quickstart/{name}"), &text);
+    }
+    let before = std::fs::read(case.path("results/quickstart/summary.csv")).unwrap();
+    let (said, _) = case.succeeds(&[]);
+    assert!(
+        said.contains("results of another commit") && said.contains("--fresh"),
+        "{said}"
+    );
+    let after = std::fs::read(case.path("results/quickstart/summary.csv")).unwrap();
+    assert!(before == after && !case.path("results/quickstart/report.html").exists());
 }

@@ -328,6 +328,41 @@ impl<'a> Candidates<'a> {
         front
     }
 
+    /// Returns the best candidate, and the cheapest candidate whose value lies within the confidence interval of the best; `None` without candidates.
+    pub(crate) fn best_and_as_good(&self, candidates: &[Candidate]) -> Option<[Candidate; 2]> {
+        let front = self.front(candidates);
+        let best = *front.last()?;
+        let wanted = self.worse_end(&best);
+        let mut front = front.into_iter();
+        let as_good = front.find(|candidate| self.is_enough(candidate.value, wanted));
+        Some([best, as_good.unwrap_or(best)])
+    }
+
+    /// Returns, for conditions of the given rows, the cheapest candidate within the interval of the best as text, such as `0.98 in 34 µs (noise 10 %)`. If
+    /// there are more than three conditions, only the first and the last are named.
+    pub(crate) fn as_good_words(&self, rows: &[usize]) -> String {
+        let mut conditions = self.by_condition();
+        conditions.retain(|of_one| rows.contains(&of_one[0].row));
+        if conditions.len() > 3 {
+            conditions = vec![
+                conditions.swap_remove(0),
+                conditions.remove(conditions.len() - 1),
+            ];
+        }
+        let is_one = conditions.len() == 1;
+        let said = conditions.iter().filter_map(|of_one| {
+            let [_, cheapest] = self.best_and_as_good(of_one)?;
+            let value = self.table.bounded(self.value, cheapest.row);
+            let value = value.split(" [").next().unwrap_or_default().to_owned();
+            let cost = self.cost.number_words(cheapest.cost);
+            Some(match &self.condition(&cheapest)[..] {
+                words if !is_one && !words.is_empty() => format!("{value} in {cost} ({words})"),
+                _ => format!("{value} in {cost}"),
+            })
+        });
+        said.collect::<Vec<_>>().join(", ")
+    }
+
     fn is_less_better(&self) -> bool {
         self.value.role == Role::Value(Better::Less)
     }

@@ -1,16 +1,16 @@
 //! Pareto front of a chart's points. Each panel has one front per condition of the world, because a designer cannot choose the condition.
 
 use super::view::{Place, View};
-use crate::report::swept::Setting;
+use crate::report::swept::{Setting, Swept, without};
 use crate::table::{Better, Role, front};
 use std::collections::HashMap;
-
-/// Maximum number of points on Pareto fronts that are numbered and listed below a chart.
-const MAX_NAMED: usize = 24;
 
 /// Pareto fronts of a chart: the points that no other point under the same condition surpasses in both axes.
 pub(super) struct Front<'a> {
     view: &'a View<'a>,
+    /// Free settings that neither the series nor the panels show, and those of them of which each row changes at most one.
+    settings: Vec<Setting<'a>>,
+    one_at_a_time: Vec<Setting<'a>>,
     /// Pareto fronts of the chart: the panel index of each front, and its points in ascending order of x.
     pub fronts: Vec<(usize, Vec<&'a Place>)>,
 }
@@ -54,7 +54,19 @@ impl<'a> Front<'a> {
                 fronts.push((panel, on));
             }
         }
-        Self { view, fronts }
+        let Swept {
+            free,
+            one_at_a_time,
+            ..
+        } = Swept::new(view.table, &view.rows);
+        let shown = view.spec.lines.iter().chain(&view.spec.panels);
+        let shown = shown.filter_map(|name| view.column(name).ok());
+        Self {
+            view,
+            settings: shown.fold(free, |others, one| without(&others, &one)),
+            one_at_a_time,
+            fronts,
+        }
     }
 
     /// Returns whether the table row with this index is on a Pareto front.
@@ -63,34 +75,16 @@ impl<'a> Front<'a> {
         points.any(|place| place.row == row)
     }
 
-    /// Returns the numbered points of all Pareto fronts, panel by panel along x; returns none if there are too many to list.
-    pub fn numbered(&self) -> impl Iterator<Item = (usize, &'a Place)> {
-        let all = self.fronts.iter().flat_map(|front| &front.1);
-        let n = all.clone().count();
-        let all = all.filter(move |_| n <= MAX_NAMED).copied();
-        all.enumerate().map(|(number, place)| (number + 1, place))
-    }
-
-    /// Returns one line of text for each numbered point of a Pareto front.
-    pub fn list(&self) -> Vec<String> {
-        self.said(self.numbered().map(|(_, place)| place))
-    }
-
-    /// Returns a description of each point of a Pareto front: its settings, its value and its cost.
-    fn said(&self, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
-        let view = self.view;
-        let settings =
-            Setting::of_roles(view.table, &[Role::Choice, Role::Condition, Role::Subject]);
-        let settings = settings.filter(|one| one.varies(&view.rows));
-        let settings: Vec<Setting> = settings.collect();
-        let of = |name: &str, row| view.column(name).map(|column| column.label(row));
-        let said = places.map(|place| {
-            let row = place.row;
-            let given = settings.iter().filter(|one| one.data.value(row).is_some());
-            let words: Vec<String> = given.map(|one| one.title(row)).collect();
-            let [y, x] = [&view.spec.y, &view.spec.x].map(|name| of(name, row).unwrap_or_default());
-            format!("{}: {y} at {x}", words.join(", "))
-        });
-        said.collect()
+    /// Returns the label of a point: the settings that neither the series nor the panel shows, or else the name of the series. In a study in which single
+    /// settings are changed, only changed settings are named.
+    pub fn label(&self, place: &Place) -> String {
+        let first = self.view.rows[0];
+        let is_base = |one: &&Setting| one.data.key(place.row) == one.data.key(first);
+        let base = self.one_at_a_time.iter().filter(is_base);
+        let said = base.fold(self.settings.clone(), |others, one| without(&others, one));
+        match &Setting::short_words(&said, place.row)[..] {
+            "" => self.view.lines.names[place.line].clone(),
+            words => words.to_owned(),
+        }
     }
 }

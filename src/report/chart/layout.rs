@@ -21,6 +21,9 @@ const WIDEST: f64 = 230.0;
 const DEEPEST: f64 = 160.0;
 /// Maximum number of lines of a label below a panel.
 const MAX_LINES: usize = 3;
+/// Font size and line height of the caption below the panels, pixels.
+const CAPTION: f64 = 12.0;
+const CAPTION_LINE: f64 = 17.0;
 /// Height of a line in a panel's title, pixels.
 const TITLE_LINE: f64 = 16.0;
 
@@ -35,11 +38,12 @@ pub(super) struct Layout {
     pub width: f64,
     /// Lines of the title above each panel.
     titles: Vec<Vec<String>>,
-    /// Height above each row of panels, pixels; the first row has `above_first` in addition.
+    /// Height above each row of panels, pixels.
     above: f64,
-    above_first: f64,
     labels: XLabels,
     heading: Heading,
+    /// Lines below the panels: what the chart shows, and which rows it omits.
+    caption: Vec<String>,
 }
 
 /// Labels of the horizontal axis below a panel, wrapped into lines. A label for which there is no space has no lines.
@@ -60,38 +64,46 @@ impl Layout {
         let titles = titles.map(|title| wrap(title, 1.12 * f64::from(LABEL), size.0));
         let titles: Vec<Vec<String>> = titles.collect();
         let titled = TITLE_LINE * titles.iter().map(Vec::len).max().unwrap_or(0) as f64;
-        let (above, above_first) = match view.row_titles.is_empty() {
-            true => (10.0 + titled, 0.0),
-            false => (10.0 + TITLE_LINE, titled),
-        };
-        let settings = [view.spec.note.clone(), view.constants(), view.omitted()];
-        let settings = settings.iter().filter(|words| !words.is_empty());
-        let settings = settings.map(String::as_str).collect::<Vec<_>>().join(" ");
         let panels_width = columns as f64 * (size.0 + GAP) - GAP;
         let width = f64::max(panels_width + left + RIGHT, NARROWEST);
+        let inner = width - LEFT - RIGHT;
+        let mut settings = wrap(&view.constants(), CAPTION, inner);
+        let others = settings.split_off(settings.len().min(1)).join(" ");
+        let others = match &others[..] {
+            "" => others,
+            more => format!("Also at {more}"),
+        };
+        let caption = [format!("{others} {}", view.spec.note), view.omitted()];
+        let caption = caption.iter().flat_map(|text| wrap(text, CAPTION, inner));
+        let caption = caption.collect();
         Self {
             columns,
             size,
             left,
             width,
             titles,
-            above,
-            above_first,
+            above: 10.0 + titled,
             labels: XLabels::new(&view.x, size.0),
-            heading: Heading::new(&view.spec.title, settings.trim(), entries, width),
+            heading: Heading::new(&view.spec.title, settings, entries, inner),
+            caption,
         }
     }
 
-    /// Returns the y coordinate of the lower edge of the chart's heading, pixels.
+    /// Returns the height of the chart, pixels.
     pub fn bottom(&self) -> f64 {
+        self.below() + 16.0 + CAPTION_LINE * self.caption.len() as f64
+    }
+
+    /// Returns the y coordinate of the title of the horizontal axis, pixels.
+    fn below(&self) -> f64 {
         let panels = self.panels();
-        panels.y + panels.height + self.labels.depth + 26.0
+        panels.y + panels.height + self.labels.depth + 16.0
     }
 
     /// Returns the area that contains all panels, pixels.
     fn panels(&self) -> Area {
         let (across, down) = (self.columns, self.titles.len().div_ceil(self.columns));
-        let top = self.heading.height() + self.above_first + self.above;
+        let top = self.heading.height() + self.above;
         let width = across as f64 * (self.size.0 + GAP) - GAP;
         let height = (down - 1) as f64 * self.pitch() + self.size.1;
         Area::new((self.left, top), (width, height))
@@ -116,11 +128,16 @@ impl Layout {
         let panels = self.panels();
         let style = TextStyle::new(LABEL).align(Align::Middle);
         let shortened = |text: &str, room: f64| shorten(text, f64::from(LABEL), room);
-        let below = (panels.at(0.5, 0.0).0, self.bottom() - 10.0);
+        let below = (panels.at(0.5, 0.0).0, self.below());
         let text = shortened(&view.x.title, panels.width + self.left);
         drawing.text(below, &text, style);
+        let small = TextStyle::new(CAPTION as u32).colour(MUTED);
+        for (line, text) in self.caption.iter().enumerate() {
+            let y = self.below() + 6.0 + CAPTION_LINE * (line + 1) as f64;
+            drawing.text((LEFT, y), text, small);
+        }
         let beside = (16.0, panels.at(0.0, 0.5).1);
-        let text = shortened(&view.y.title, panels.height + 60.0);
+        let text = shortened(&view.y.title, panels.height + 100.0);
         drawing.text(beside, &text, style.angle(-90.0));
     }
 
@@ -129,12 +146,6 @@ impl Layout {
         let frame = self.frame(panel);
         let style = TextStyle::new(LABEL);
         let mut up = 8.0;
-        if let Some(text) = view.row_titles.get(panel / self.columns) {
-            if panel.is_multiple_of(self.columns) {
-                drawing.text((frame.x, frame.y - up), text, style.colour(MUTED));
-            }
-            up += TITLE_LINE;
-        }
         for text in self.titles[panel].iter().rev() {
             drawing.bold_text((frame.x, frame.y - up), text, style);
             up += TITLE_LINE;

@@ -41,13 +41,17 @@ pub(super) struct LegendEntry {
 }
 
 impl Heading {
-    /// Creates a heading for a drawing of the given width. Lines of text and legend entries wrap within the margins.
-    pub(super) fn new(title: &str, settings: &str, entries: Vec<LegendEntry>, width: f64) -> Self {
-        let inner = width - LEFT - RIGHT;
+    /// Creates a heading of the given width without margins, pixels. The title and the legend entries wrap.
+    pub(super) fn new(
+        title: &str,
+        settings: Vec<String>,
+        entries: Vec<LegendEntry>,
+        inner: f64,
+    ) -> Self {
         Self {
             // Bold text is wider.
             title: wrap(title, 1.12 * f64::from(TITLE), inner),
-            settings: wrap(settings, f64::from(SMALL), inner),
+            settings,
             legend: flow(entries, inner),
         }
     }

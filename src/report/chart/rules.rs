@@ -2,7 +2,7 @@
 
 use super::legend::LegendEntry;
 use super::view::View;
-use crate::report::pictures::colours::{INK, MUTED, PAPER};
+use crate::report::pictures::colours::MUTED;
 use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
 use crate::table::{Along, At, Rule};
 
@@ -31,8 +31,7 @@ fn first_of(view: &View, rule: &Rule) -> usize {
 
 fn stroke(view: &View, rule: &Rule) -> Stroke {
     Stroke {
-        // Dark lines are visible on tiles of any colour.
-        colour: if view.is_tiles() { INK } else { MUTED },
+        colour: MUTED,
         width: 1.3,
         dash: Some(DASHES[first_of(view, rule) % DASHES.len()]),
     }
@@ -43,9 +42,6 @@ pub(super) fn draw(drawing: &mut Drawing, view: &View, panel: usize, frame: Area
     for rule in &view.spec.rules {
         for line in lines(view, rule, panel) {
             let points: Vec<Point> = line.iter().map(|&(x, y)| frame.at(x, y)).collect();
-            if view.is_tiles() {
-                drawing.polyline(&points, Stroke::new(PAPER, 3.5));
-            }
             drawing.polyline(&points, stroke(view, rule));
         }
     }
@@ -53,9 +49,9 @@ pub(super) fn draw(drawing: &mut Drawing, view: &View, panel: usize, frame: Area
 
 /// Returns the polylines of a reference line in a panel, in coordinates from 0 to 1 along the panel's width and height.
 fn lines(view: &View, rule: &Rule, panel: usize) -> Vec<Vec<Point>> {
-    let (own, other) = match rule.along {
-        Along::X => (&view.x, &view.y),
-        Along::Y => (&view.y, &view.x),
+    let own = match rule.along {
+        Along::X => &view.x,
+        Along::Y => &view.y,
     };
     let point = |own: f64, other: f64| match rule.along {
         Along::X => (own, other),
@@ -69,10 +65,7 @@ fn lines(view: &View, rule: &Rule, panel: usize) -> Vec<Vec<Point>> {
     let Some(numbers) = view.table.numbers(column) else {
         return Vec::new();
     };
-    let here = view
-        .places
-        .iter()
-        .filter(|place| view.panel_of(place) == panel);
+    let here = view.places.iter().filter(|place| place.panel == panel);
     let mut places: Vec<(f64, f64)> = here
         .filter_map(|place| {
             let along = match rule.along {
@@ -91,13 +84,6 @@ fn lines(view: &View, rule: &Rule, panel: usize) -> Vec<Vec<Point>> {
     if levels.len() < 2 || !is_function {
         return levels.into_iter().map(across).collect();
     }
-    // The line is constant along each tile.
-    let half = match view.is_tiles() {
-        true => 0.5 / other.n_levels as f64,
-        false => 0.0,
-    };
-    let ends = |&(along, at): &(f64, f64)| [point(at, along - half), point(at, along + half)];
-    let mut line: Vec<Point> = places.iter().flat_map(ends).collect();
-    line.dedup();
+    let line: Vec<Point> = places.iter().map(|&(along, at)| point(at, along)).collect();
     vec![line]
 }

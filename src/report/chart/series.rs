@@ -6,12 +6,15 @@ use super::legend::{FRONT, LegendEntry, MARKER_RADIUS, line_stroke};
 use super::rules;
 use super::view::{Place, View};
 use crate::report::pictures::colours::{INK, MUTED, Rgb};
-use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
+use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke, TextStyle};
+use crate::report::text_width::{shorten, text_width};
 
 /// Number of points in a chart above which all markers are small.
 const MANY: usize = 400;
-/// Line height in the list of Pareto-front points below a chart, pixels.
-const LINE: f64 = 17.0;
+/// Number of series of one point in a chart with a Pareto front up to which all points have labels, also those behind the front.
+const FEW: usize = 12;
+/// Font size of the labels of points on a Pareto front, pixels.
+const FRONT_LABEL: u32 = 11;
 
 /// Draws a chart in which each series of data is a line or a set of points.
 pub(super) fn draw(view: &View) -> Drawing {
@@ -21,15 +24,13 @@ pub(super) fn draw(view: &View) -> Drawing {
         _ => (3, 272.0, 240.0),
     };
     let height = match view.y.is_words {
+        true if view.spec.label.is_some() => 36.0 * view.y.n_levels as f64,
         true => 22.0 * view.y.n_levels as f64,
         false => height,
     };
     let layout = Layout::new(view, legend(view), columns, (width, height));
     let front = Front::new(view);
-    let list = front.list();
-    let below = if list.is_empty() { 0.0 } else { 16.0 };
-    let height = layout.bottom() + LINE * list.len() as f64 + below;
-    let mut drawing = Drawing::new(layout.width, height);
+    let mut drawing = Drawing::new(layout.width, layout.bottom());
     layout.draw_titles(&mut drawing, view);
     for panel in 0..view.titles.len() {
         layout.draw_axes(&mut drawing, view, panel);
@@ -43,20 +44,18 @@ pub(super) fn draw(view: &View) -> Drawing {
         };
         panel.draw(&mut drawing);
     }
-    let left = layout.frame(0).x;
-    let style = TextStyle::new(12);
-    for (number, text) in list.iter().enumerate() {
-        let y = layout.bottom() + 12.0 + LINE * number as f64;
-        let number = (number + 1).to_string();
-        drawing.bold_text((left - 8.0, y), &number, style.align(Align::End));
-        drawing.text((left, y), text, style);
-    }
     drawing
+}
+
+/// Returns whether the label of each point names its series, as in a chart of few series of one point.
+fn is_labelled(view: &View) -> bool {
+    let n = view.places.len();
+    view.spec.front && n <= FEW && n == view.lines.names.len()
 }
 
 fn legend(view: &View) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
-    if !view.spec.lines.is_empty() {
+    if !view.spec.lines.is_empty() && !is_labelled(view) {
         entries.push(LegendEntry::title(format!("{}:", view.lines.heading)));
         let is_joined = view.is_joined;
         entries.extend(view.lines.names.iter().enumerate().map(|(line, name)| {
@@ -85,6 +84,12 @@ fn legend(view: &View) -> Vec<LegendEntry> {
             },
         ));
     }
+    if let Some(right) = &view.spec.right {
+        let words = format!("not {}", right.value);
+        entries.push(LegendEntry::new(words, |drawing, area| {
+            draw_cross(drawing, area.at(0.5, 0.5), INK);
+        }));
+    }
     if view.spec.front {
         entries.push(LegendEntry::new(front::words(view), |drawing, area| {
             let steps = [(0.0, 0.2), (0.5, 0.2), (0.5, 0.8), (1.0, 0.8)];
@@ -93,6 +98,18 @@ fn legend(view: &View) -> Vec<LegendEntry> {
     }
     entries.extend(rules::entries(view));
     entries
+}
+
+/// Draws the marker of a row whose result is not right.
+fn draw_cross(drawing: &mut Drawing, (x, y): Point, colour: Rgb) {
+    let r = MARKER_RADIUS;
+    for slope in [-r, r] {
+        drawing.line(
+            (x - r, y - slope),
+            (x + r, y + slope),
+            Stroke::new(colour, 2.4),
+        );
+    }
 }
 
 struct Panel<'a> {
@@ -132,7 +149,7 @@ impl Panel<'_> {
                 self.draw_points(drawing, line, places);
             });
         }
-        self.draw_numbers(drawing);
+        self.draw_labels(drawing);
     }
 
     /// Draws a part of a line in an SVG group with the name of the line; a chart with a single line has no group.
@@ -149,7 +166,9 @@ impl Panel<'_> {
         if self.view.has_bands() && places.len() > 1 {
             self.draw_band(drawing, places, colour);
         } else if self.view.has_interval() {
-            for (x, ends) in places.iter().filter_map(|p| Some((p.x, p.interval?))) {
+            let is_clear = |p: &&&Place| !self.view.spec.front || self.front.has(p.row);
+            let clear = places.iter().filter(is_clear);
+            for (x, ends) in clear.filter_map(|p| Some((p.x, p.interval?))) {
                 let [low, high] = ends.map(|end| self.frame.at(x, end));
                 drawing.line(low, high, Stroke::new(colour, 1.5));
             }
@@ -171,8 +190,9 @@ impl Panel<'_> {
         let colour = line_stroke(line).colour;
         let (radius, pale) = self.behind(colour);
         for place in behind {
-            view.draw_mark(drawing, place, |drawing| {
-                drawing.marker(line, self.at(place), radius, pale);
+            view.draw_mark(drawing, place, |drawing| match view.is_right(place.row) {
+                true => drawing.marker(line, self.at(place), radius, pale),
+                false => draw_cross(drawing, self.at(place), pale),
             });
         }
         for place in ahead {
@@ -211,26 +231,72 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the numbers of the points on Pareto fronts, on the side where no other points are. If two numbers overlap, the later one is omitted.
-    fn draw_numbers(&self, drawing: &mut Drawing) {
-        let up = match front::is_more_better(self.view) {
-            true => -8.0,
-            false => 17.0,
+    /// Returns the labelled points of the panel and their labels, the most important one first: the points on Pareto fronts, all of few points, or the points
+    /// of a labelled chart from both ends.
+    fn labels(&self) -> Vec<(&Place, String)> {
+        let view = self.view;
+        let here = view.places.iter().filter(|place| place.panel == self.panel);
+        if let Some(label) = view
+            .spec
+            .label
+            .as_ref()
+            .and_then(|name| view.column(name).ok())
+        {
+            let named = here.filter(|place| label.data.value(place.row).is_some());
+            let labels = named.map(|place| (place, label.label(place.row)));
+            let mut labels: Vec<(&Place, String)> = labels.collect();
+            labels.sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
+            return labels;
+        }
+        let fronts = self.front.fronts.iter();
+        let of_panel = fronts.filter(|(panel, _)| *panel == self.panel);
+        let on_front = of_panel.flat_map(|(_, front)| front.iter().rev().copied());
+        let is_behind = |place: &&Place| is_labelled(view) && !self.front.has(place.row);
+        let points = on_front.chain(here.filter(is_behind));
+        points
+            .map(|place| (place, self.front.label(place)))
+            .collect()
+    }
+
+    /// Writes the labels of points: above a point of a labelled chart; otherwise on the outer side of the front, or else on its inner side. A label without
+    /// space is omitted.
+    fn draw_labels(&self, drawing: &mut Drawing) {
+        let labels = self.labels();
+        let marker = 2.0 * MARKER_RADIUS;
+        let around = |(place, _): &(&Place, String)| Area::around(self.at(place), (marker, marker));
+        let mut taken: Vec<Area> = labels.iter().map(around).collect();
+        let (over, under) = (-8.0, 14.0);
+        let (outer, inner) = match front::is_more_better(self.view) {
+            true => (over, under),
+            false => (under, over),
         };
-        let style = TextStyle::new(12).align(Align::End);
-        let mut last = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        let here = self.front.numbered();
-        for (number, place) in here.filter(|(_, place)| place.panel == self.panel) {
-            let (x, y) = self.at(place);
-            let at = (
-                (x - 7.0).max(self.frame.x + 14.0),
-                (y + up).max(self.frame.y + 11.0),
-            );
-            if (at.0 - last.0).abs() < 16.0 && (at.1 - last.1).abs() < 12.0 {
-                continue;
+        let size = f64::from(FRONT_LABEL);
+        let frame = self.frame;
+        for (place, text) in labels {
+            let text = shorten(&text, size, 0.9 * frame.width);
+            let (width, (x, y)) = (text_width(&text, size), self.at(place));
+            let left = (x - 8.0 - width).max(frame.x + 3.0);
+            let spots = match self.view.spec.label {
+                Some(_) => vec![(x - 0.5 * width, y + over)],
+                None => vec![
+                    (x - 8.0 - width, y + outer),
+                    (x + 9.0, y + inner),
+                    (x - 8.0 - width, y + inner),
+                    (x + 9.0, y + outer),
+                    (left, y + outer),
+                ],
+            };
+            let area = |&(x, y): &Point| Area::new((x, y - size), (width, size + 1.0));
+            let is_free = |at: &Point| {
+                let is_inside = at.0 > frame.x
+                    && at.0 + width < frame.x + frame.width
+                    && at.1 < frame.y + frame.height;
+                is_inside && !taken.iter().any(|other| other.overlaps(&area(at)))
+            };
+            if let Some(at) = spots.into_iter().find(is_free) {
+                taken.push(area(&at));
+                drawing.text(at, &text, TextStyle::new(FRONT_LABEL));
             }
-            drawing.bold_text(at, &number.to_string(), style);
-            last = at;
         }
     }
 }

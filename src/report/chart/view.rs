@@ -26,10 +26,8 @@ pub(super) struct View<'a> {
     pub y: Scale,
     /// Whether points are joined by lines along x; points at texts and named numbers are not joined.
     pub is_joined: bool,
-    /// Title of each panel, such as `noise 10 %` or `RBF SVM`. A title is empty if there is one panel, and in later rows of tiles.
+    /// Title of each panel, such as `noise 10 %` or `RBF SVM`; empty if there is one panel.
     pub titles: Vec<String>,
-    /// Title of each row of panels. A tile chart has one row of panels for each line group.
-    pub row_titles: Vec<String>,
     /// Positions of the rows in their panels, line by line along x.
     pub places: Vec<Place>,
 }
@@ -91,11 +89,6 @@ impl<'a> View<'a> {
         let (lines, panels) = (groups(&spec.lines)?, groups(spec.panels.as_slice())?);
         let mark = spec.mark.about();
         let is_tiles = mark.is_tiled;
-        let (mut titles, mut row_titles) = (panels.titles.clone(), Vec::new());
-        if is_tiles && lines.names.len() > 1 {
-            titles.resize(titles.len() * lines.names.len(), String::new());
-            row_titles = lines.titles.clone();
-        }
         let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
         x.column = spec.x_is.as_ref().unwrap_or(x.column);
         let y_values = values(&y, &rows, &[]);
@@ -112,7 +105,11 @@ impl<'a> View<'a> {
             let along = &mut along[usize::from(rule.along == Along::Y)];
             match &rule.at {
                 At::Value(value) => along.push(*value),
-                At::Column(name) => along.extend(values(&column(name)?, &rows, &[]).0),
+                // A limit of zero has no place on a logarithmic axis.
+                At::Column(name) => {
+                    let (values, _) = values(&column(name)?, &rows, &[]);
+                    along.extend(values.into_iter().filter(|&value| value != 0.0));
+                }
             }
         }
         let scale = |one: &Setting, own: &(Vec<f64>, Vec<String>), all: &[f64], side| match is_tiles
@@ -126,13 +123,18 @@ impl<'a> View<'a> {
         let mut view = Self {
             spec,
             table,
-            titles,
-            row_titles,
+            titles: panels.titles.clone(),
             lines,
             panels,
             rows,
             x: x_scale,
-            y: scale(&y, &y_values, &along[1], Along::Y),
+            // A front fills its panel along both axes.
+            y: scale(
+                &y,
+                &y_values,
+                &along[1],
+                if spec.front { Along::X } else { Along::Y },
+            ),
             is_joined: mark.path.is_some() && !is_broken,
             places: Vec::new(),
         };
@@ -176,11 +178,6 @@ impl<'a> View<'a> {
         step * (line as f64 - 0.5 * (n - 1.0))
     }
 
-    /// Returns whether the chart shows tiles.
-    pub fn is_tiles(&self) -> bool {
-        self.spec.mark.about().is_tiled
-    }
-
     /// Returns whether confidence intervals are drawn as bands, which is the case for charts with few lines.
     pub fn has_bands(&self) -> bool {
         self.has_interval() && self.is_joined && self.lines.names.len() <= MAX_BANDS
@@ -189,14 +186,14 @@ impl<'a> View<'a> {
     /// Returns whether confidence intervals are drawn, as bands or as error bars.
     pub fn has_interval(&self) -> bool {
         let is_joinable = self.spec.mark.about().path.is_some();
-        let is_many = !is_joinable && self.places.len() > MAX_WHISKERS;
+        let is_many = !is_joinable && !self.spec.front && self.places.len() > MAX_WHISKERS;
         !is_many && self.places.iter().any(|place| place.interval.is_some())
     }
 
-    /// Returns the index of the panel that contains a position.
-    pub fn panel_of(&self, place: &Place) -> usize {
-        let row = if self.is_tiles() { place.line } else { 0 };
-        row * self.panels.names.len() + place.panel
+    /// Returns whether the result of a row is right, or the chart does not distinguish it.
+    pub fn is_right(&self, row: usize) -> bool {
+        let right = self.spec.right.as_ref();
+        right.is_none_or(|right| self.table.has_setting(&right.column, row, &right.value))
     }
 
     /// Returns the setting in the column with this name.
@@ -227,7 +224,7 @@ impl<'a> View<'a> {
         if let Some(fill) = spec.mark.fill() {
             data.push(("fill", words(fill)));
         }
-        let panel = &self.titles[self.panel_of(place)];
+        let panel = &self.titles[place.panel];
         if !panel.is_empty() {
             data.push(("panel", panel.clone()));
         }
@@ -295,7 +292,7 @@ impl<'a> View<'a> {
             fill.is_ok_and(|fill| fill.data.value(place.row).is_some())
         };
         let seen = self.places.iter().filter(is_filled).map(|place| {
-            let at = (self.panel_of(place), place.x.to_bits(), place.y.to_bits());
+            let at = (place.panel, place.x.to_bits(), place.y.to_bits());
             (at, place.row)
         });
         let seen: HashMap<_, usize> = seen.collect();
@@ -344,13 +341,9 @@ impl Groups {
             settings.iter().map(words).collect::<Vec<_>>().join(", ")
         };
         let rows = groups.iter().map(|rows| rows[0]);
-        // Beside other settings, a setting that does not apply in a row is not mentioned.
-        let name = |row: usize| {
-            let is_said = |one: &&Setting| settings.len() == 1 || one.applies(&[row]);
-            let said = settings.iter().filter(is_said);
-            said.map(|one| one.label(row))
-                .collect::<Vec<_>>()
-                .join(", ")
+        let name = |row: usize| match settings {
+            [one] => one.label(row),
+            some => Setting::short_words(some, row),
         };
         Self {
             heading: joined(&|one| one.column.words.to_string()),

@@ -15,8 +15,10 @@ use std::collections::HashMap;
 /// Maximum size of all charts on a page together, bytes. With a larger value, the page is slow; with a smaller value, charts of some hundred points become
 /// links.
 const MAX_CHART_BYTES: usize = 1_200_000;
-/// Maximum total size of all tables on a page, bytes. With a larger value, the page is slow; with a smaller value, tables of some hundred rows are truncated.
+/// Maximum total size of all tables with charts on a page, bytes. With a larger value, the page is slow; with a smaller value, tooltips of charts have no rows.
 const MAX_TABLE_BYTES: usize = 1_200_000;
+/// Maximum total size of the tables without charts on a page, bytes; their files have all rows.
+const MAX_OTHER_BYTES: usize = 120_000;
 
 /// Parts of a study's HTML page that are neither tables nor answers.
 #[derive(Default)]
@@ -121,11 +123,12 @@ fn tables_html(found: &Found) -> String {
     let is_charted = |table: &Table| found.charts.iter().any(|chart| chart.table == table.file);
     let mut order: Vec<&Table> = found.tables.iter().filter(|t| t.n_rows > 0).collect();
     order.sort_by_key(|table| (!is_charted(table), table.csv.len()));
-    let mut room = MAX_TABLE_BYTES;
+    let mut room = [MAX_TABLE_BYTES, MAX_OTHER_BYTES];
     let mut made = HashMap::new();
     for table in order {
-        let table_html = table_html(table, room);
-        room = room.saturating_sub(table_html.html.len());
+        let room = &mut room[usize::from(!is_charted(table))];
+        let table_html = table_html(table, *room);
+        *room = room.saturating_sub(table_html.html.len());
         made.insert(table.file, table_html);
     }
     let place = |table: &Table| {

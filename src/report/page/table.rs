@@ -21,6 +21,8 @@ struct Shown<'a> {
     held: Vec<usize>,
     /// Whether any column in `held` has different values in different rows.
     varies: bool,
+    /// Whether the table has a single row.
+    is_alone: bool,
 }
 
 /// Returns a table as HTML of at most `most_letters` bytes. If all rows together are longer, the HTML contains only the first rows.
@@ -35,7 +37,8 @@ pub(crate) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
         if row == N_FIRST_ROWS {
             first_rows = rows.len();
         }
-        let cells = shown.iter().map(|one| one.cell(table, row, &fields));
+        let cells = shown.iter().filter(|one| !one.is_said_once());
+        let cells = cells.map(|one| one.cell(table, row, &fields));
         rows += &format!("<tr data-row={row}>{}</tr>\n", cells.collect::<String>());
         n_rows += 1;
         if rows.len() > most_letters && row >= N_FIRST_ROWS {
@@ -47,9 +50,17 @@ pub(crate) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
     let names = table.columns.iter().map(|column| &column.name[..]);
     let names = escape(&names.collect::<Vec<_>>().join(","));
     let heads: String = shown.iter().map(|one| one.head(first.as_ref())).collect();
+    let once = shown
+        .iter()
+        .filter(|one| one.is_said_once() && one.column.role != Role::Note);
+    let once = once.filter_map(|one| Some(one.column.phrase(&table.data[one.held[0]].value(0)?)));
+    let once = match &once.collect::<Vec<_>>().join(", ")[..] {
+        "" => String::new(),
+        words => format!("<p class=\"quiet\">All rows: {}.</p>", escape(words)),
+    };
     let (file, title) = (escape(table.file), escape(table.title));
     let html = format!(
-        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{title}\"><table data-table=\"{file}\" data-columns=\"{names}\">\
+        "{once}<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{title}\"><table data-table=\"{file}\" data-columns=\"{names}\">\
          <caption class=\"unseen\">{title}</caption><thead><tr>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>"
     );
     TableHtml { html, n_rows }
@@ -86,13 +97,26 @@ fn shown(table: &Table) -> Vec<Shown<'_>> {
             column,
             is_number: matches!(table.data[place], Data::Numbers(_)),
             varies: held.iter().any(varies),
+            is_alone: table.n_rows == 1,
             held,
         }
     });
-    shown.collect()
+    let mut shown: Vec<Shown> = shown.collect();
+    // The script finds the cells of a row by the places of the header's cells.
+    shown.sort_by_key(Shown::is_said_once);
+    shown
 }
 
 impl Shown<'_> {
+    /// Returns whether the column is a setting or a note that is equal in all rows. It is stated once, and its cells are left out.
+    fn is_said_once(&self) -> bool {
+        let is_found = matches!(
+            self.column.role,
+            Role::Value(_) | Role::Cost | Role::Outcome
+        );
+        !self.varies && !is_found && !self.is_alone
+    }
+
     /// Returns the header cell of an HTML column. If the fields of its cells are equal in all rows, the attribute `data-v` of the header contains them.
     /// Tooltips of charts list the columns with `data-setting` or `data-found`, whose content precedes the value.
     fn head(&self, first: Option<&Vec<String>>) -> String {
@@ -111,6 +135,9 @@ impl Shown<'_> {
         };
         if column.role == Role::Value(Better::More) {
             data += " data-down";
+        }
+        if self.is_said_once() {
+            data += " hidden";
         }
         if let (Some(first), false) = (first, self.varies) {
             data += &format!(" data-v=\"{}\"", escape(&self.joined(first)));

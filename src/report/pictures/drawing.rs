@@ -49,6 +49,13 @@ impl Area {
         Self::new((x - 0.5 * width, y - 0.5 * height), (width, height))
     }
 
+    /// Returns whether two areas have common points.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let apart = |a: f64, width: f64, b: f64, other: f64| a + width <= b || b + other <= a;
+        !apart(self.x, self.width, other.x, other.width)
+            && !apart(self.y, self.height, other.y, other.height)
+    }
+
     /// Returns the point at a fraction of the area's width (from the left) and a fraction of its height (from below).
     pub fn at(&self, across: f64, up: f64) -> Point {
         (

@@ -1,37 +1,26 @@
 //! Charts and answers of a reconstruction study.
 
 use crate::error::Result;
+use crate::report::advice::Candidates;
 use crate::report::study_content::NamedPicture;
-use crate::studies::reconstruction::study::ReconstructionStudy;
-use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
+use crate::studies::reconstruction::study::{BOTH, ReconstructionStudy};
+use crate::table::{Along, At, ChartSpec, Mark, Rule, Table, short_number};
+
+/// Time of a frame at 1,000 frames per second, µs.
+const US_PER_FRAME: f64 = 1000.0;
 
 impl ReconstructionStudy {
-    /// Returns two charts for each noise level: reconstruction error by number of measurements, and reconstruction error by computing time.
+    /// Returns a chart of the reconstruction error by computing time with one panel per noise level, and for each level charts of the error by the number of
+    /// measurements.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        let (configurations, pareto) = (&tables[0], &tables[3]);
-        let mut charts = Vec::new();
+        let configurations = &tables[0];
+        let mut charts: Vec<ChartSpec> = by_time(tables).into_iter().collect();
         for of_level in configurations.groups(&["noise_std"], 0..configurations.n_rows) {
             let ensembles = configurations.groups(&["ensemble"], of_level.iter().copied());
             let compressed = ensembles
                 .iter()
                 .filter(|rows| configurations.word("ensemble", rows[0]) != "identity");
             charts.extend(compressed.map(|rows| by_measurements(configurations, rows)));
-            let noise = noise_words(configurations, of_level[0]);
-            let level = configurations.number("noise_std", of_level[0]);
-            charts.push(ChartSpec {
-                shown: configurations
-                    .shown("noise_std", of_level[0])
-                    .into_iter()
-                    .collect(),
-                lines: vec!["solver".to_owned()],
-                mark: Mark::Points,
-                front: true,
-                ..pareto.chart(
-                    format!("error_by_time_noise_{level}"),
-                    format!("Error of reconstructed frames against their time, {noise}"),
-                    ("error", "us_per_frame"),
-                )
-            });
         }
         charts
     }
@@ -77,6 +66,31 @@ impl ReconstructionStudy {
         }
         sentences
     }
+}
+
+/// Returns a chart of the reconstruction error by the time of a frame, with one panel per noise level and one colour per solver.
+fn by_time(tables: &[Table]) -> Option<ChartSpec> {
+    let both = tables.iter().find(|table| table.file == BOTH)?;
+    let rows: Vec<usize> = (0..both.n_rows).collect();
+    let (error, time) = (both.column("error")?.0, both.column("us_per_frame")?.0);
+    let best = Candidates::of_columns(both, error, time).as_good_words(&rows);
+    let noisy = Rule {
+        along: Along::Y,
+        at: At::Column("full_sampling_error".to_owned()),
+        words: "the noisy frame itself".to_owned(),
+    };
+    Some(ChartSpec {
+        lines: vec!["solver".to_owned()],
+        panels: Some("noise_std".to_owned()),
+        mark: Mark::Points,
+        front: true,
+        rules: vec![noisy, Rule::at(Along::X, US_PER_FRAME, "1,000 frames/s")],
+        ..both.chart(
+            "error_by_time",
+            format!("Error against the time of a frame: {best}, within the interval of the best"),
+            ("error", "us_per_frame"),
+        )
+    })
 }
 
 /// Returns a chart of the reconstruction error by number of measurements, with one panel per dictionary and one line per solver. A reference line shows the

@@ -24,9 +24,10 @@ use crate::studies::reconstruction::score::pareto;
 use crate::studies::reconstruction::spec::ReconstructionStudySpec;
 use crate::studies::reconstruction::touches::Touches;
 use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
+use crate::studies::study::{About, AnyFile, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{File, Table};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Reconstruction study: its plan, its objects and their touches.
 pub struct ReconstructionStudy {
@@ -58,6 +59,11 @@ const PARETO: File<(ReconstructionConfiguration, ReconstructionPareto)> = File::
 .summary()
 .of_times();
 
+/// Table files that every reconstruction study writes.
+const FILES: &[&dyn AnyFile] = &[&CONFIGURATIONS, &ENSEMBLES, &TIMING, &PARETO];
+/// Name of the table of errors and times, which is not written to a file.
+pub(super) const BOTH: &str = "configurations.csv";
+
 impl Study for ReconstructionStudy {
     const ABOUT: About = About {
         table: "reconstruction",
@@ -75,7 +81,10 @@ impl Study for ReconstructionStudy {
             "reconstruction.dictionary",
         ]),
     };
-    const TABLES: TableFiles = TableFiles::always(&[&CONFIGURATIONS, &ENSEMBLES, &TIMING, &PARETO]);
+    const TABLES: TableFiles = TableFiles {
+        read: Some(read_tables),
+        ..TableFiles::always(FILES)
+    };
 
     type Spec = ReconstructionStudySpec;
     type Rows = ReconstructionRows;
@@ -149,12 +158,10 @@ impl Study for ReconstructionStudy {
         let pareto = pareto(&rows, &self.plan.noise);
         let [configurations, timing] = found_and_cost(&CONFIGURATIONS, &TIMING, &rows)?;
         let ensembles = ENSEMBLES.table(&statistics)?;
-        Ok(vec![
-            configurations,
-            ensembles,
-            timing,
-            PARETO.table(&pareto)?,
-        ])
+        let pareto = PARETO.table(&pareto)?;
+        Ok(with_both(
+            [configurations, ensembles, timing, pareto].into(),
+        ))
     }
 
     fn findings(&self, tables: &[Table]) -> Findings {
@@ -170,6 +177,20 @@ impl Study for ReconstructionStudy {
             ..Beyond::default()
         })
     }
+}
+
+/// Reads all tables of a result folder.
+fn read_tables(folder: &Path) -> Result<Vec<Table>> {
+    TableFiles::always(FILES).read(folder).map(with_both)
+}
+
+/// Returns the tables in the order of their files, followed by a table of the error, its interval and the time of each configuration.
+fn with_both(mut tables: Vec<Table>) -> Vec<Table> {
+    let (errors, pareto) = (&tables[0], &tables[3]);
+    let time = errors.look_up(pareto, "configuration", "us_per_frame");
+    let both = errors.with((BOTH, "Errors and times"), time);
+    tables.push(both.noted(format!("{} {}", errors.note, pareto.note)));
+    tables
 }
 
 /// Returns the configurations in groups; the configurations of a group reconstruct frames from equal measurements.

@@ -1,54 +1,55 @@
-//! Charts of a stability study: outcomes for each part, and computing time against the number of taxels.
+//! Charts of a stability study: methods in the same scenes, and computing time against the number of taxels.
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
+use crate::studies::stability::common::{METHODS, SCENES};
 use crate::studies::stability::plan::StabilityPlan;
-use crate::table::{Along, At, ChartSpec, Mark, Rule, Table};
+use crate::table::{Along, ChartSpec, Mark, Rule, Shown, Table, Value};
+
+/// Maximum number of methods that a title lists.
+const MAX_LISTED: usize = 3;
 
 impl StabilityPlan {
-    /// Returns the charts: outcome maps, followed by charts of growing arrays. A part of the study has an outcome map if it has several methods, and several
-    /// time steps or masses. The map has time steps along x and taxel masses along y, one column of panels per method, and one row per setting.
+    /// Returns the charts: for each part, the number of correct results against time and a map of the outcomes for each method, both in the scenes that all
+    /// methods of the part have computed; then charts of growing arrays.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (configurations, joints) = (&tables[0], &tables[3]);
         let mut charts: Vec<ChartSpec> = Vec::new();
-        for rows in configurations.groups(&["part"], 0..configurations.n_rows) {
-            let n = |columns: &[&str]| configurations.groups(columns, rows.iter().copied()).len();
-            if n(&["method", "solver_iterations"]) < 2 || n(&["dt_s", "taxel_mass_kg"]) < 2 {
-                continue;
+        if let Some(methods) = tables.iter().find(|table| table.file == METHODS.name()) {
+            for rows in methods.groups(&["part"], 0..methods.n_rows) {
+                let part = Value::Number(methods.number("part", rows[0]));
+                let mut all = 0..configurations.n_rows;
+                let row = all.find(|&row| configurations.has_setting("part", row, &part));
+                let scene = row.map_or("", |row| configurations.word("scene", row));
+                let mut of_part = of_part(methods, scene, &rows, &charts);
+                let mut names = rows.iter().map(|&row| methods.word("method", row));
+                if names.any(|name| name.starts_with("MuJoCo")) {
+                    of_part
+                        .iter_mut()
+                        .for_each(|chart| chart.note += &format!(" {}", configurations.note));
+                }
+                charts.extend(of_part);
             }
-            let mut map = map(configurations, &rows);
-            let of_scene = charts.iter().filter(|chart| chart.title == map.title);
-            let n_before = of_scene.count();
-            if n_before > 0 {
-                map.name += &format!("_{}", n_before + 1);
-            }
-            charts.push(map);
         }
         charts.extend(joint_charts(joints));
         charts
     }
 
-    /// Returns one sentence per method with its number of correct results, sorted from the largest to the smallest number. A last sentence names the table of
-    /// other programs if it does not exist.
+    /// Returns one sentence per part with the number of correct results of each method in the same scenes. A last sentence names the table of other programs if
+    /// it does not exist.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
-        let summary = &tables[1];
-        let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
-        let found = methods.iter().map(|rows| {
-            let sum = |column| rows.iter().map(|&row| summary.number(column, row)).sum();
-            let (n_correct, n_configurations): (f64, f64) = (sum("n_correct"), sum("n_configurations"));
-            let share = n_correct / n_configurations.max(1.0);
-            let mut method = summary.words("method", rows[0]);
-            let iterations = summary.words("solver_iterations", rows[0]);
-            if !iterations.is_empty() {
-                method += &format!(", {iterations} iterations");
-            }
-            let percent = 100.0 * share;
-            let sentence =
-                format!("Right in {n_correct} of {n_configurations} configurations ({percent:.0} %): {method}.");
-            (share, sentence)
+        let methods = tables.iter().find(|table| table.file == METHODS.name());
+        let found = methods.into_iter().flat_map(|methods| {
+            let parts = methods.groups(&["part"], 0..methods.n_rows).into_iter();
+            parts.map(|rows| {
+                let part = methods.number("part", rows[0]);
+                let best = right_words(methods, &rows, MAX_LISTED);
+                let others = match rows.len().saturating_sub(MAX_LISTED) {
+                    0 => String::new(),
+                    n => format!("; {n} other methods are no better"),
+                };
+                format!("Part {part}, {best}{others}.")
+            })
         });
-        let mut found: Vec<(f64, String)> = found.collect();
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let found = found.into_iter().map(|(_, sentence)| sentence);
         let missing = self.peers.as_ref().filter(|path| !path.exists());
         let missing = missing.map(|path| {
             format!(
@@ -60,51 +61,69 @@ impl StabilityPlan {
     }
 }
 
-/// Returns the outcome chart of one part of the study: outcomes for each time step and taxel mass.
-fn map(configurations: &Table, rows: &[usize]) -> ChartSpec {
-    let scene = configurations.word("scene", rows[0]);
-    let what = match scene {
-        "rest" => "A ball is let go on taxels and comes to rest",
-        "press" => "A ball is pressed on taxels with 0.5 m/s, held, and taken off",
-        "stack_of_two" => "Two balls, one upon the other, are let go on taxels and come to rest",
-        "stack_of_four" => "Four balls, one upon the other, are let go on taxels and come to rest",
-        _ => "A plunger is let go on SkinSim's taxels",
-    };
-    let settings = [
-        "stiffness_n_per_m",
-        "object_mass_kg",
-        "taxels",
-        "solver_iterations",
-    ];
-    let mut chart = ChartSpec {
-        shown: configurations.shown("part", rows[0]).into_iter().collect(),
-        lines: varying(configurations, &settings, rows),
-        panels: Some("method".to_owned()),
-        mark: tiles("deflection_error"),
-        rules: vec![Rule {
-            along: Along::X,
-            at: At::Column("explicit_limit_s".to_owned()),
-            words: "limit of an explicit spring without damper, Δt = 2 √(m / k)".to_owned(),
-        }],
-        ..configurations.chart(
-            format!("stability_{scene}"),
-            format!("{what}: what is right, and what breaks"),
-            ("taxel_mass_kg", "dt_s"),
-        )
-    };
-    let mut methods = rows.iter().map(|&row| configurations.word("method", row));
-    if !methods.any(|method| method.starts_with("mujoco")) {
-        chart.note.clear();
-    }
-    chart
+/// Returns the numbers of correct results of the first methods as text, such as `right in the same 81 scenes: implicit Euler 81 in 34 µs, …`.
+fn right_words(methods: &Table, rows: &[usize], most: usize) -> String {
+    let n = methods.number("n_scenes", rows[0]);
+    let said = rows.iter().take(most).map(|&row| {
+        let [method, right, time] =
+            ["method", "n_right", "median_s"].map(|c| methods.words(c, row));
+        format!("{method} {right} in {time}")
+    });
+    let said: Vec<String> = said.collect();
+    format!("right of the same {n} scenes: {}", said.join("; "))
 }
 
-/// Returns a chart mark that draws outcomes as coloured tiles.
-fn tiles(sign: &str) -> Mark {
-    Mark::Tiles {
-        fill: "outcome".to_owned(),
-        sign: Some(sign.to_owned()),
-    }
+/// Returns the two charts of a part: correct results against time, and the outcomes of each method.
+fn of_part(methods: &Table, scene: &str, rows: &[usize], earlier: &[ChartSpec]) -> [ChartSpec; 2] {
+    let what = match scene {
+        "rest" => "A ball is let go on taxels",
+        "press" => "A ball is pressed on taxels with 0.5 m/s, held, and taken off",
+        "stack_of_two" => "Two balls, one upon the other, are let go on taxels",
+        "stack_of_four" => "Four balls, one upon the other, are let go on taxels",
+        _ => "A plunger is let go on SkinSim's taxels",
+    };
+    let name = format!("stability_{scene}");
+    let is_of_scene = |chart: &&ChartSpec| chart.name.starts_with(&name) && chart.front;
+    let name = match earlier.iter().filter(is_of_scene).count() {
+        0 => name,
+        n => format!("{name}_{}", n + 1),
+    };
+    let chart = |name: String, title: String, table: &'static str, axes: [&str; 2]| ChartSpec {
+        name,
+        title,
+        note: methods.note.clone(),
+        table,
+        shown: methods.shown("part", rows[0]).into_iter().collect(),
+        x: axes[0].to_owned(),
+        y: axes[1].to_owned(),
+        ..ChartSpec::default()
+    };
+    let best = right_words(methods, rows, MAX_LISTED);
+    [
+        ChartSpec {
+            lines: vec!["method".to_owned()],
+            mark: Mark::Points,
+            front: true,
+            ..chart(
+                format!("{name}_time"),
+                format!("{what}; {best}"),
+                METHODS.name(),
+                ["median_s", "n_right"],
+            )
+        },
+        ChartSpec {
+            panels: Some("method".to_owned()),
+            mark: Mark::Tiles {
+                fill: "outcome".to_owned(),
+            },
+            ..chart(
+                name,
+                format!("{what}: what is right, and what breaks"),
+                SCENES.name(),
+                ["step", "load"],
+            )
+        },
+    ]
 }
 
 /// Returns the given columns that have several values in the given rows.
@@ -114,39 +133,73 @@ fn varying(table: &Table, columns: &[&str], rows: &[usize]) -> Vec<String> {
     varying.map(|column| (*column).to_owned()).collect()
 }
 
-/// Returns a chart of the computing time against the number of joints (taxels), for each time step, followed by a chart of the outcomes.
+/// Returns a chart of the computing time against the number of joints (taxels) for each time step; crosses are wrong results.
 fn joint_charts(joints: &Table) -> Vec<ChartSpec> {
-    let all: Vec<usize> = (0..joints.n_rows).collect();
-    if all.is_empty() {
-        return Vec::new();
-    }
-    let carried = joints.words("load_kg", 0);
-    let limit = "SkinSim's authors: unstable near 280 joints";
-    let chart = |name: String, title: String, y: &str| ChartSpec {
-        note: format!("Each taxel carries {carried}. {}", joints.note),
-        panels: Some("taxel_mass_kg".to_owned()),
-        rules: vec![Rule::at(Along::X, UNSTABLE_JOINTS as f64, limit)],
-        ..joints.chart(name, title, (y, "joints"))
-    };
-    let cost = |rows: &Vec<usize>| {
-        let name = format!("stability_joints_dt_{}", joints.number("dt_s", rows[0]));
+    let steps = joints.groups(&["dt_s"], 0..joints.n_rows);
+    let chart = |(number, rows): (usize, &Vec<usize>)| {
         let step = joints.words("dt_s", rows[0]);
+        let name = match number {
+            0 => "stability_joints".to_owned(),
+            _ => format!("stability_joints_dt_{}", joints.number("dt_s", rows[0])),
+        };
         let title = format!(
-            "Taxels on joints: what a simulated second costs as their number rises, steps of {step}"
+            "Taxels on joints, steps of {step}: {}",
+            largest_words(joints, rows)
         );
+        let limit = "SkinSim's authors: unstable near 280 joints";
         ChartSpec {
+            note: format!(
+                "Each taxel carries {}. {}",
+                joints.words("load_kg", rows[0]),
+                joints.note
+            ),
             shown: joints.shown("dt_s", rows[0]).into_iter().collect(),
             lines: varying(joints, &["method", "solver_iterations"], rows),
-            ..chart(name, title, "time_s")
+            panels: Some("taxel_mass_kg".to_owned()),
+            right: Some(Shown {
+                column: "outcome".to_owned(),
+                value: Value::from("right"),
+            }),
+            rules: vec![
+                Rule::at(Along::X, UNSTABLE_JOINTS as f64, limit),
+                Rule::at(Along::Y, 1.0, "real time"),
+            ],
+            ..joints.chart(name, title, ("time_s", "joints"))
         }
     };
-    let steps = joints.groups(&["dt_s"], all.iter().copied());
-    let mut charts: Vec<ChartSpec> = steps.iter().map(cost).collect();
-    let title = "Taxels on joints: what is right as their number rises, and what breaks";
-    charts.push(ChartSpec {
-        lines: varying(joints, &["dt_s", "solver_iterations"], &all),
-        mark: tiles("time_s"),
-        ..chart("stability_joints".to_owned(), title.to_owned(), "method")
+    steps.iter().enumerate().map(chart).collect()
+}
+
+/// Returns the methods that are right on the largest array and its lightest taxels as text, the fastest first.
+fn largest_words(joints: &Table, rows: &[usize]) -> String {
+    let number = |column, row| joints.number(column, row);
+    let most = rows
+        .iter()
+        .map(|&row| number("joints", row))
+        .fold(0.0, f64::max);
+    let mut here: Vec<usize> = rows.to_vec();
+    here.retain(|&row| number("joints", row) == most);
+    let lightest = here
+        .iter()
+        .map(|&row| number("taxel_mass_kg", row))
+        .fold(f64::INFINITY, f64::min);
+    here.retain(|&row| {
+        number("taxel_mass_kg", row) == lightest && joints.word("outcome", row) == "right"
     });
-    charts
+    here.sort_by(|&a, &b| number("time_s", a).total_cmp(&number("time_s", b)));
+    let said = here.iter().take(MAX_LISTED).map(|&row| {
+        format!(
+            "{} in {}",
+            joints.words("method", row),
+            joints.words("time_s", row)
+        )
+    });
+    let said: Vec<String> = said.collect();
+    let mass = here
+        .first()
+        .map_or_else(String::new, |&row| joints.words("taxel_mass_kg", row));
+    match said.is_empty() {
+        true => format!("nothing is right on {most}"),
+        false => format!("right on {most} of {mass}: {}", said.join(", ")),
+    }
 }

@@ -16,6 +16,15 @@ const METHODS: &[(&str, &str)] = &[
     ("mujoco_discrete", "MuJoCo, discrete, hard"),
 ];
 
+/// Display names of the outcomes; their order determines the colours in all charts.
+const OUTCOMES: &[(&str, &str)] = &[
+    ("right", "right"),
+    ("inaccurate", "inaccurate"),
+    ("missed_contact", "missed contact"),
+    ("energy_growth", "energy grows"),
+    ("not_finite", "not finite"),
+];
+
 row! {
 /// Configuration of a simulation. Each row of `stability.csv` and `timing.csv` begins with these columns.
 pub struct StabilityConfiguration {
@@ -63,7 +72,7 @@ pub struct StabilityScore {
     /// Contact stiffness κ, N/m, of a method whose contact force is κ times the penetration; empty for other methods.
     contact_stiffness_n_per_m: Option<f64> => Note "contact stiffness" in "N/m": Log;
     /// Outcome of the simulation: a correct result, or the kind of failure.
-    outcome: Outcome => Outcome;
+    outcome: Outcome => Outcome named OUTCOMES;
     /// Relative error of the total contact force, |Σ f − expected| / expected, where f are the forces of the taxels; empty if the simulation failed.
     #[serde(with = "any_number")]
     force_imbalance: Option<f64> => Value(Less): Log;
@@ -128,9 +137,41 @@ pub struct Joints {
     /// Load of a taxel, kg: the mass M of the ball divided by the number of taxels.
     load_kg: f64 => Note "load of a taxel" in "kg": Log;
     /// Outcome of the simulation: a correct result, or the kind of failure.
-    outcome: Outcome => Outcome;
+    outcome: Outcome => Outcome named OUTCOMES;
     /// Wall-clock time per second of simulated time, s. If the method does not step through time, total wall-clock time, s.
     time_s: f64 => Cost "computing a simulated second" in "s": Log;
+} }
+
+row! {
+/// Outcome of a method in a scene that all methods of its part have computed, with words for the two axes of a map of outcomes.
+pub struct CommonScene {
+    /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
+    part: usize => Condition "part of the study": Linear;
+    /// Method that simulates the contact, with its number of iterations if several are compared.
+    method: String => Choice;
+    /// Time step and taxel mass.
+    step: String => Choice "time step, taxel mass";
+    /// Stiffness, and the mass of the ball and the number of taxels if they vary.
+    load: String => Condition "taxel stiffness, mass of the ball";
+    /// Outcome of the simulation: a correct result, or the kind of failure.
+    outcome: String => Outcome named OUTCOMES;
+    /// Wall-clock time of the whole simulation, s.
+    wall_s: f64 => Cost "time" in "s": Log;
+} }
+
+row! {
+/// Number of correct results of a method in the scenes that all methods of a part have computed, with the time of a scene.
+pub struct MethodScore {
+    /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
+    part: usize => Condition "part of the study": Linear;
+    /// Method that simulates the contact, with its number of iterations if several are compared.
+    method: String => Choice;
+    /// Number of scenes that all methods of the part have computed.
+    n_scenes: usize => Note "scenes": Linear;
+    /// Number of these scenes in which the result is correct.
+    n_right: usize => Value(More) "scenes right, of the same": Linear;
+    /// Median wall-clock time of a scene, s.
+    median_s: f64 => Cost "time to compute a scene, median" in "s": Log;
 } }
 
 /// Configuration of a work item, with its result and computing time.

@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::inputs::keys::KeyAbout;
 use crate::inputs::units::millimetres;
 use crate::studies::source::Source;
+use crate::studies::stability::common::with_common;
 use crate::studies::stability::configuration::measure;
 use crate::studies::stability::peers::peer_rows;
 use crate::studies::stability::plan::STABILITY_KEYS;
@@ -16,11 +17,12 @@ use crate::studies::stability::rows::{
     StabilityTime,
 };
 use crate::studies::stability::spec::{StabilityScene, StabilityStudySpec};
-use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
+use crate::studies::study::{About, AnyFile, Facts, Findings, Resumes, Study, TableFiles};
 use crate::studies::{found_and_cost, grouped};
 use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 const CONFIGURATIONS: File<(StabilityConfiguration, StabilityScore)> =
     File::new("stability.csv", "Every configuration", "");
@@ -40,13 +42,19 @@ const JOINTS: File<Joints> = File::new(
 .summary()
 .of_times();
 
+/// Table files that every stability study writes.
+const FILES: &[&dyn AnyFile] = &[&CONFIGURATIONS, &SUMMARY, &TIMING, &JOINTS];
+
 impl Study for StabilityPlan {
     const ABOUT: About = About {
         table: "stability",
         words: "a study of where contact methods break",
         resumes: Resumes::ButFor(&["question", "expected", "stability.parts"]),
     };
-    const TABLES: TableFiles = TableFiles::always(&[&CONFIGURATIONS, &SUMMARY, &TIMING, &JOINTS]);
+    const TABLES: TableFiles = TableFiles {
+        read: Some(read_tables),
+        ..TableFiles::always(FILES)
+    };
 
     type Spec = StabilityStudySpec;
     type Rows = Vec<StabilityRow>;
@@ -133,7 +141,7 @@ impl Study for StabilityPlan {
         let [configurations, timing] = found_and_cost(&CONFIGURATIONS, &TIMING, &rows)?;
         let summary = SUMMARY.table(&summary(&rows))?;
         let joints = JOINTS.table(&joints(&rows))?;
-        Ok(vec![configurations, summary, timing, joints])
+        with_common(vec![configurations, summary, timing, joints])
     }
 
     fn findings(&self, tables: &[Table]) -> Findings {
@@ -142,6 +150,11 @@ impl Study for StabilityPlan {
             answers: self.answers(tables),
         }
     }
+}
+
+/// Reads all tables of a result folder.
+fn read_tables(folder: &Path) -> Result<Vec<Table>> {
+    TableFiles::always(FILES).read(folder).and_then(with_common)
 }
 
 /// Returns one row for each scene, method and number of iterations, with counts of the outcomes, in the order of first occurrence.

@@ -69,7 +69,12 @@ fn equal_charts_are_equal_bytes_and_say_their_title_lines_and_units() {
         ),
         (
             "tiles",
-            &["not finite", "1 ms", "1e-9", "mass of a taxel (kg)"],
+            &[
+                "not finite",
+                "1 ms",
+                "missed contact",
+                "mass of a taxel (kg)",
+            ],
         ),
         (
             "rows",

@@ -1,11 +1,10 @@
 //! Charts of accuracy against time: when they are drawn, and what they show.
 
-use crate::report_synthetic::{configuration, noise_cells, tables};
+use crate::report_synthetic::{configuration, noise_cells, quickstart_cells, tables};
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::report::chart::draw;
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::table::Configuration;
-use bubbletouch::table::{ChartSpec, Table};
 
 fn of_three_classifiers() -> Vec<Configuration> {
     use ClassifierKind::{LinearSvm, PolynomialSvm, RbfSvm};
@@ -26,33 +25,57 @@ fn of_three_classifiers() -> Vec<Configuration> {
     configurations
 }
 
-fn fronts(configurations: Vec<Configuration>, asked: Option<bool>) -> (Vec<Table>, Vec<ChartSpec>) {
-    let made = tables_of(&tables(configurations, 3, 24)).unwrap();
-    let mut specs = charts(&made, asked);
-    specs.retain(|spec| spec.front);
-    (made, specs)
+#[test]
+fn accuracy_against_time_is_among_the_first_two_charts_of_every_study_of_three_designs() {
+    let names = |configurations: Vec<Configuration>, asked: Option<bool>| -> Vec<String> {
+        let made = tables_of(&tables(configurations, 3, 24)).unwrap();
+        let specs = charts(&made, asked).into_iter();
+        specs.map(|spec| spec.name).collect()
+    };
+    let place = |names: &[String], chart: &str| names.iter().position(|name| name == chart);
+    let [decision, training] = ["pareto_prediction", "pareto_training"];
+    for (configurations, asked, compares_classifiers) in [
+        (of_three_classifiers(), None, true),
+        (quickstart_cells(), None, false),
+        (noise_cells(), None, false),
+        (two_designs(), Some(true), true),
+    ] {
+        let names = names(configurations, asked);
+        assert!(
+            place(&names, decision).is_some_and(|place| place < 2),
+            "{names:?}"
+        );
+        assert_eq!(
+            place(&names, training).is_some(),
+            compares_classifiers,
+            "{names:?}"
+        );
+    }
+    for (configurations, asked) in [
+        (of_three_classifiers(), Some(false)),
+        (two_designs(), None),
+        (Vec::new(), Some(true)),
+    ] {
+        let names = names(configurations, asked);
+        assert_eq!(place(&names, decision), None, "{names:?}");
+    }
 }
 
-#[test]
-fn accuracy_is_charted_against_time_when_classifiers_are_compared_or_a_study_asks() {
-    let names = |configurations: Vec<Configuration>, asked: Option<bool>| -> Vec<String> {
-        fronts(configurations, asked)
-            .1
-            .into_iter()
-            .map(|spec| spec.name)
-            .collect()
+/// Returns two configurations that differ only in their number of measurements.
+fn two_designs() -> Vec<Configuration> {
+    let design = |measurements| Configuration {
+        measurements,
+        ratio: 4096.0 / measurements as f64,
+        ..configuration()
     };
-    let both = ["pareto_training", "pareto_prediction"];
-    assert_eq!(names(of_three_classifiers(), None), both);
-    assert!(names(of_three_classifiers(), Some(false)).is_empty());
-    assert!(names(noise_cells(), None).is_empty(), "two classifiers");
-    assert_eq!(names(noise_cells(), Some(true)), both);
-    assert!(names(Vec::new(), Some(true)).is_empty());
+    [16, 64].map(design).to_vec()
 }
 
 #[test]
 fn every_classifier_and_every_noise_is_named_on_the_chart() {
-    let (made, specs) = fronts(of_three_classifiers(), None);
+    let made = tables_of(&tables(of_three_classifiers(), 3, 24)).unwrap();
+    let mut specs = charts(&made, None);
+    specs.retain(|spec| spec.front);
     assert_eq!(specs.len(), 2);
     for spec in specs {
         let svg = draw(&spec, &made).unwrap().svg(&spec.title);

@@ -5,8 +5,9 @@ use crate::report_synthetic::{
     tables,
 };
 use crate::shown::html;
+use bubbletouch::report::chart::draw;
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::studies::recognition::charts::{answers, tables_of, words};
+use bubbletouch::studies::recognition::charts::{answers, charts, tables_of, words};
 use bubbletouch::study::table::{Configuration, Limit, Tables};
 
 fn words_of(made: &Tables, width: usize) -> String {
@@ -68,6 +69,53 @@ fn each_of_few_cells_has_one_line_with_its_interval() {
 }
 
 #[test]
+fn a_narrow_terminal_keeps_the_values_and_says_what_it_leaves_out() {
+    for configurations in [quickstart_cells(), noise_cells()] {
+        let made = tables(configurations, 3, 24);
+        let text = words_of(&made, 40);
+        let (table, _) = text.split_once("Left out at this width").unwrap();
+        assert_eq!(table.matches('[').count(), made.summary.len(), "{text}");
+    }
+}
+
+#[test]
+fn a_study_that_changes_single_settings_begins_with_what_each_costs() {
+    let changed = |noise_std, smoothing_mm| Configuration {
+        noise_std,
+        smoothing_mm,
+        ..configuration()
+    };
+    let configurations = vec![
+        changed(0.0, 0.0),
+        changed(0.1, 0.0),
+        changed(0.2, 0.0),
+        changed(0.0, 4.0),
+        changed(0.0, 8.0),
+    ];
+    let mut made = tables(configurations, 3, 24);
+    for (number, accuracy) in [0.90, 0.60, 0.30, 0.905, 0.895].into_iter().enumerate() {
+        let score = &mut made.summary[number].1;
+        (score.accuracy, score.accuracy_low, score.accuracy_high) =
+            (accuracy, accuracy - 0.01, accuracy + 0.01);
+    }
+    let sentences = answers_of(&made);
+    assert_eq!(
+        sentences[..2],
+        [
+            "Alone, these leave the least of 0.90 [0.89, 0.91]: noise 20 % (0.30).",
+            "Within the interval at all values: smoothing.",
+        ]
+    );
+    let made = tables_of(&made).unwrap();
+    let first = charts(&made, None).swap_remove(0);
+    assert_eq!(first.name, "accuracy_by_change");
+    let svg = draw(&first, &made).unwrap().svg("");
+    let place = |text: &str| svg.find(&format!(">{text}<")).unwrap();
+    assert!(place("noise") < place("smoothing"));
+    assert!(svg.contains(">20 %<") && svg.contains("unchanged, 0.90"));
+}
+
+#[test]
 fn many_cells_stand_compactly_and_what_is_left_out_is_said() {
     let made = tables(many_cells(), 3, 24);
     let text = words_of(&made, 100);
@@ -96,7 +144,7 @@ fn the_answer_names_the_best_the_frugal_and_each_effect() {
     made.summary[5].1.accuracy = 0.74;
     let sentences = answers_of(&made);
     assert!(
-        sentences[0].starts_with("Best accuracy 0.76 ["),
+        sentences[1].starts_with("Best accuracy 0.76 ["),
         "{sentences:?}"
     );
     for part in [
@@ -105,14 +153,14 @@ fn the_answer_names_the_best_the_frugal_and_each_effect() {
         "compression 4:1",
         "m = 1024",
     ] {
-        assert!(sentences[0].contains(part), "{sentences:?}");
+        assert!(sentences[1].contains(part), "{sentences:?}");
     }
     for part in [
         "Within the interval of the best, with the fewest measurements",
         "compression 16:1",
         "m = 256",
     ] {
-        assert!(sentences[1].contains(part), "{sentences:?}");
+        assert!(sentences[0].contains(part), "{sentences:?}");
     }
     // The means of each effect equal plain averages over the other settings.
     let mean = |ratio: f64| {

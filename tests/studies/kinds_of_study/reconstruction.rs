@@ -135,10 +135,16 @@ fn the_tables_hold_every_cell_and_the_written_study_gives_them_again() {
     for name in [
         "frames.png",
         "error_sbhe_noise_0.1.svg",
-        "error_by_time_noise_0.svg",
+        "error_by_time.svg",
     ] {
         assert!(!read("1", name).is_empty(), "{name}");
     }
+    // Choices are weighed by their error, which the first chart shows against time.
+    let page = String::from_utf8(read("1", "report.html")).unwrap();
+    let first = page.split("id=\"chart-").nth(1).unwrap();
+    assert!(first.starts_with("error_by_time"));
+    let (said, _) = case.succeeds(&["advise", "1", "--reach", "0.9"]);
+    assert!(said.contains("error"), "{said}");
 }
 
 #[test]

@@ -99,8 +99,12 @@ fn ours_is_right_everywhere_and_the_others_break_where_they_must() {
         ];
         assert_eq!(kinds.iter().sum::<usize>(), row.n_configurations);
     }
-    let svg = fs::read_to_string(case.path("1/stability_rest.svg")).unwrap();
-    assert!(svg.contains("limit of an explicit spring") && svg.contains("taxel mass"));
+    for chart in ["stability_rest_time", "stability_rest"] {
+        let svg = fs::read_to_string(case.path(&format!("1/{chart}.svg"))).unwrap();
+        let is_time = chart.ends_with("time");
+        assert_eq!(svg.contains("right of the same"), is_time, "{chart}");
+        assert_eq!(svg.contains("time step, taxel mass"), !is_time, "{chart}");
+    }
 }
 
 /// Parts with stacked balls.
@@ -217,9 +221,14 @@ fn a_ladder_of_joints_carries_the_same_on_each_and_is_charted() {
             (configuration.n_taxels(), 3.5e-3)
         );
     }
-    for chart in ["stability_joints", "stability_joints_dt_0.002"] {
-        let svg = fs::read_to_string(case.path(&format!("out/{chart}.svg"))).unwrap();
-        assert!(svg.contains("unstable near 280") && svg.contains("taxel mass 1e-5 kg"));
+    let svg = fs::read_to_string(case.path("out/stability_joints.svg")).unwrap();
+    for text in [
+        "unstable near 280",
+        "taxel mass 1e-5 kg",
+        "real time",
+        "not right",
+    ] {
+        assert!(svg.contains(text), "{text}");
     }
 }
 
@@ -319,10 +328,27 @@ fn rows_of_other_programs_stand_in_the_parts_that_contain_their_scenes_and_other
         .iter()
         .filter(|configuration| configuration.method.is_peer());
     assert_eq!(peers.count(), 1, "only configurations that the study has");
-    let svg = fs::read_to_string(case.path("with/stability_rest.svg")).unwrap();
-    assert!(svg.contains("MuJoCo 4.0.0, 2026-11-22"));
-    let press = fs::read_to_string(case.path("with/stability_press.svg")).unwrap();
+    // A program with few scenes is not compared with the others, one with all scenes is.
+    let few = fs::read_to_string(case.path("with/stability_rest.svg")).unwrap();
+    assert!(!few.contains("MuJoCo"));
+    let ours = fs::read_to_string(case.path("without/stability.csv")).unwrap();
+    let ours = ours
+        .lines()
+        .filter(|line| line.contains(",rest,quasi_static,"));
+    let all = ours.map(|line| {
+        let line = line.replace("quasi_static", "mujoco_discrete");
+        format!("{line},1.0,2.0,4,2,MuJoCo,4.0.0,2026-11-22\n")
+    });
+    case.file("peers.csv", format!("{header}{}", all.collect::<String>()));
+    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    let svg = fs::read_to_string(case.path("whole/stability_rest.svg")).unwrap();
+    assert!(
+        svg.contains("2026-11-22"),
+        "the version and the date of the program"
+    );
+    let press = fs::read_to_string(case.path("whole/stability_press.svg")).unwrap();
     assert!(!press.contains("MuJoCo"));
+    case.file("peers.csv", format!("{header}{asked}"));
     // A row belongs to a scene, in whichever part it stands.
     let (before, parts) = study.split_once("[[stability.parts]]").unwrap();
     let inserted = "[[stability.parts]]\nscene = \"press\"\nmethods = [\"quasi_static\"]\ntaxels = 4\nstiffness_n_per_m = 5.0\n\

@@ -12,10 +12,21 @@ use crate::report::swept::Setting;
 use crate::report::text_width::text_width;
 use crate::table::{Data, Mark, Role, Scale, Value};
 
-/// Colours of the outcomes in a chart, in the order of first occurrence. The colours also differ in lightness.
+/// Colours of the outcomes in a chart, in the order of the column's names, or else of first occurrence. The colours also differ in lightness.
 const OUTCOMES: [Rgb; 8] = [
-    LINES[5], LINES[4], LINES[1], LINES[7], INK, LINES[2], LINES[3], LINES[0],
+    [0x9e, 0xca, 0xe1],
+    [0xf0, 0xc0, 0x4a],
+    LINES[3],
+    [0x8c, 0x2d, 0x04],
+    INK,
+    LINES[2],
+    LINES[7],
+    LINES[0],
 ];
+/// Number of tiles of outcomes above which tiles have no letters.
+const MANY_LETTERS: usize = 200;
+/// Largest number of panels side by side.
+const PANELS_ACROSS: usize = 4;
 const SIGN: u32 = 11;
 /// Number of rows or columns of tiles above which tiles are small.
 const MANY: usize = 20;
@@ -23,9 +34,9 @@ const MANY: usize = 20;
 /// Appearance of the tiles of a chart: rules that convert values to colours and texts.
 struct Look<'a> {
     fill: Setting<'a>,
-    sign: Option<Setting<'a>>,
     /// Smallest and largest value of the tiles in the chart.
     ends: (f64, f64),
+    n_tiles: usize,
 }
 
 pub(super) const ABOUT: MarkAbout = MarkAbout {
@@ -36,13 +47,12 @@ pub(super) const ABOUT: MarkAbout = MarkAbout {
 
 /// Draws a chart of tiles.
 fn draw(view: &View) -> Result<Drawing> {
-    let Mark::Tiles { fill, sign } = &view.spec.mark else {
+    let Mark::Tiles { fill } = &view.spec.mark else {
         unreachable!("the descriptor of a mark draws this mark");
     };
-    let sign = sign.as_ref().map(|sign| view.column(sign));
-    let look = Look::new(view, view.column(fill)?, sign.transpose()?);
+    let look = Look::new(view, view.column(fill)?);
     let (across, down) = (view.x.n_levels, view.y.n_levels);
-    let columns = view.panels.names.len();
+    let columns = view.panels.names.len().min(PANELS_ACROSS);
     let is_many = across.min(down) >= MANY;
     let (margin, high) = if is_many { (4.0, 18.0) } else { (8.0, 22.0) };
     let signs = view
@@ -62,7 +72,7 @@ fn draw(view: &View) -> Result<Drawing> {
         let frame = layout.frame(panel);
         layout.draw_axes(&mut drawing, view, panel);
         let places = view.places.iter();
-        let here = places.filter(|place| view.panel_of(place) == panel);
+        let here = places.filter(|place| place.panel == panel);
         let here = here.filter(|place| look.fill.data.value(place.row).is_some());
         let tiles: Vec<(&Place, Area, Rgb, String)> = here
             .map(|place| {
@@ -85,8 +95,11 @@ fn draw(view: &View) -> Result<Drawing> {
     Ok(drawing)
 }
 
-/// Draws the text of a tile on its own background, so that reference lines do not cross the text.
+/// Draws the text of a tile on its own background, so that reference lines do not cross the text; an empty text is not drawn.
 fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
+    if sign.is_empty() {
+        return;
+    }
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
     let (x, y) = place.at(0.5, 0.5);
     drawing.area(Area::around((x, y), (width, 14.0)), colour);
@@ -95,7 +108,7 @@ fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
 }
 
 impl<'a> Look<'a> {
-    fn new(view: &View, fill: Setting<'a>, sign: Option<Setting<'a>>) -> Self {
+    fn new(view: &View, fill: Setting<'a>) -> Self {
         let column = fill.column;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         if let Data::Numbers(numbers) = fill.data {
@@ -111,16 +124,28 @@ impl<'a> Look<'a> {
         }
         Self {
             fill,
-            sign,
             ends: (low, high),
+            n_tiles: view.places.len(),
         }
     }
 
     fn colour(&self, row: usize) -> Rgb {
         match self.fill.data {
-            Data::Words { codes, .. } => OUTCOMES[codes[row] as usize % OUTCOMES.len()],
+            Data::Words { codes, .. } => self.outcome_colour(codes[row] as usize),
             Data::Numbers(numbers) => tint(self.part(numbers[row])),
         }
+    }
+
+    /// Returns the colour of an outcome, given its code in the table. Named outcomes have the same colours in all tables.
+    fn outcome_colour(&self, code: usize) -> Rgb {
+        let named = match self.fill.data {
+            Data::Words { levels, .. } => {
+                let mut names = self.fill.column.names.iter();
+                names.position(|(known, _)| *known == levels[code])
+            }
+            Data::Numbers(_) => None,
+        };
+        OUTCOMES[named.unwrap_or(code) % OUTCOMES.len()]
     }
 
     fn part(&self, number: f64) -> f64 {
@@ -137,13 +162,18 @@ impl<'a> Look<'a> {
 
     /// Returns the text on the tile of a table row.
     fn sign(&self, row: usize) -> String {
-        let sign = self.sign.filter(|sign| sign.data.value(row).is_some());
-        let Setting { column, data } = sign.unwrap_or(self.fill);
-        match data.value(row) {
+        match self.fill.data.value(row) {
             None => String::new(),
-            Some(Value::Number(number)) => column.tick(number),
-            Some(Value::Word(word)) if sign.is_some() => column.word(&word),
-            Some(Value::Word(outcome)) => self.letter(&outcome),
+            Some(Value::Number(number)) => self.fill.column.tick(number),
+            Some(Value::Word(outcome)) => self.sign_of(&outcome),
+        }
+    }
+
+    /// Returns the letter of an outcome; empty in a chart of many tiles.
+    fn sign_of(&self, outcome: &str) -> String {
+        match self.n_tiles > MANY_LETTERS {
+            true => String::new(),
+            false => self.letter(outcome),
         }
     }
 
@@ -181,12 +211,9 @@ impl<'a> Look<'a> {
                     places.any(|place| codes[place.row] as usize == *code)
                 };
                 entries.extend((0..levels.len()).filter(is_shown).map(|code| {
-                    let colour = OUTCOMES[code % OUTCOMES.len()];
-                    tile(
-                        column.word(&levels[code]),
-                        colour,
-                        self.letter(&levels[code]),
-                    )
+                    let colour = self.outcome_colour(code);
+                    let letter = self.sign_of(&levels[code]);
+                    tile(column.word(&levels[code]), colour, letter)
                 }));
             }
             Data::Numbers(_) => {
@@ -198,10 +225,6 @@ impl<'a> Look<'a> {
             }
         }
         entries.extend(rules::entries(view));
-        if let Some(sign) = self.sign {
-            let written = format!("written: {}", sign.column.title());
-            entries.push(LegendEntry::title(written));
-        }
         entries
     }
 }

@@ -16,7 +16,7 @@ function describe(figure, mark) {
     return { title: [panel, series].filter(Boolean).join(" · "), lines: lines.filter(Boolean) };
   }
   const heads = [...table.querySelectorAll("th")];
-  const said = (name) => heads.map((head, place) => [head.dataset[name], row.cells[place].textContent]).filter(([words, text]) => words !== undefined && text !== "").map((parts) => parts.join(""));
+  const said = (name) => heads.map((head, place) => [head.dataset[name], row.cells[place]?.textContent ?? ""]).filter(([words, text]) => words !== undefined && text !== "").map((parts) => parts.join(""));
   return { title: said("setting").join(" · "), lines: said("found") };
 }
 

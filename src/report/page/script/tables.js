@@ -9,7 +9,7 @@ function sortable(table) {
   /** The fields of the file that a cell holds. */
   function field(row, place) {
     const cell = row.cells[place];
-    return cell.dataset.v ?? heads[place].dataset.v ?? cell.textContent;
+    return cell?.dataset.v ?? heads[place].dataset.v ?? cell.textContent;
   }
 
   function show() {

@@ -1,6 +1,6 @@
 //! Findings of a recognition study as sentences, derived from its tables.
 
-use crate::report::advice::{Candidate, Candidates, Requirement};
+use crate::report::advice::{Candidate, Candidates};
 use crate::report::csv_tables::{CAPPED_FITS, LIMITS_FILE, MISSED_TOUCHES};
 use crate::report::study_folder::words_of;
 use crate::report::swept::{Setting, Swept, without};
@@ -8,7 +8,8 @@ use crate::report::terminal::paragraph;
 use crate::studies::recognition::charts::chance::ChanceLevels;
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::robustness::robustness_words;
-use crate::studies::recognition::charts::tables::CONFIGURATIONS;
+use crate::studies::recognition::charts::table_charts::{Changes, best_row};
+use crate::studies::recognition::charts::tables::{CHANGED, CHANGED_TO, CONFIGURATIONS};
 use crate::table::{Table, Value, short_number};
 
 /// Maximum number of values that a sentence lists; also the maximum number of conditions for which sentences are written.
@@ -19,10 +20,21 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
     let Some(configurations) = filled(tables, CONFIGURATIONS) else {
         return vec!["No configuration has been computed.".to_owned()];
     };
-    let mut sentences = bests(configurations).unwrap_or_default();
+    let breaking = robustness_words(tables);
+    let mut sentences = match change_words(configurations, breaking.clone()) {
+        Some(sentences) => sentences,
+        None => {
+            let bests = bests(configurations).unwrap_or_default();
+            bests.into_iter().chain(breaking).collect()
+        }
+    };
+    let best = best_row(configurations).map(|row| configurations.number("accuracy", row));
+    if best == Some(1.0) {
+        let diagonal = "Every test decision of the most accurate configuration is right: its confusion matrix is diagonal.";
+        sentences.push(diagonal.to_owned());
+    }
     sentences.extend(missed(tables));
     sentences.extend(effects(configurations).unwrap_or_default());
-    sentences.extend(robustness_words(tables));
     sentences.extend(remarks(tables));
     sentences
 }
@@ -46,6 +58,52 @@ pub fn words(tables: &[Table], width: usize) -> String {
         + &missed.map_or_else(String::new, |missed| {
             format!("\n{}", paragraph(&missed, width))
         })
+}
+
+/// Returns sentences on a study in which single settings are changed: the lowest accuracy that a setting alone leaves, the settings that stay within the
+/// interval of the unchanged study, and the sentence `breaking`, which is the first one if all settings leave the interval. Returns `None` for other studies.
+fn change_words(configurations: &Table, breaking: Option<String>) -> Option<Vec<String>> {
+    let Changes { base, drawn, .. } = Changes::new(configurations)?;
+    let accuracy = |row: usize| configurations.number("accuracy", row);
+    let (column, _) = configurations.column("accuracy")?;
+    let [low, _] = configurations.interval(column, base)?;
+    let by_accuracy = |a: &usize, b: &usize| accuracy(*a).total_cmp(&accuracy(*b));
+    let settings = configurations.groups(&[CHANGED], drawn).into_iter();
+    let lowest = settings.filter_map(|rows| rows.into_iter().min_by(by_accuracy));
+    let mut lowest: Vec<usize> = lowest.filter(|row| *row != base).collect();
+    lowest.sort_by(by_accuracy);
+    let (costly, others) = lowest.split_at(lowest.partition_point(|&row| accuracy(row) < low));
+    let name = |row: &usize| configurations.word(CHANGED, *row);
+    let said = costly.iter().take(MAX_LISTED).map(|row| {
+        let value = configurations.word(CHANGED_TO, *row);
+        format!("{} {value} ({:.2})", name(row), accuracy(*row))
+    });
+    let said: Vec<String> = said.collect();
+    let others: Vec<&str> = others.iter().map(name).collect();
+    let unchanged = configurations.bounded(column, base);
+    let costs = match said.is_empty() {
+        true => format!(
+            "No setting alone costs more than the interval of the unchanged study, {unchanged}."
+        ),
+        false => format!(
+            "Alone, these leave the least of {unchanged}: {}.",
+            said.join(", ")
+        ),
+    };
+    let mut sentences = vec![costs];
+    if !others.is_empty() {
+        sentences.push(format!(
+            "Within the interval at all values: {}.",
+            others.join(", ")
+        ));
+    }
+    let place = if others.is_empty() {
+        0
+    } else {
+        sentences.len()
+    };
+    sentences.splice(place..place, breaking);
+    Some(sentences)
 }
 
 /// Returns a note on the number of touches without any deflected taxel; `None` if there are none.
@@ -84,9 +142,9 @@ fn bests(configurations: &Table) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// Returns sentences on two configurations: the most accurate one, and the one with the fewest measurements within its confidence interval.
+/// Returns sentences on two configurations: the one with the fewest measurements within the confidence interval of the best, and the most accurate one.
 fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
-    let best = *offers.front(choices).last()?;
+    let [best, as_good] = offers.best_and_as_good(choices)?;
     let accuracy = |offer: &Candidate| offers.table.bounded(offers.value, offer.row);
     if offers.table.n_rows == 1 {
         return Some(vec![format!("Accuracy {}.", accuracy(&best))]);
@@ -101,18 +159,18 @@ fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
     };
     let mut sentences = vec![format!("Best accuracy{with}{colon} {}.", said(&best))];
     let (_, measured) = offers.table.column(&offers.cost.name)?;
-    if measured.varies(0..offers.table.n_rows) {
-        let ends = offers.table.interval(offers.value, best.row);
-        let enough = Requirement::Value(ends.map_or(best.value, |[low, _]| low));
-        sentences.push(match offers.advise(choices, enough) {
-            Ok(advice) if advice.choice != best => format!(
-                "Within the interval of the best{with}, with the fewest measurements: {}.",
-                said(&advice.choice)
+    if as_good != best {
+        let as_good = said(&as_good);
+        sentences.insert(
+            0,
+            format!(
+                "Within the interval of the best{with}, with the fewest measurements: {as_good}."
             ),
-            _ => format!(
-                "No configuration with fewer measurements reaches the interval of the best{with}."
-            ),
-        });
+        );
+    } else if measured.varies(0..offers.table.n_rows) {
+        sentences.push(format!(
+            "No configuration with fewer measurements reaches the interval of the best{with}."
+        ));
     }
     Some(sentences)
 }

@@ -17,7 +17,7 @@ use crate::report::swept::{Setting, Swept};
 use crate::row;
 use crate::statistics::p_status::CONFIDENCE;
 use crate::studies::recognition::charts::chance::ChanceLevels;
-use crate::table::{Data, File, Role, Table, Value};
+use crate::table::{Data, File, Role, Table};
 use rand_distr::{Beta, Distribution};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -234,14 +234,24 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
     }
     let all: Vec<usize> = (0..summary.n_rows).collect();
     let mut curves = Vec::new();
-    for condition in summary.of_role(Role::Condition) {
+    let swept = Swept::new(summary, &all);
+    let choices = swept.one_at_a_time.iter();
+    let choices = choices.filter(|one| one.column.role == Role::Choice);
+    let choices: Vec<&str> = choices.map(|one| &one.column.name[..]).collect();
+    let follows = |column: &str| {
+        let mut following = swept.following.iter();
+        following.any(|one| one.column.name == column)
+    };
+    let conditions = summary.of_role(Role::Condition).into_iter();
+    for condition in conditions.chain(choices.iter().copied()) {
+        let is_choice = choices.contains(&condition);
         let Some((column, data @ Data::Numbers(values))) = summary.column(condition) else {
             continue;
         };
         let setting = Setting { column, data };
         let others = [Role::Choice, Role::Condition].map(|role| summary.of_role(role));
         let mut others = others.concat();
-        others.retain(|column| *column != condition);
+        others.retain(|column| *column != condition && !(is_choice && follows(column)));
         for mut along in summary.groups(&others, all.iter().copied()) {
             along.retain(|&row| setting.position(row).is_some_and(f64::is_finite));
             along.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
@@ -334,70 +344,50 @@ fn both_sides(
     sides.into_iter().flatten().collect()
 }
 
-/// Returns a sentence for each condition: the value at which the most robust design has lost half of its accuracy above chance.
-pub(super) fn robustness_words(tables: &[Table]) -> Vec<String> {
+/// Returns a sentence on the values of all conditions at which half of the accuracy above chance is lost, from the first to the last design that loses it, and on
+/// the conditions in which no design does. Returns `None` if the study drives no condition.
+pub(super) fn robustness_words(tables: &[Table]) -> Option<String> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
-    match (of("summary.csv"), of(ROBUSTNESS.name())) {
-        (Some(summary), Some(table)) => sentences(summary, table),
-        _ => Vec::new(),
-    }
-}
-
-fn sentences(summary: &Table, table: &Table) -> Vec<String> {
-    let conditions = table.groups(&["condition", "direction"], 0..table.n_rows);
-    let sentence = |rows: &Vec<usize>| {
+    let (summary, table) = (of("summary.csv")?, of(ROBUSTNESS.name())?);
+    let (mut breaks, mut never) = (Vec::new(), Vec::new());
+    for rows in table.groups(&["condition"], 0..table.n_rows) {
         let (column, _) = summary.column(table.word("condition", rows[0]))?;
-        let at = |row: usize| table.number("half_accuracy_at", row);
-        let with_status = |status: &str| -> Vec<usize> {
-            let rows = rows.iter().copied();
-            rows.filter(|&row| table.word("status", row) == status)
-                .collect()
-        };
-        let found = with_status("found");
-        let n_of = |status: &str| format!("{} of {}", with_status(status).len(), rows.len());
-        let sign = match table.word("direction", rows[0]) {
-            "smaller" => -1.0,
-            _ => 1.0,
-        };
-        let further = |&a: &usize, &b: &usize| (sign * at(a)).total_cmp(&(sign * at(b)));
-        let furthest = found.into_iter().max_by(further)?;
-        let end = |name: &str| match table.number(name, furthest) {
-            end if end.is_nan() => "beyond the last value".to_owned(),
-            end => column.number_words(three_digits(end)),
-        };
-        let (low, high) = (end("half_accuracy_at_low"), end("half_accuracy_at_high"));
-        let design = match table.word("design", furthest) {
-            "" => String::new(),
-            design => format!(" with {design}"),
-        };
-        let others = [
-            (
-                "beyond_the_last_value",
-                "keep more than half up to the last value",
-            ),
-            ("all_at_chance", "are at chance"),
-        ];
-        let others = others
-            .iter()
-            .filter(|(status, _)| !with_status(status).is_empty());
-        let others =
-            others.map(|(status, words)| format!("; {} configurations {words}", n_of(status)));
-        let others: String = others.collect();
-        let place = column.phrase(&Value::Number(three_digits(at(furthest))));
-        Some(format!(
-            "Half of the accuracy above chance is lost at {place} ({low} to {high}){design}{others}."
-        ))
-    };
-    conditions.iter().filter_map(sentence).collect()
-}
-
-/// Rounds an interpolated value to three significant digits.
-fn three_digits(value: f64) -> f64 {
-    if value == 0.0 {
-        return value;
+        let n_before = breaks.len();
+        for rows in table.groups(&["direction"], rows.iter().copied()) {
+            let at = rows
+                .iter()
+                .map(|&row| table.number("half_accuracy_at", row));
+            let mut at: Vec<f64> = at.filter(|at| at.is_finite()).collect();
+            at.sort_by(f64::total_cmp);
+            let (Some(&low), Some(&high)) = (at.first(), at.last()) else {
+                continue;
+            };
+            let two_digits = |number: f64| format!("{number:.1e}").parse().unwrap_or(number);
+            let [low, high] = [low, high].map(|end| column.number_words(two_digits(end)));
+            let designs = match (at.len(), rows.len()) {
+                (n, all) if n < all => format!(" ({n} of {all} designs)"),
+                _ => String::new(),
+            };
+            breaks.push(match low == high {
+                true => format!("{} {low}{designs}", column.words),
+                false => format!("{} {low} to {high}{designs}", column.words),
+            });
+        }
+        if breaks.len() == n_before {
+            never.push(&column.words[..]);
+        }
     }
-    let digits = 10f64.powi(2 - value.abs().log10().floor() as i32);
-    (value * digits).round() / digits
+    let never = match &never.join(", ")[..] {
+        "" => String::new(),
+        words => format!("; never with {words}"),
+    };
+    Some(match breaks.is_empty() {
+        true => format!("Half of the accuracy above chance is kept{never}."),
+        false => {
+            let breaks = breaks.join(", ");
+            format!("Half of the accuracy above chance is lost at {breaks}{never}.")
+        }
+    })
 }
 
 #[cfg(test)]
@@ -510,11 +500,9 @@ mod tests {
             assert!(number("half_accuracy_at", row).is_nan());
         }
         assert_eq!((number("end", 2), number("accuracy_at_end", 2)), (0.0, 0.9));
-        let said = robustness_words(&[summary, table]);
-        let start = "Half of the accuracy above chance is lost at noise 40 % (3";
-        assert!(said.len() == 1 && said[0].starts_with(start), "{said:?}");
-        let end = "with C = 1; 1 of 3 configurations keep more than half up to the last value; 1 of 3 configurations are at chance.";
-        assert!(said[0].ends_with(end), "{said:?}");
+        let said = robustness_words(&[summary, table]).unwrap();
+        let wanted = "Half of the accuracy above chance is lost at noise 40 % (1 of 3 designs).";
+        assert_eq!(said, wanted);
         // Two values do not determine a curve.
         assert_eq!(tables_of(&planted[..2]).1, None);
     }

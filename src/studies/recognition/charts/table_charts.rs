@@ -4,12 +4,15 @@
 //! setting with the most values. Lines and panels show the settings with the next most values; in a tie, texts come before numbers. Each combination of the
 //! remaining settings has its own chart. If a setting applies only to some values of another setting, one line represents a pair of their values.
 
+use crate::report::advice::Candidates;
+use crate::report::pictures::colours::LINES;
 use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
 use crate::studies::recognition::charts::chance::ChanceLevels;
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::{
-    CHANCE, CONFIGURATIONS, OVER_FOLDS, OVER_TRIAL, SELECTED_TAXELS, note_of_groups,
+    CHANCE, CHANGED, CHANGED_TO, CONFIGURATIONS, OVER_FOLDS, OVER_TRIAL, SELECTED_TAXELS,
+    UNCHANGED, note_of_groups,
 };
 use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
 use std::cmp::Reverse;
@@ -17,11 +20,15 @@ use std::cmp::Reverse;
 /// Maximum number of charts of selected taxels; further combinations of settings are only in the table.
 const MAX_PLACES: usize = 4;
 
-/// Minimum number of classifiers with which a study counts as a comparison of classifiers, and charts accuracy against time.
-const MANY_CLASSIFIERS: usize = 3;
+/// Maximum number of lines in a chart for which further settings become lines instead of charts of their own.
+const MAX_LINES: usize = 6;
 
-/// Returns the charts of a study: accuracy by each varying setting, confusions of the best configuration, and accuracy against time. Accuracy against time is
-/// included if classifiers are compared or `pareto` is `Some(true)`.
+/// Minimum number of designs (combinations of choices) with which a study charts accuracy against the time of a decision. With as many classifiers, it also
+/// charts accuracy against the time to train.
+const MANY: usize = 3;
+
+/// Returns the charts of a study: accuracy by each varying setting, accuracy against time as the second chart, and confusions of the best configuration.
+/// Accuracy against time is included if there are three designs or `pareto` is `Some(true)`, but not if it is `Some(false)`.
 pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     let Some(configurations) = filled(tables, CONFIGURATIONS) else {
         return Vec::new();
@@ -41,13 +48,13 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
         ..ChartSpec::default()
     };
     let mut charts = accuracy_charts(configurations, &chart);
-    let n_classifiers = configurations
-        .groups(&["classifier"], 0..configurations.n_rows)
-        .len();
-    let mut others = Vec::new();
-    if pareto.unwrap_or(n_classifiers >= MANY_CLASSIFIERS) {
-        others.extend(time_charts(configurations, &chart));
-    }
+    charts.splice(0..0, change_chart(configurations, &chart));
+    let mut others: Vec<ChartSpec> = time_charts(configurations, &chart, pareto);
+    let first = others.len().min(1);
+    charts.splice(
+        charts.len().min(1)..charts.len().min(1),
+        others.drain(..first),
+    );
     others.extend(confusion.and_then(|table| confusion_chart(configurations, table)));
     others.extend(filled(tables, SELECTED_TAXELS).map_or_else(Vec::new, selected_charts));
     // Charts of accuracies are adjacent, and leave room for the other charts.
@@ -96,12 +103,8 @@ fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> 
         let has_value = |row: &usize| setting.data.value(*row).is_some();
         let rows = all.iter().copied().filter(is_first);
         let rows: Vec<usize> = rows.filter(has_value).collect();
-        let first = |other: &Setting| Shown {
-            column: other.column.name.to_string(),
-            value: other.data.value(0).unwrap_or_else(|| Value::from("")),
-        };
         let chart = ChartSpec {
-            shown: others.iter().map(first).collect(),
+            shown: others.iter().map(first_value).collect(),
             ..chart.clone()
         };
         charts_along(configurations, &chart, Some(*setting), &rows)
@@ -109,8 +112,92 @@ fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> 
     signal.iter().flat_map(charts_of).collect()
 }
 
+/// Rows of a study in which single settings are changed, for the design that is most accurate without a change.
+pub(super) struct Changes {
+    /// Filters that select the design.
+    shown: Vec<Shown>,
+    /// Row of the unchanged design.
+    pub base: usize,
+    /// Rows of the design.
+    pub drawn: Vec<usize>,
+}
+
+impl Changes {
+    /// Returns the rows of the best design; `None` if the study does not change single settings.
+    pub fn new(configurations: &Table) -> Option<Self> {
+        let accuracy = |row: usize| configurations.number("accuracy", row);
+        let all = 0..configurations.n_rows;
+        let unchanged = all
+            .clone()
+            .filter(|&row| configurations.word(CHANGED, row) == UNCHANGED);
+        let base = unchanged.max_by(|&a, &b| accuracy(a).total_cmp(&accuracy(b)))?;
+        let Swept {
+            free,
+            one_at_a_time,
+            ..
+        } = Swept::new(configurations, &all.clone().collect::<Vec<_>>());
+        let others = one_at_a_time
+            .iter()
+            .fold(free, |kept, one| without(&kept, one));
+        let shown = others
+            .iter()
+            .filter_map(|one| configurations.shown(&one.column.name, base));
+        let shown: Vec<Shown> = shown.collect();
+        let is_shown = |row: &usize| {
+            let mut shown = shown.iter();
+            shown.all(|one| configurations.has_setting(&one.column, *row, &one.value))
+        };
+        let drawn = all.filter(is_shown).collect();
+        Some(Self { shown, base, drawn })
+    }
+}
+
+/// Returns a chart with one row for each setting that is changed alone, sorted by the accuracy that it costs at most: the accuracy at each of its values.
+/// Returns `None` for other studies.
+fn change_chart(configurations: &Table, chart: &ChartSpec) -> Option<ChartSpec> {
+    let Changes { shown, base, drawn } = Changes::new(configurations)?;
+    let accuracy = |row: usize| configurations.number("accuracy", row);
+    let [low, high] = configurations.interval(configurations.column("accuracy")?.0, base)?;
+    let words = format!("unchanged, {:.2}, and its 95 % interval", accuracy(base));
+    let rule = |at: f64, words: &str| Rule::at(Along::X, at, words);
+    let mut rules: Vec<Rule> = [accuracy(base), low, high]
+        .map(|at| rule(at, &words))
+        .into();
+    let settings = configurations.groups(&[CHANGED], drawn.iter().copied());
+    let n_below = |bound: f64| {
+        let is_below = |rows: &&Vec<usize>| rows.iter().any(|&row| accuracy(row) < bound);
+        settings.iter().filter(is_below).count()
+    };
+    let mut title = format!(
+        "Each setting changed alone, the costliest at the top: {} of {} leave the interval of the unchanged study",
+        n_below(low),
+        settings.len() - 1
+    );
+    if let Some(Rule {
+        at: At::Value(chance),
+        ..
+    }) = chart.rules.first()
+    {
+        let half = 0.5 * (chance + accuracy(base));
+        rules.push(rule(half, "half of the accuracy above chance is lost"));
+        title += &format!(", {} lose half of the accuracy above chance", n_below(half));
+    }
+    Some(ChartSpec {
+        name: "accuracy_by_change".to_owned(),
+        title,
+        x: "accuracy".to_owned(),
+        y: CHANGED.to_owned(),
+        label: Some(CHANGED_TO.to_owned()),
+        mark: Mark::Points,
+        shown,
+        rules,
+        ..chart.clone()
+    })
+}
+
 /// Returns charts whose x axis is the given setting; if none is given, the main setting of the study. If lines and panels show settings and no other setting
-/// remains, a second chart exchanges the two. The effects of both settings can then be read from lines within one panel.
+/// remains, a second chart exchanges the two. The effects of both settings can then be read from lines within one panel. If only lines show a setting of
+/// numbers, a second chart has it along x.
 fn charts_along(
     configurations: &Table,
     chart: &ChartSpec,
@@ -125,16 +212,28 @@ fn charts_along(
     let parts: Vec<Setting> = others.iter().copied().filter(is_part).collect();
     others.retain(|one| !is_part(one));
     others.sort_by_key(|one| (Reverse(one.levels(rows).len()), one.is_number()));
-    let (used, fixed) = others.split_at(others.len().min(2));
+    let (used, mut fixed) = others.split_at(others.len().min(2));
     let [lines, panels] = [used.first(), used.get(1)].map(|one| one.map(name_of));
+    // Few further settings become lines, too.
+    let n_levels = |settings: &[Setting]| -> usize {
+        let levels = settings.iter().map(|one| one.levels(rows).len());
+        levels.product()
+    };
+    let folded = match used.first() {
+        Some(one) if n_levels(&[*one]) * n_levels(fixed) <= MAX_LINES => std::mem::take(&mut fixed),
+        _ => &[],
+    };
+    let parts = [folded, &parts].concat();
+    let used = [used, folded].concat();
     let with_parts = |one: Option<String>| one.into_iter().chain(parts.iter().map(name_of));
+    let n_along = x.map_or(0, |x| x.levels(rows).len());
     let x = x.map_or_else(|| "ratio".to_owned(), |x| name_of(&x));
     let of_rows = |rows: Vec<usize>| {
         let here = fixed.iter().map(|one| &one.column.name);
         let here = here.filter_map(|name| configurations.shown(name, rows[0]));
         ChartSpec {
             name: format!("accuracy_by_{}{}", word(&x), name_ending(fixed, rows[0])),
-            title: title(configurations, &x, (used, fixed), rows[0]),
+            title: title(configurations, &x, (&used, fixed), rows[0]),
             shown: chart.shown.iter().cloned().chain(here).collect(),
             x: x.clone(),
             lines: with_parts(lines.clone()).collect(),
@@ -143,15 +242,27 @@ fn charts_along(
         }
     };
     let mut charts: Vec<ChartSpec> = swept.groups(fixed, rows).into_iter().map(of_rows).collect();
-    if let (Some(panels), true) = (panels, fixed.is_empty() && parts.is_empty()) {
-        let chart = charts[0].clone();
-        charts.push(ChartSpec {
-            name: format!("{}_per_{}", chart.name, word(&panels)),
+    let is_axis = others
+        .first()
+        .is_some_and(|one| one.is_number() && one.applies(rows));
+    let is_whole = fixed.is_empty() && parts.is_empty();
+    let exchanged = match (panels, lines) {
+        (Some(panels), lines) if is_whole => Some(ChartSpec {
+            name: format!("{}_per_{}", charts[0].name, word(&panels)),
             lines: vec![panels],
             panels: lines,
-            ..chart
-        });
-    }
+            ..charts[0].clone()
+        }),
+        (None, Some(lines)) if is_whole && is_axis && n_along <= LINES.len() => Some(ChartSpec {
+            name: format!("accuracy_by_{}", word(&lines)),
+            title: title(configurations, &lines, (&[], &[]), rows[0]),
+            x: lines,
+            lines: vec![x],
+            ..charts[0].clone()
+        }),
+        _ => None,
+    };
+    charts.extend(exchanged);
     charts
 }
 
@@ -212,40 +323,80 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
     parts.collect()
 }
 
-/// Returns two charts: accuracy against training time, and accuracy against prediction time. Each value of the first condition has a panel, and each classifier
-/// has a colour. If there is only one classifier, colours show the values of the first other varying setting.
-fn time_charts(configurations: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
-    let all: Vec<usize> = (0..configurations.n_rows).collect();
-    let free = Swept::new(configurations, &all).free;
+/// Returns charts of accuracy against the time of a decision and, if classifiers are compared, against training time. Each value of the first condition has a
+/// panel. Colours show the classifier or, if there is one, the choice on whose values the mean accuracy depends most. If conditions vary one at a time, the
+/// charts have the first value of each.
+fn time_charts(configurations: &Table, chart: &ChartSpec, pareto: Option<bool>) -> Vec<ChartSpec> {
+    let mut rows: Vec<usize> = (0..configurations.n_rows).collect();
+    let mut alone = Swept::new(configurations, &rows).one_at_a_time;
+    alone.retain(|one| one.column.role == Role::Condition);
+    rows.retain(|&row| alone.iter().all(|one| one.data.key(row) == one.data.key(0)));
+    let n_groups = |columns: &[&str]| configurations.groups(columns, rows.iter().copied()).len();
+    let is_asked = |n: usize| pareto.unwrap_or(n >= MANY);
+    if !is_asked(n_groups(&configurations.of_role(Role::Choice))) {
+        return Vec::new();
+    }
+    let free = Swept::new(configurations, &rows).free;
     let of = |role: Role| free.iter().filter(move |one| one.column.role == role);
+    let spread = |one: &&Setting| {
+        let groups = Setting::groups(&[**one], configurations, &rows);
+        let accuracy = |row: &usize| configurations.number("accuracy", *row);
+        let means = groups
+            .iter()
+            .map(|rows| rows.iter().map(accuracy).sum::<f64>() / rows.len() as f64);
+        means.clone().fold(0.0, f64::max) - means.fold(1.0, f64::min)
+    };
     let classifier = of(Role::Choice).find(|one| one.column.name == "classifier");
-    let lines = classifier.or_else(|| of(Role::Choice).next());
+    let few = of(Role::Choice).filter(|one| one.levels(&rows).len() <= LINES.len());
+    let lines = classifier.or_else(|| few.max_by(|a, b| spread(a).total_cmp(&spread(b))));
     let costs = [
+        ("prediction", "of a decision", "predict_us_per_decision"),
         ("training", "to train", "fit_s"),
-        (
-            "prediction",
-            "to decide on an object",
-            "predict_us_per_decision",
-        ),
     ];
-    costs.map(|(name, what, x)| ChartSpec {
-        name: format!("pareto_{name}"),
-        title: format!("Accuracy against the time {what}"),
-        note: "Times are means of the trials on this machine; one of training is of all training touches, one of a decision has its touches measured."
-            .to_owned(),
-        x: x.to_owned(),
-        lines: lines.map(name_of).into_iter().collect(),
-        panels: of(Role::Condition).next().map(name_of),
-        mark: Mark::Points,
-        front: true,
-        ..chart.clone()
-    })
+    let n_costs = 1 + usize::from(is_asked(n_groups(&["classifier"])));
+    let charts = costs.into_iter().take(n_costs).filter_map(|(name, what, x)| {
+        let accuracy = configurations.column("accuracy")?.0;
+        let cost = configurations.column(x)?.0;
+        let best = Candidates::of_columns(configurations, accuracy, cost).as_good_words(&rows);
+        Some(ChartSpec {
+            name: format!("pareto_{name}"),
+            title: format!("Accuracy against the time {what}: {best}, within the interval of the best"),
+            note: "Times are means of the trials on this machine; one of training is of all training touches, one of a decision has its touches measured."
+                .to_owned(),
+            shown: alone.iter().map(first_value).collect(),
+            x: x.to_owned(),
+            lines: lines.map(name_of).into_iter().collect(),
+            panels: of(Role::Condition).next().map(name_of),
+            mark: Mark::Points,
+            rules: Vec::new(),
+            front: true,
+            ..chart.clone()
+        })
+    });
+    charts.collect()
 }
 
-/// Returns a chart of the confusions between objects in the best configuration.
-fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpec> {
+/// Returns the filter of the rows in which a setting has the value of the first row of its table.
+fn first_value(setting: &Setting) -> Shown {
+    Shown {
+        column: name_of(setting),
+        value: setting.data.value(0).unwrap_or_else(|| Value::from("")),
+    }
+}
+
+/// Returns the row of the most accurate configuration; the first one if several are equal.
+pub(super) fn best_row(configurations: &Table) -> Option<usize> {
     let accuracy = configurations.numbers("accuracy")?;
-    let best = (0..accuracy.len()).reduce(|a, b| if accuracy[b] > accuracy[a] { b } else { a })?;
+    (0..accuracy.len()).reduce(|a, b| if accuracy[b] > accuracy[a] { b } else { a })
+}
+
+/// Returns a chart of the confusions between objects in the best configuration; `None` if it confuses none.
+fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpec> {
+    let best = best_row(configurations)?;
+    let accuracy = configurations.number("accuracy", best);
+    if accuracy == 1.0 {
+        return None;
+    }
     let configuration = configurations.number("configuration", best);
     let mut cells_there = confusion.numbers("configuration")?.iter();
     let row = cells_there.position(|known| *known == configuration)?;
@@ -253,7 +404,7 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
     let swept = Swept::new(configurations, &all);
     let mut words = vec![swept.condition_words(best), swept.choice_words(best)];
     words.retain(|words| !words.is_empty());
-    words.push(format!("accuracy {:.2}", accuracy[best]));
+    words.push(format!("accuracy {accuracy:.2}"));
     Some(ChartSpec {
         note: format!(
             "Rows: touched object; columns: recognised object; all trials together. Most accurate configuration ({}).",
@@ -262,7 +413,6 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
         shown: confusion.shown("configuration", row).into_iter().collect(),
         mark: Mark::Tiles {
             fill: "count".to_owned(),
-            sign: None,
         },
         ..confusion.chart("confusion", "Confusion matrix", ("object", "predicted"))
     })

@@ -65,8 +65,8 @@ const KEYS: &[KeyAbout] = keys! {
     "objects.surface_error_mm": Axes, Condition, SURFACE_ERROR;
     "objects.close_holes_mm": Axes, Condition, Positive;
 
-    "skin.pitch_mm": Table, Choice, Positive, scale: Linear, gives_way: 4;
-    "skin.size_mm": Table, Choice, Positive, title: "array size", scale: Linear, gives_way: 3;
+    "skin.pitch_mm": Table, Choice, Positive, scale: Linear, gives_way: 3;
+    "skin.size_mm": Table, Choice, Positive, title: "array size", scale: Linear, gives_way: 2;
     "skin.taxels": Table, Choice, SIDE, scale: Linear;
     "skin.layout": Axes, Choice, Any;
     "skin.curvature_radius_mm": Axes, Choice, Positive;
@@ -88,7 +88,7 @@ const KEYS: &[KeyAbout] = keys! {
     "touches.depth_mm": Axes, Choice, Positive;
     "touches.slide_mm": Axes, Choice, SLIDE;
     "touches.slide_deg": Axes, Choice, Finite;
-    "touches.frames": Table, Choice, Count(1, MAX_FRAMES), title: "frames a touch", scale: Log, gives_way: 12;
+    "touches.frames": Table, Choice, Count(1, MAX_FRAMES), title: "frames a touch", scale: Log, gives_way: 11;
     "touches.speed_mm_per_s": Axes, Choice, NotNegative;
 
     "human_touch.kinds": Axes, Condition, Any;
@@ -125,39 +125,39 @@ const KEYS: &[KeyAbout] = keys! {
 
     "signal.steps": Axes, Choice, Unchecked;
     "signal.combine": Axes, Condition, Any;
-    "signal.noise_std_full_scale": Table, Condition, NOISE, title: "noise", unit: "%", scale: Share, gives_way: 11;
+    "signal.noise_std_full_scale": Table, Condition, NOISE, title: "noise", unit: "%", scale: Share, gives_way: 10;
     "signal.noise_std_mm": Table, Condition, NotNegative, title: "noise", scale: Linear;
     "signal.noise_std_n": Table, Condition, NotNegative, title: "noise", scale: Linear;
-    "signal.smoothing_mm": Table, Choice, NotNegative, scale: Linear, gives_way: 10;
+    "signal.smoothing_mm": Table, Choice, NotNegative, scale: Linear, gives_way: 9;
     "signal.test_sensor": Table, Condition, Any, scale: Words;
 
     "sensing.ensemble": Table, Choice, Any, scale: Words, names: Ensemble::NAMES;
-    "sensing.ratio": Table, Choice, AtLeastOne, title: "compression", unit: ":1", scale: Log, gives_way: 2;
+    "sensing.ratio": Table, Choice, AtLeastOne, title: "compression", unit: ":1", scale: Log, gives_way: 1;
     "sensing.measurements": Table, Choice, COUNT, title: "m", scale: Log, gives_way: 1;
     "sensing.selection": Table, Choice, Any, title: "taxels selected by", scale: Words, names: Selection::NAMES;
     "sensing.readings_per_s": Axes, Choice, Positive;
 
-    "recognition.features": Table, Choice, Any, scale: Words, names: Features::NAMES, gives_way: 14;
+    "recognition.features": Table, Choice, Any, scale: Words, names: Features::NAMES, gives_way: 13;
     "recognition.depth_window_full_scale": Table, Choice, Positive, title: "depth window", unit: "%", scale: Share;
     "recognition.tilt_augmentation": Table, Choice, Count(0, MAX_COPIES), scale: Linear;
     "recognition.tilt_augmentation_deg": Axes, Choice, TILT;
-    "recognition.temporal_features": Table, Choice, Any, scale: Words, names: OVER_TIME, gives_way: 13;
+    "recognition.temporal_features": Table, Choice, Any, scale: Words, names: OVER_TIME, gives_way: 12;
     "recognition.classifier": Table, Choice, Any, scale: Words, names: ClassifierKind::NAMES;
     "recognition.multiclass": Axes, Choice, Any;
     "recognition.class_weight": Axes, Choice, Any;
     "recognition.solver": Axes, Choice, Any;
     "recognition.scaling": Axes, Choice, Any;
-    "recognition.c": Table, Choice, PENALTY, title: "C", scale: Log, names: CHOSEN, gives_way: 5;
+    "recognition.c": Table, Choice, PENALTY, title: "C", scale: Log, names: CHOSEN, gives_way: 4;
     "recognition.c_grid": Axes, Choice, PENALTY;
     "recognition.gamma_grid": Axes, Choice, GAMMA;
     "recognition.cv_folds": Axes, Choice, Count(2, MAX_COUNTED);
     "recognition.cv_touches": Axes, Choice, COUNT;
     "recognition.readings_per_touch": Axes, Choice, Count(1, MAX_READINGS);
     "recognition.solver_memory_gib": Axes, Choice, Positive;
-    "recognition.train_touches": Table, Choice, COUNT, title: "training touches", scale: Log, gives_way: 6;
-    "recognition.mislabelled_fraction": Table, Condition, Fraction, title: "mislabelled", unit: "%", scale: Share, gives_way: 7;
-    "recognition.class_imbalance": Table, Condition, AtLeastOne, unit: ":1", scale: Log, gives_way: 8;
-    "recognition.touches_per_decision": Table, Choice, COUNT, scale: Log, gives_way: 9;
+    "recognition.train_touches": Table, Choice, COUNT, title: "training touches", scale: Log, gives_way: 5;
+    "recognition.mislabelled_fraction": Table, Condition, Fraction, title: "mislabelled", unit: "%", scale: Share, gives_way: 6;
+    "recognition.class_imbalance": Table, Condition, AtLeastOne, unit: ":1", scale: Log, gives_way: 7;
+    "recognition.touches_per_decision": Table, Choice, COUNT, scale: Log, gives_way: 8;
     "recognition.next_touch": Table, Choice, Any, scale: Words;
     "recognition.split": Axes, Condition, Any, title: "poses held out";
     "recognition.test_fraction": Axes, Condition, Part;
@@ -247,17 +247,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_that_give_way_to_others_have_ranks_of_their_own() {
+    fn settings_that_give_way_to_others_have_ranks_of_their_own_but_measurements_and_ratio() {
         let ranked = recognition_keys()
             .iter()
             .filter(|key| key.gives_way.is_some());
         let mut ranked: Vec<&KeyAbout> = ranked.collect();
         ranked.sort_by_key(|key| key.gives_way);
-        let ranks: Vec<u8> = ranked.iter().filter_map(|key| key.gives_way).collect();
+        let mut ranks: Vec<u8> = ranked.iter().filter_map(|key| key.gives_way).collect();
+        assert_eq!(ranks.remove(1), 1);
+        assert_eq!(ranked[0].path, "sensing.ratio");
         assert_eq!(ranks, (1..=ranks.len() as u8).collect::<Vec<_>>());
         // Numbers that follow from others give way first; choices of the study itself last.
-        assert_eq!(ranked[0].path, "sensing.measurements");
-        assert_eq!(ranked[ranks.len() - 1].path, "recognition.features");
+        assert_eq!(ranked[1].path, "sensing.measurements");
+        assert_eq!(ranked[ranks.len()].path, "recognition.features");
         assert!(
             ranked
                 .iter()
