@@ -1,6 +1,6 @@
 //! Audit of arrays, as in `bubbletouch audit`.
 
-use crate::errors::{bad_input, exception, guarded};
+use crate::errors::{exception, guarded};
 use crate::study::{ColumnsOfTable, columns};
 use crate::threads::aside;
 use bubbletouch::audit::{AuditData, AuditFiles, AuditOptions, Finding, audit, audit_files};
@@ -41,7 +41,7 @@ fn said(finding: &Finding) -> SaidFinding {
 /// Audits files, by their names `data`, `labels`, `groups`, `sessions`, `times`, `lengths`, `frames_test`, `labels_test`, `groups_test` and `lengths_test`, as the
 /// command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the findings and the tables.
 #[pyfunction]
-#[pyo3(signature = (files, order, columns, grid, full_scale, before_contact, seed, permutations, name, out))]
+#[pyo3(signature = (files, order, columns, grid, full_scale, before_contact, untouched, split, not_claimed, seed, permutations, name, out))]
 #[expect(
     clippy::too_many_arguments,
     reason = "called by bubbletouch.audit alone"
@@ -54,6 +54,9 @@ pub fn run_audit<'py>(
     grid: Option<[usize; 2]>,
     full_scale: Option<f64>,
     before_contact: Option<(usize, usize)>,
+    untouched: Vec<usize>,
+    split: Option<String>,
+    not_claimed: Option<Vec<String>>,
     seed: u64,
     permutations: usize,
     name: String,
@@ -79,30 +82,26 @@ pub fn run_audit<'py>(
             ..AuditFiles::default()
         };
         let data = aside(py, move |_| files.read())?.map_err(exception)?;
-        audit_of(py, data, (before_contact, seed, permutations), (name, out))
+        let options = AuditOptions {
+            seed,
+            n_permutations: permutations,
+            before_contact: before_contact.map(|(from, to)| from..to),
+            untouched,
+            not_claimed,
+            split,
+        };
+        audit_of(py, data, options, (name, out))
     })
 }
 
-/// Audits data; the options are the frames before contact, the seed and the number of permutations. Writes the page, tables and charts to a folder.
+/// Audits data and writes the page, tables and charts to a folder.
 fn audit_of<'py>(
     py: Python<'py>,
     data: AuditData,
-    (before_contact, seed, n_permutations): (Option<(usize, usize)>, u64, usize),
+    options: AuditOptions,
     (name, out): (String, PathBuf),
 ) -> PyResult<(Vec<SaidFinding>, Vec<ColumnsOfTable<'py>>)> {
-    let before_contact = before_contact.map(|(from, to)| from..to);
-    if let Some(range) = &before_contact
-        && (range.is_empty() || range.end > data.n_frames)
-    {
-        let given = format!("{}..{}", range.start, range.end);
-        let allowed = format!("(start, stop) with start < stop ≤ {}", data.n_frames);
-        return Err(bad_input("before_contact", given, allowed));
-    }
-    let options = AuditOptions {
-        seed,
-        n_permutations,
-        before_contact,
-    };
+    options.check(&data, str::to_owned).map_err(exception)?;
     let found = aside(py, move |_| -> bubbletouch::Result<_> {
         let found = audit(data, options)?;
         let (findings, tables) = (found.findings.clone(), found.tables.clone());

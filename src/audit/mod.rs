@@ -1,30 +1,29 @@
 //! Audit of a data set: tests whether recorded frames with labels support a claim about recognition.
 //!
-//! Each check is a file of [`checks`] with a constant `ABOUT`; its name in the list [`checks::CHECKS`] adds it to the audit. A check returns findings with a
-//! number, a p-value or a count, one sentence, and advice. The p-values of all findings are corrected together (Holm). The probability that an audit of
-//! faultless data reports a fault is therefore at most 5 %.
+//! An audit answers three questions: what the split of the claim measures ([`claim`]), whether the class can be read from what should not name it ([`sources`]),
+//! and whether the readings are sound ([`readings`]). Each answer is a list of findings with a number, one sentence, and advice. Only tests are faults, apart from
+//! designs that make every split impossible. The p-values of all tests are corrected together (Holm). The probability that an audit of faultless data reports a
+//! fault is therefore at most 5 %.
 //!
-//! Statistics of frames are in `bubbletouch_sim::audit`. Statistics of labelled rows are in `bubbletouch_svm::audit`.
+//! Statistics of frames are in `bubbletouch_sim::audit`. Statistics of labelled rows, and the engine of all permutation tests, are in `bubbletouch_svm::audit`.
 
-mod check;
-pub mod checks;
+pub mod claim;
 mod context;
 mod data;
-mod deep_touches;
-mod duplicate_pairs;
 mod finding;
 mod pictures;
 mod reader;
+pub mod readings;
 mod report;
 mod run;
 mod scores;
+pub mod sources;
 mod splits;
 mod tables;
 
-pub use check::{CheckAbout, Source};
 pub use context::{AuditOptions, Context};
 pub use data::AuditData;
-pub use finding::{ALPHA, Finding, Verdict};
+pub use finding::{ALPHA, Finding, Verdict, has_fault};
 pub use reader::AuditFiles;
 pub use report::{AUDIT_FILES, audit_files, audit_text};
 pub use run::{Audit, audit};

@@ -64,9 +64,8 @@ struct Part {
     frames: Array2<f64>,
     n_frames: usize,
     grid: Option<(usize, usize)>,
-    labels: Option<Vec<KeyValue>>,
-    groups: Option<Vec<KeyValue>>,
-    sessions: Option<Vec<KeyValue>>,
+    /// Class, group and session of each touch.
+    lists: [Option<Vec<KeyValue>>; 3],
     times: Option<Vec<f64>>,
 }
 
@@ -147,7 +146,7 @@ impl AuditFiles {
             };
             parts.push(of_test.part(&path, folder, "_test")?);
             check_shape((&parts[1], &path), (&parts[0], frames))?;
-            let has = |part: &Part| (part.labels.is_some(), part.groups.is_some());
+            let has = |part: &Part| [0, 1].map(|list| part.lists[list].is_some());
             if has(&parts[0]) != has(&parts[1]) {
                 let allowed = format!(
                     "labels_test and groups_test, if {} has labels and groups",
@@ -206,7 +205,7 @@ impl AuditFiles {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             let n = part.frames.nrows() / part.n_frames;
             let session = vec![KeyValue::Text(name.into_owned()); n];
-            part.sessions.get_or_insert(session);
+            part.lists[2].get_or_insert(session);
             Ok(part)
         });
         let parts = parts.collect::<Result<Vec<Part>>>()?;
@@ -238,61 +237,52 @@ impl AuditFiles {
                 readings.slice_mut(s![padding, ..]).fill(f64::NAN);
             }
         }
-        let of_length = |values: Vec<KeyValue>, path: &Path| match values.len() == n {
-            true => Ok(values),
+        let one_each = |path: &Path, n_values: usize, what: &str| match n_values == n {
+            true => Ok(()),
             false => {
                 let allowed = format!("{n}, one for each touch of {}", frames.display());
                 Err(Error::input(
                     path.display(),
-                    format!("{} values", values.len()),
+                    format!("{n_values} {what}"),
                     allowed,
                 ))
             }
         };
-        let classes = |given: &Option<PathBuf>, name: &str| match file(given, name) {
-            None => Ok(None),
-            Some(path) => read_class_values(&path, &format!("{name}{end}"), n)
-                .and_then(|values| of_length(values, &path))
-                .map(Some),
+        let list = |given: &Option<PathBuf>, name: &str, read: ReadValues| -> Result<_> {
+            let Some(path) = file(given, name) else {
+                return Ok(None);
+            };
+            let values = read(&path, &format!("{name}{end}"), n)?;
+            one_each(&path, values.len(), "values")?;
+            Ok(Some(values))
         };
-        let units = |given: &Option<PathBuf>, name: &str| match file(given, name) {
-            None => Ok(None),
-            Some(path) => read_group_values(&path, &format!("{name}{end}"), n)
-                .and_then(|values| of_length(values, &path))
-                .map(Some),
-        };
-        let times = match file(&self.times, "times") {
-            None => None,
-            Some(path) => {
-                let name = format!("times{end}");
-                let times = FileArray::read_content(&path, &name, TableContent::Rows(n))?;
-                let times = times.into_numbers()?;
-                let place = path.display();
-                if times.len() != n {
-                    let allowed = format!("{n}, one for each touch of {}", frames.display());
-                    return Err(Error::input(
-                        place,
-                        format!("{} times", times.len()),
-                        allowed,
-                    ));
-                }
-                if let Some(time) = times.iter().find(|time| !time.is_finite()) {
-                    return Err(Error::input(place, time, "finite numbers"));
-                }
-                Some(times.into_iter().collect())
+        let mut times = None;
+        if let Some(path) = file(&self.times, "times") {
+            let name = format!("times{end}");
+            let read = FileArray::read_content(&path, &name, TableContent::Rows(n))?;
+            let read = read.into_numbers()?;
+            one_each(&path, read.len(), "times")?;
+            if let Some(time) = read.iter().find(|time| !time.is_finite()) {
+                return Err(Error::input(path.display(), time, "finite numbers"));
             }
-        };
+            times = Some(read.into_iter().collect());
+        }
         Ok(Part {
             n_frames: shape.n_frames,
             grid: shape.has_grid.then_some((shape.rows, shape.columns)),
             frames: readings,
-            labels: classes(&self.labels, "labels")?,
-            groups: units(&self.groups, "groups")?,
-            sessions: units(&self.sessions, "sessions")?,
+            lists: [
+                list(&self.labels, "labels", read_class_values)?,
+                list(&self.groups, "groups", read_group_values)?,
+                list(&self.sessions, "sessions", read_group_values)?,
+            ],
             times,
         })
     }
 }
+
+/// Function that reads one value for each of some touches from an array of a file.
+type ReadValues = fn(&Path, &str, usize) -> Result<Vec<KeyValue>>;
 
 /// Returns whether a file is hidden, such as the files `._NAME` that macOS writes beside others.
 fn is_hidden(path: &Path) -> bool {
@@ -336,8 +326,8 @@ fn check_shape((part, path): (&Part, &Path), (first, of_first): (&Part, &Path)) 
 
 /// Joins the arrays of all parts, one after the other, and sorts the touches by time if all parts have times.
 fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
-    let joined = |name: &str, of: fn(&Part) -> &Option<Vec<KeyValue>>| {
-        let lists = parts.iter().map(|part| of(part).clone());
+    let joined = |name: &str, list: usize| {
+        let lists = parts.iter().map(|part| part.lists[list].clone());
         let lists: Option<Vec<Vec<KeyValue>>> = lists.collect();
         let values = lists.map(|lists| lists.concat()).unwrap_or_default();
         let is_text = |value: &KeyValue| matches!(value, KeyValue::Text(_));
@@ -350,9 +340,9 @@ fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
             }
         }
     };
-    let labels = joined("labels", |part| &part.labels)?.map(|values| ClassLabels::new(&values));
-    let groups = joined("groups", |part| &part.groups)?.map(|values| group_keys(&values));
-    let sessions = joined("sessions", |part| &part.sessions)?.map(|values| group_keys(&values));
+    let labels = joined("labels", 0)?.map(|values| ClassLabels::new(&values));
+    let groups = joined("groups", 1)?.map(|values| group_keys(&values));
+    let sessions = joined("sessions", 2)?.map(|values| group_keys(&values));
     let times = parts.iter().map(|part| part.times.clone());
     let times: Option<Vec<Vec<f64>>> = times.collect();
     let times: Option<Vec<f64>> = times.map(|times| times.concat());

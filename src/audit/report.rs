@@ -1,9 +1,7 @@
 //! Page, files and terminal text of an audit.
 
-use crate::audit::checks::CHECKS;
-use crate::audit::finding::{ALPHA, Finding, Verdict};
+use crate::audit::finding::{ALPHA, Finding, Verdict, by_verdict};
 use crate::audit::run::Audit;
-use crate::audit::tables::{answers, by_verdict};
 use crate::engine::program::PROGRAM;
 use crate::error::Result;
 use crate::report::folder::{NamedFile, table_files};
@@ -13,22 +11,23 @@ use crate::report::study_folder::{Beyond, Found, NamedPicture, files_with};
 use crate::report::terminal::paragraph;
 use crate::table::short_number;
 
+/// What no audit of arrays can find.
+const BEYOND: &str = "Arrays cannot show whether features were selected or scaled on all touches before the split, or whether a method was chosen by the accuracy of the test set.";
+
 /// Names of the files of an audit that are always written, for the list of owned files.
 pub const AUDIT_FILES: &[&str] = &[
     "report.html",
     "findings.csv",
     "accuracy_by_split.csv",
-    "confounds.csv",
-    "classes.csv",
+    "sources.csv",
     "levels.csv",
     "rows.csv",
     "taxels.csv",
     "accuracy_by_split.svg",
-    "confounds.svg",
+    "sources.svg",
     "levels.svg",
-    "classes.svg",
     "taxels.png",
-    "near_duplicates.png",
+    "copies.png",
     "doubtful_labels.png",
 ];
 
@@ -45,11 +44,10 @@ pub fn audit_files(audit: Audit, name: &str, command: &str) -> Result<Vec<NamedF
         wall_s: f64::NAN,
         ..StudyAbout::default()
     };
-    let answers = answers(&audit.findings);
     let found = Found {
         tables: &audit.tables,
         charts: &audit.charts,
-        answers: &answers[..1],
+        answers: &audit.sentences,
     };
     let shown: Vec<&str> = audit.charts.iter().map(|chart| &chart.name[..]).collect();
     let drawn: Vec<&str> = audit
@@ -96,17 +94,16 @@ fn findings_html(findings: &[Finding], charts: &[&str], pictures: &[&str]) -> St
             Verdict::Passed => ("passed", "Passed"),
             Verdict::NotChecked => ("unchecked", "Not checked"),
         };
-        let title = title_of(finding);
-        let p = match finding.p_holm {
-            Some(p) => format!(" <span class=\"quiet\">p = {}</span>", short_number(p)),
-            None => String::new(),
+        let p = match &finding.p_text()[..] {
+            "" => String::new(),
+            p => format!(" <span class=\"quiet\">{}</span>", escape(p)),
         };
         let advice = match &finding.advice[..] {
             "" => String::new(),
             advice => format!("<p><b>What to do:</b> {}</p>", escape(advice)),
         };
         let link = match finding.picture {
-            _ if finding.verdict > Verdict::Note => String::new(),
+            _ if finding.verdict == Verdict::Passed => String::new(),
             name if charts.contains(&name) => {
                 format!("<p class=\"quiet\"><a href=\"#chart-{name}\">Chart</a></p>")
             }
@@ -117,59 +114,49 @@ fn findings_html(findings: &[Finding], charts: &[&str], pictures: &[&str]) -> St
         };
         format!(
             "<article class=\"finding {class}\"><h3><span class=\"verdict\">{word}</span> {}{p}</h3><p>{}</p>{advice}{link}</article>",
-            escape(&title),
+            escape(&finding.title()),
             escape(&finding.sentence)
         )
     });
     let cards: String = cards.collect();
     format!(
-        "<p class=\"quiet\">The p-values of all tests are corrected together (Holm), so that faultless data show a fault with a probability of at most {} %.</p>{cards}",
+        "<p class=\"quiet\">The p-values of all tests are corrected together (Holm), so that faultless data show a fault with a probability of at most {} %. {BEYOND}</p>{cards}",
         short_number(100.0 * ALPHA)
     )
 }
 
-/// Returns the title of a finding: the title of its check, and its subject.
-fn title_of(finding: &Finding) -> String {
-    let check = CHECKS.iter().find(|check| check.name == finding.check);
-    let title = check.map_or("", |check| check.title);
-    match &finding.subject[..] {
-        "" => title.to_owned(),
-        subject => format!("{title}: {subject}"),
-    }
-}
-
-/// Returns the text of an audit for the terminal, wrapped at `width` characters. The text contains faults and notes with advice, then the names of the other
-/// checks.
-pub fn audit_text(findings: &[Finding], width: usize) -> String {
-    let mut text = paragraph(&answers(findings)[0], width);
-    for finding in by_verdict(findings) {
-        if finding.verdict > Verdict::Note {
-            break;
-        }
+/// Returns the text of an audit for the terminal, wrapped at `width` characters. The text contains the sentences on the claim, the findings with advice, and
+/// the names of the checks that passed.
+pub fn audit_text(audit: &Audit, width: usize) -> String {
+    let sentences = audit.sentences.iter();
+    let mut text: String = sentences
+        .map(|sentence| paragraph(sentence, width))
+        .collect();
+    let findings = by_verdict(&audit.findings);
+    for finding in findings
+        .iter()
+        .filter(|finding| finding.verdict != Verdict::Passed)
+    {
         let word = match finding.verdict {
             Verdict::Fault => "FAULT",
+            Verdict::NotChecked => "Not checked",
             _ => "Note",
         };
-        let p = finding
-            .p_holm
-            .map_or(String::new(), |p| format!(" (p = {})", short_number(p)));
+        let p = match &finding.p_text()[..] {
+            "" => String::new(),
+            p => format!(" ({p})"),
+        };
         let said = format!(
             "{word}: {}{p}. {} {}",
-            title_of(finding),
+            finding.title(),
             finding.sentence,
             finding.advice
         );
         text += &paragraph(said.trim(), width);
     }
-    for (verdict, words) in [
-        (Verdict::Passed, "Passed"),
-        (Verdict::NotChecked, "Not checked"),
-    ] {
-        let names = findings.iter().filter(|finding| finding.verdict == verdict);
-        let names: Vec<String> = names.map(title_of).collect();
-        if !names.is_empty() {
-            text += &paragraph(&format!("{words}: {}.", names.join("; ")), width);
-        }
-    }
-    text
+    let passed = findings
+        .iter()
+        .filter(|finding| finding.verdict == Verdict::Passed);
+    let passed: Vec<String> = passed.map(|finding| finding.title()).collect();
+    text + &paragraph(&format!("Passed: {}.", passed.join("; ")), width)
 }

@@ -2,15 +2,17 @@
 
 use crate::audit::context::{AuditOptions, Context};
 use crate::audit::data::AuditData;
-use crate::audit::finding::{Finding, decide};
-use crate::audit::{checks, pictures, tables};
+use crate::audit::finding::{Finding, Verdict, by_verdict, decide};
+use crate::audit::tables::Results;
+use crate::audit::{claim, pictures, readings, sources, tables};
 use crate::error::Result;
 use crate::table::{ChartSpec, Table};
-use rayon::prelude::*;
 
 /// Findings of an audit, with tables, charts and pictures.
 pub struct Audit {
-    /// Findings in the order of the checks.
+    /// Sentences at the top of the page: the accuracy that the split measures, what was not given, and the worst fault.
+    pub sentences: Vec<String>,
+    /// Findings in the order of the questions.
     pub findings: Vec<Finding>,
     /// Tables behind the findings; the first one lists the findings.
     pub tables: Vec<Table>,
@@ -23,36 +25,49 @@ pub struct Audit {
 /// Audits a data set. The result depends only on data and options.
 ///
 /// # Errors
-/// If lists have other lengths than the number of touches, or there are too few touches.
+/// If lists have other lengths than the number of touches, there are too few touches, or an option does not fit the data.
 pub fn audit(data: AuditData, options: AuditOptions) -> Result<Audit> {
-    let mut context = Context::new(data, options)?;
-    if context.has_classes() {
-        let sources = checks::SOURCES.par_iter();
-        let read = sources.filter_map(|source| {
-            let rows = (source.rows)(&context)?;
-            let (name, is_tested) = (source.name, source.is_tested);
-            let found =
-                context.readability(rows.view(), name, source.holds_out_groups, is_tested)?;
-            Some((name, found))
-        });
-        context.readable = read.collect();
-    }
-    let mut findings = Vec::new();
-    for check in checks::CHECKS {
-        let mut found = (check.run)(&context)?;
-        found
-            .iter_mut()
-            .for_each(|finding| finding.check = check.name);
-        findings.extend(found);
-    }
+    let context = Context::new(data, options)?;
+    let mut claim = claim::answer(&context)?;
+    let read = sources::tested(&context);
+    let (states, of_readings) = readings::answer(&context);
+    let mut findings = std::mem::take(&mut claim.findings);
+    findings.extend(sources::findings(&context, &read));
+    findings.extend(of_readings);
     decide(&mut findings);
-    let tables = tables::tables(&context, &findings)?;
+    let mut sentences = claim.sentences.clone();
+    sentences.push(worst(&findings));
+    let results = Results {
+        findings: &findings,
+        claim: &claim,
+        sources: &read,
+        states: &states,
+    };
+    let tables = tables::tables(&context, &results)?;
     let charts = tables::charts(&context, &tables);
-    let pictures = pictures::pictures(&context, &findings)?;
+    let pictures = pictures::pictures(&context, &claim, &states)?;
     Ok(Audit {
+        sentences,
         findings,
         tables,
         charts,
         pictures,
     })
+}
+
+/// Returns the sentence on the worst fault.
+fn worst(findings: &[Finding]) -> String {
+    let sorted = by_verdict(findings);
+    let faults = sorted
+        .iter()
+        .filter(|finding| finding.verdict == Verdict::Fault);
+    match (faults.clone().next(), faults.count()) {
+        (None, _) => "No test finds a fault.".to_owned(),
+        (Some(worst), 1) => format!("There is one fault: {}. {}", worst.title(), worst.sentence),
+        (Some(worst), n) => format!(
+            "The worst of {n} faults: {}. {}",
+            worst.title(),
+            worst.sentence
+        ),
+    }
 }

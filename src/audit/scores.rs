@@ -1,5 +1,6 @@
-//! Cheap classifiers, tested on held-out touches of each split.
+//! Fast classifiers, tested on held-out touches of each split and of the random split of equal sizes.
 
+use crate::audit::finding::percent;
 use crate::audit::splits::AuditSplit;
 use crate::error::Result;
 use crate::random::Seed;
@@ -10,63 +11,46 @@ use bubbletouch_svm::audit::held_out::{HeldOut, HeldOutMethod};
 use bubbletouch_svm::audit::{NearestRows, nearest_rows};
 use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, StudentsT};
-use std::collections::BTreeMap;
 
 /// Number of touches whose distances to all others are computed together.
 const BLOCK: usize = 256;
-/// Number of nearest touches of each touch.
-pub const N_NEAREST: usize = 17;
 
-/// Display names of the classifiers of an audit.
+/// Display names of the classifiers of an audit. The names with `_spectrum` are those of classifiers of logarithmic spectra.
 pub const METHODS: &[(&str, &str)] = &[
     ("nearest_centroid", "nearest centroid"),
     ("linear_svm", "linear SVM"),
     ("nearest_row", "nearest neighbour"),
-    (
-        "nearest_row_invariant",
-        "nearest neighbour, shift-invariant",
-    ),
-    ("linear_svm_invariant", "linear SVM, shift-invariant"),
+    ("nearest_centroid_spectrum", "nearest centroid, spectrum"),
+    ("linear_svm_spectrum", "linear SVM, spectrum"),
+    ("nearest_row_spectrum", "nearest neighbour, spectrum"),
 ];
-
-/// Features of all touches: means of blocks, and features that do not depend on the place of the contact.
-pub struct Features {
-    /// Means of blocks of taxels and frames, shape (n, m).
-    pub blocks: Array2<f64>,
-    /// Shift-invariant features of the mean frame, shape (n, m); `None` without a grid.
-    pub invariant: Option<Array2<f64>>,
-    /// Numbers of rows and columns of the image from which the shift-invariant features are computed.
-    pub image: (usize, usize),
-}
+/// Number of classifiers of each representation.
+pub const N_METHODS: usize = 3;
 
 /// Predictions of one classifier by one split.
 pub struct Tested {
     /// Name of the classifier.
     pub method: &'static str,
+    /// Index of the representation: 0 means of frames, 1 spectra.
+    pub representation: usize,
     /// Index of the split.
     pub split: usize,
+    /// Whether whole units are held out; otherwise the random split of equal sizes.
+    pub is_held_out: bool,
+    /// Class that the classifier gives each touch; `None` if it was not tested.
+    pub predicted: Vec<Option<usize>>,
     /// Whether the touch was recognised; `None` if it was not tested.
     pub is_correct: Vec<Option<bool>>,
-    /// Scores of all classes for each touch, NaN if it was not tested; `None` for nearest neighbours.
-    pub scores: Option<Array2<f64>>,
-}
-
-/// Predictions of all classifiers by all splits, and nearest touches.
-pub struct Scores {
-    /// Predictions, ordered by split and method.
-    pub tested: Vec<Tested>,
-    /// Indices of the nearest touches of each touch by blocks.
-    pub neighbours: Vec<Vec<usize>>,
-    /// Distances of the nearest touches of each touch by blocks.
-    pub distances: Vec<Vec<f64>>,
-    /// Indices of the nearest touches of each touch by shift-invariant features; `None` without a grid.
-    pub invariant_neighbours: Option<Vec<Vec<usize>>>,
-    /// Nearest touch in another fold of the random split, by blocks.
-    pub nearest_outside: Vec<Option<usize>>,
 }
 
 impl Tested {
+    /// Returns the name of the classifier and its accuracy in words.
+    pub fn words(&self) -> String {
+        let found = METHODS.iter().find(|method| method.0 == self.method);
+        let title = found.map_or(self.method, |method| method.1);
+        format!("{title} recognises {}", percent(self.accuracy()))
+    }
+
     /// Returns the fraction of tested touches that were recognised.
     pub fn accuracy(&self) -> f64 {
         let tested = self.is_correct.iter().flatten();
@@ -95,93 +79,91 @@ impl Tested {
     }
 }
 
-/// Trains and tests all classifiers by all splits.
+/// Trains and tests all classifiers by all splits, of each representation of the touches. Also returns the nearest touches by the first representation.
 ///
 /// # Errors
 /// If a feature is not finite.
 pub fn scores(
-    features: &Features,
+    representations: &[Array2<f64>],
     (labels, n_classes): (&[usize], usize),
     splits: &[AuditSplit],
-    seed: &Seed,
-) -> Result<Scores> {
-    let folds: Vec<Vec<Option<usize>>> = splits.iter().map(|split| split.folds.clone()).collect();
-    let near = nearest(features.blocks.view(), N_NEAREST, &folds);
-    let near_invariant = features
-        .invariant
-        .as_ref()
-        .map(|rows| nearest(rows.view(), N_NEAREST, &folds));
-    let mut tested = Vec::new();
-    let mut held = vec![
-        (
-            "nearest_centroid",
-            HeldOutMethod::NearestCentroid,
-            &features.blocks,
-        ),
-        ("linear_svm", HeldOutMethod::LinearSvm, &features.blocks),
-    ];
-    if let Some(invariant) = &features.invariant {
-        held.push(("linear_svm_invariant", HeldOutMethod::LinearSvm, invariant));
-    }
-    for (index, split) in splits.iter().enumerate() {
-        for &(name, method, rows) in &held {
+    (n_nearest, seed): (usize, &Seed),
+) -> Result<(Vec<Tested>, NearestRows)> {
+    let arms = splits.iter().enumerate();
+    let arms = arms.flat_map(|(index, split)| {
+        [(false, &split.random), (true, &split.folds)]
+            .map(|(is_held, folds)| (index, is_held, folds))
+    });
+    let arms: Vec<_> = arms.collect();
+    let folds: Vec<Vec<Option<usize>>> = arms.iter().map(|arm| arm.2.clone()).collect();
+    let mut all = Vec::new();
+    let mut nearest_of_means = None;
+    for (representation, rows) in representations.iter().enumerate() {
+        let near = nearest(rows.view(), n_nearest, &folds);
+        let names = &METHODS[N_METHODS * representation..][..N_METHODS];
+        for (arm, &(index, is_held_out, folds)) in arms.iter().enumerate() {
+            let split = &splits[index];
             let held_out = HeldOut {
                 features: rows.view(),
                 labels,
                 n_classes,
-                folds: &split.folds,
+                folds,
             };
-            let folds = (0..split.n_folds).into_par_iter();
-            let folds = folds.map(|fold| held_out.scores(method, fold, seed));
-            let folds: Vec<_> = folds.collect::<std::result::Result<_, _>>()?;
-            let mut scores = Array2::from_elem((labels.len(), n_classes), f64::NAN);
-            let mut is_correct = vec![None; labels.len()];
-            for (rows, found) in folds {
-                for (row, found) in rows.into_iter().zip(found.rows()) {
-                    let best = (0..n_classes).fold(0, |best, class| {
-                        if found[class] > found[best] {
-                            class
-                        } else {
-                            best
+            for (place, &(method, _)) in names.iter().enumerate() {
+                let predicted =
+                    match [HeldOutMethod::NearestCentroid, HeldOutMethod::LinearSvm].get(place) {
+                        Some(method) => predictions(&held_out, *method, split.n_folds, seed)?,
+                        None => {
+                            let outside = near.outside[arm].iter().zip(folds);
+                            let own = outside.map(|(other, fold)| {
+                                let other = other.filter(|_| split.is_tested(*fold));
+                                other.map(|other| labels[other])
+                            });
+                            own.collect()
                         }
-                    });
-                    is_correct[row] = Some(best == labels[row]);
-                    scores.row_mut(row).assign(&found);
-                }
+                    };
+                let is_correct = predicted.iter().zip(labels);
+                let is_correct = is_correct.map(|(class, own)| class.map(|class| class == *own));
+                all.push(Tested {
+                    method,
+                    representation,
+                    split: index,
+                    is_held_out,
+                    is_correct: is_correct.collect(),
+                    predicted,
+                });
             }
-            tested.push(Tested {
-                method: name,
-                split: index,
-                is_correct,
-                scores: Some(scores),
-            });
         }
-        let near = [
-            ("nearest_row", Some(&near)),
-            ("nearest_row_invariant", near_invariant.as_ref()),
-        ];
-        for (method, near) in near {
-            let Some(near) = near else { continue };
-            let outside = near.outside[index].iter().enumerate();
-            let is_correct = outside.map(|(row, other)| {
-                let other = other.filter(|_| split.is_tested(row))?;
-                Some(labels[other] == labels[row])
+        nearest_of_means.get_or_insert(near);
+    }
+    Ok((all, nearest_of_means.unwrap_or_default()))
+}
+
+/// Returns the class that a classifier gives each touch of the tested folds.
+fn predictions(
+    held_out: &HeldOut,
+    method: HeldOutMethod,
+    n_folds: usize,
+    seed: &Seed,
+) -> Result<Vec<Option<usize>>> {
+    let folds = (0..n_folds).into_par_iter();
+    let folds = folds.map(|fold| held_out.scores(method, fold, seed));
+    let folds: Vec<_> = folds.collect::<std::result::Result<_, _>>()?;
+    let mut predicted = vec![None; held_out.labels.len()];
+    for (rows, found) in folds {
+        for (row, found) in rows.into_iter().zip(found.rows()) {
+            let classes = 0..held_out.n_classes;
+            let best = classes.reduce(|best, class| {
+                if found[class] > found[best] {
+                    class
+                } else {
+                    best
+                }
             });
-            tested.push(Tested {
-                method,
-                split: index,
-                is_correct: is_correct.collect(),
-                scores: None,
-            });
+            predicted[row] = best;
         }
     }
-    Ok(Scores {
-        tested,
-        invariant_neighbours: near_invariant.map(|near| near.neighbours),
-        nearest_outside: near.outside.into_iter().next().unwrap_or_default(),
-        neighbours: near.neighbours,
-        distances: near.distances,
-    })
+    Ok(predicted)
 }
 
 /// Finds the nearest rows of all rows, block by block on all threads.
@@ -193,9 +175,8 @@ pub fn nearest(rows: ArrayView2<f64>, k: usize, folds: &[Vec<Option<usize>>]) ->
         nearest_rows(rows, k, folds, block)
     });
     let mut all = NearestRows {
-        neighbours: Vec::new(),
-        distances: Vec::new(),
         outside: vec![Vec::new(); folds.len()],
+        ..NearestRows::default()
     };
     for block in blocks.collect::<Vec<_>>() {
         all.neighbours.extend(block.neighbours);
@@ -205,53 +186,4 @@ pub fn nearest(rows: ArrayView2<f64>, k: usize, folds: &[Vec<Option<usize>>]) ->
         }
     }
     all
-}
-
-/// Mean difference between two lists of results of the same touches, and its test.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PairedDifference {
-    /// Fraction recognised by the first minus fraction recognised by the second.
-    pub mean: f64,
-    /// p-value of the hypothesis that the first recognises no more than the second.
-    pub p_value: f64,
-}
-
-/// Compares two lists of results of the same touches by a t-test over units, or over touches if there are no units.
-///
-/// The mean difference is a ratio of sums. Its standard error follows from the deviation of each unit: the sum of the unit's differences, minus its number of
-/// touches times the mean difference. Returns `None` for fewer than five units.
-pub fn paired_difference(
-    first: &[Option<bool>],
-    second: &[Option<bool>],
-    units: Option<&[usize]>,
-) -> Option<PairedDifference> {
-    let mut sums = BTreeMap::<usize, (f64, f64)>::new();
-    let mut n_different = 0.0;
-    for (row, pair) in first.iter().zip(second).enumerate() {
-        if let (Some(first), Some(second)) = pair {
-            let unit = units.map_or(row, |units| units[row]);
-            let (sum, n) = sums.entry(unit).or_default();
-            *sum += f64::from(u8::from(*first)) - f64::from(u8::from(*second));
-            *n += 1.0;
-            n_different += f64::from(u8::from(first != second));
-        }
-    }
-    let n_units = sums.len() as f64;
-    if n_units < 5.0 {
-        return None;
-    }
-    let (sum, n) = sums
-        .values()
-        .fold((0.0, 0.0), |(s, n), of| (s + of.0, n + of.1));
-    let mean = sum / n;
-    let squares: f64 = sums.values().map(|(sum, n)| (sum - mean * n).powi(2)).sum();
-    // At least the variance of independent touches (McNemar's test); few units may agree by chance.
-    let variance = (squares * n_units / (n_units - 1.0))
-        .max(n_different)
-        .max(1.0);
-    let student = StudentsT::new(0.0, 1.0, n_units - 1.0).ok()?;
-    Some(PairedDifference {
-        mean,
-        p_value: student.sf(sum / variance.sqrt()),
-    })
 }

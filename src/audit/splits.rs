@@ -1,83 +1,124 @@
-//! Splits by which an audit tests classifiers: at random, by blocks of time, by groups and by sessions.
+//! Splits by which an audit tests classifiers: whole groups, sessions, blocks of time or a given test set, each beside a random split of equal sizes.
 
+use crate::audit::data::AuditData;
 use crate::random::Seed;
+use bubbletouch_svm::audit::exchange_within;
 use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of folds of each split.
 const N_FOLDS: usize = 5;
-
-/// Maximum number of units that are held out one at a time.
+/// Maximum number of units that are held out one at a time. With more units, folds of several units have nearly equal sizes.
 const MAX_LEFT_OUT: usize = 10;
+/// Maximum number of units with which the held-out accuracy is a note without a test: two days or sensors cannot show how the accuracy varies.
+const FEW_UNITS: usize = 4;
 
 /// Assignment of touches to folds, each of which is held out once.
 #[derive(Clone, Debug)]
 pub struct AuditSplit {
-    /// Name of the split: `random`, `time`, `group`, `session` or `given`.
+    /// Name of the split: `group`, `session`, `time` or `given`.
     pub name: &'static str,
     /// Fold of each touch; `None` if its class would have no training touches.
     pub folds: Vec<Option<usize>>,
+    /// The same folds, exchanged at random among the touches of each class.
+    pub random: Vec<Option<usize>>,
     /// Number of folds that are tested, from fold 0. The test set of a given split is fold 0; its training touches are fold 1.
     pub n_folds: usize,
-    /// Unit of each touch, such as its group, for intervals and tests. Units are assumed to be independent; touches of one unit are not.
+    /// Unit of each touch, such as its group, for intervals. Units are assumed to be independent; touches of one unit are not.
     pub units: Option<Vec<usize>>,
+    /// Number of units that are held out, such as groups.
+    pub n_units: usize,
 }
 
 impl AuditSplit {
-    /// Creates a split of which each fold is held out once.
-    fn of_folds(name: &'static str, folds: Vec<Option<usize>>, units: Option<Vec<usize>>) -> Self {
+    fn new(
+        name: &'static str,
+        folds: Vec<Option<usize>>,
+        (labels, units): (&[usize], Option<&[usize]>),
+        seed: &Seed,
+    ) -> Self {
+        let known = (0..folds.len()).filter(|&touch| folds[touch].is_some());
+        let known: Vec<usize> = known.collect();
+        let of = known.iter().map(|&touch| labels[touch]);
+        let mut values: Vec<usize> = known.iter().filter_map(|&touch| folds[touch]).collect();
+        let n_folds = values.iter().max().map_or(0, |last| last + 1);
+        exchange_within(
+            &of.collect::<Vec<_>>(),
+            &mut values,
+            &mut seed.named(name).rng(),
+        );
+        let mut random = vec![None; folds.len()];
+        for (touch, value) in known.into_iter().zip(values) {
+            random[touch] = Some(value);
+        }
+        let count = |units: &[usize]| units.iter().collect::<BTreeSet<_>>().len();
         Self {
             name,
-            n_folds: folds.iter().flatten().max().map_or(0, |last| last + 1),
+            random,
+            n_folds: if name == "given" { 1 } else { n_folds },
+            n_units: units.map_or(n_folds, count),
+            units: units.map(<[usize]>::to_vec),
             folds,
-            units,
         }
     }
 
-    /// Returns whether the touch is tested.
-    pub fn is_tested(&self, touch: usize) -> bool {
-        self.folds[touch].is_some_and(|fold| fold < self.n_folds)
+    /// Returns whether so few groups or sessions are held out that their accuracy is a note without a test.
+    pub fn has_few_units(&self) -> bool {
+        matches!(self.name, "group" | "session") && self.n_units <= FEW_UNITS
     }
 
-    /// Returns the number of touches that are tested.
-    pub fn n_tested(&self) -> usize {
-        (0..self.folds.len())
-            .filter(|&touch| self.is_tested(touch))
-            .count()
+    /// Returns whether the touch is tested by these folds.
+    pub fn is_tested(&self, fold: Option<usize>) -> bool {
+        fold.is_some_and(|fold| fold < self.n_folds)
     }
 }
 
-/// Returns all splits that the data allow; the random split comes first. `groups` and `sessions` contain one number per touch; `is_test` marks the touches of a
-/// given test set.
+/// Returns the split `named`, or all splits that the data allow: first groups, then sessions, the given test set, and blocks of time. Blocks of time are used if
+/// times are given, or nothing else is. If the data do not allow the split `named`, all others are returned.
 pub fn splits(
+    data: &AuditData,
     labels: &[usize],
-    groups: Option<&[usize]>,
-    sessions: Option<&[usize]>,
-    is_test: Option<&[bool]>,
+    named: Option<&str>,
     seed: &Seed,
 ) -> Vec<AuditSplit> {
-    let units = groups.or(sessions).map(<[usize]>::to_vec);
-    let mut splits = vec![
-        AuditSplit::of_folds("random", random(labels, seed), units.clone()),
-        AuditSplit::of_folds("time", blocks(labels), units.clone()),
-    ];
-    for (name, units) in [("group", groups), ("session", sessions)] {
-        if let Some(units) = units
-            && let Some(folds) = whole_units(labels, units, &seed.named(name))
-        {
-            splits.push(AuditSplit::of_folds(name, folds, Some(units.to_vec())));
+    let (groups, sessions) = (data.groups.as_deref(), data.sessions.as_deref());
+    let mut splits = Vec::new();
+    let mut add = |name, folds, units| {
+        splits.push(AuditSplit::new(name, folds, (labels, units), seed));
+    };
+    // Sessions that are the groups give the same split.
+    let is_own = |sessions: &&[usize]| !groups.is_some_and(|groups| is_same(groups, sessions));
+    let own_sessions = sessions.filter(|own| named == Some("session") || is_own(own));
+    for (name, units) in [("group", groups), ("session", own_sessions)] {
+        let folds = units.and_then(|units| whole_units(labels, units, &seed.named(name)));
+        if let Some(folds) = folds {
+            add(name, folds, units);
         }
     }
-    if let Some(is_test) = is_test {
+    if let Some(is_test) = &data.is_test {
         let folds = is_test.iter().map(|&is_test| Some(usize::from(!is_test)));
-        splits.push(AuditSplit {
-            name: "given",
-            folds: folds.collect(),
-            n_folds: 1,
-            units,
-        });
+        add("given", folds.collect(), groups.or(sessions));
+    }
+    if data.is_in_order_of_time || named == Some("time") || splits.is_empty() {
+        splits.push(AuditSplit::new(
+            "time",
+            blocks(labels),
+            (labels, None),
+            seed,
+        ));
+    }
+    let is_named = |split: &AuditSplit| named.is_none_or(|name| split.name == name);
+    if splits.iter().any(is_named) {
+        splits.retain(is_named);
     }
     splits
+}
+
+/// Returns whether two lists divide the touches in the same way.
+pub fn is_same(a: &[usize], b: &[usize]) -> bool {
+    let count = |list: &[usize]| list.iter().collect::<BTreeSet<_>>().len();
+    let n_pairs = a.iter().zip(b).collect::<BTreeSet<_>>().len();
+    count(a) == n_pairs && count(b) == n_pairs
 }
 
 /// Returns the touches of each class.
@@ -87,24 +128,6 @@ pub fn touches_of_classes(labels: &[usize]) -> BTreeMap<usize, Vec<usize>> {
         classes.entry(label).or_default().push(touch);
     }
     classes
-}
-
-/// Draws folds at random within each class.
-fn random(labels: &[usize], seed: &Seed) -> Vec<Option<usize>> {
-    let mut folds = vec![None; labels.len()];
-    let mut next = 0;
-    let mut rng = seed.named("random split").rng();
-    for mut touches in touches_of_classes(labels).into_values() {
-        touches.shuffle(&mut rng);
-        if touches.len() < 2 {
-            continue;
-        }
-        for touch in touches {
-            folds[touch] = Some(next % N_FOLDS);
-            next += 1;
-        }
-    }
-    folds
 }
 
 /// Divides the touches of each class into blocks that follow each other in time.
@@ -127,43 +150,23 @@ fn whole_units(labels: &[usize], units: &[usize], seed: &Seed) -> Option<Vec<Opt
     for (&unit, &label) in units.iter().zip(labels) {
         classes.entry(unit).or_default().insert(label);
     }
-    let mut strata = BTreeMap::<Vec<usize>, Vec<usize>>::new();
-    for (unit, classes) in &classes {
-        let classes: Vec<usize> = classes.iter().copied().collect();
-        strata.entry(classes).or_default().push(*unit);
-    }
-    // If there are few units, folds of several units would have unequal sizes. Each unit is then a fold.
     let n_folds = match classes.len() {
         n @ ..=MAX_LEFT_OUT => n,
         _ => N_FOLDS,
     };
-    let mut fold_of = BTreeMap::new();
-    let mut rng = seed.rng();
-    let mut next = 0;
-    for mut units in strata.into_values() {
-        units.shuffle(&mut rng);
-        for unit in units {
-            fold_of.insert(unit, next % n_folds);
-            next += 1;
-        }
-    }
+    let mut order: Vec<usize> = classes.keys().copied().collect();
+    order.shuffle(&mut seed.rng());
+    order.sort_by(|a, b| classes[a].cmp(&classes[b]));
+    let folds = order.into_iter().enumerate();
+    let fold_of: BTreeMap<usize, usize> = folds.map(|(k, unit)| (unit, k % n_folds)).collect();
     let mut folds_of_class = BTreeMap::<usize, BTreeSet<usize>>::new();
     for (unit, label) in units.iter().zip(labels) {
-        folds_of_class
-            .entry(*label)
-            .or_default()
-            .insert(fold_of[unit]);
+        let folds = folds_of_class.entry(*label).or_default();
+        folds.insert(fold_of[unit]);
     }
-    let is_tested = |label: &usize| folds_of_class[label].len() > 1;
-    if folds_of_class
-        .keys()
-        .filter(|label| is_tested(label))
-        .count()
-        < 2
-    {
-        return None;
-    }
+    folds_of_class.retain(|_, folds| folds.len() > 1);
     let folds = units.iter().zip(labels);
-    let folds = folds.map(|(unit, label)| is_tested(label).then(|| fold_of[unit]));
-    Some(folds.collect())
+    let folds =
+        folds.map(|(unit, label)| folds_of_class.contains_key(label).then(|| fold_of[unit]));
+    (folds_of_class.len() > 1).then(|| folds.collect())
 }

@@ -4,7 +4,7 @@ use crate::command::options::study_args::set_threads;
 use crate::command::terminal::output::terminal_width;
 use crate::command::terminal::streams::{say, write_out};
 use bubbletouch::audit::{
-    AUDIT_FILES, AuditFiles, AuditOptions, audit as audited, audit_files, audit_text,
+    AUDIT_FILES, AuditFiles, AuditOptions, audit as audited, audit_files, audit_text, has_fault,
 };
 use bubbletouch::files::{DataFolder, check_output};
 use bubbletouch::report::folder::write_files;
@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 
 /// Check whether recorded data can carry a claim about recognition
 ///
-/// The page lists each finding with a number, a chart and advice: near-duplicates, accuracy by split, confounds, faulty taxels, drift, saturation,
-/// class balance, wrong labels, effective sample size.
+/// The page answers three questions: what does the split of the claim measure, can the class be read from what should not name it, and are the readings
+/// sound? Each finding has a number, a sentence and advice.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  bubbletouch audit recording.npz --groups grasps.npy --out results/recording_audit"
@@ -64,9 +64,30 @@ pub struct Args {
     full_scale: Option<f64>,
     /// Take these frames of each touch as before contact
     ///
-    /// Frames are counted from 0. The range excludes its end. By default, frames without contact are found.
-    #[arg(long, value_name = "FROM..TO", value_parser = super::calibrate::range::<usize>, help_heading = "Input")]
+    /// Frames are counted from 0. The range excludes its end. If the class can be read from them, this is a fault.
+    #[arg(long, value_name = "FROM..TO", value_parser = super::calibrate::range::<usize>, help_heading = "Claim")]
     before_contact: Option<Range<usize>>,
+    /// Name the taxels that nothing touches, such as 0,5,10..14
+    ///
+    /// Taxels are counted from 0, row by row. If the class can be read from them, this is a fault.
+    #[arg(long, value_name = "TAXELS", value_delimiter = ',', value_parser = taxels, help_heading = "Claim")]
+    untouched: Vec<Range<usize>>,
+    /// Name the split of the claim [default: all that the data allow]
+    #[arg(long, value_name = "SPLIT", value_parser = ["group", "session", "time", "given"], help_heading = "Claim")]
+    split: Option<String>,
+    /// List the sources that should not name the class [default: order,session,padding,before_contact,untouched]
+    ///
+    /// Further sources: mean, noise, place, single_taxel. If the class can be read from a listed source, this is a fault; otherwise it is a note.
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        help_heading = "Claim"
+    )]
+    not_claimed: Option<Vec<String>>,
+    /// End with exit code 1 if there is a fault
+    #[arg(long, value_name = "VERDICT", value_parser = ["fault"], help_heading = "Run")]
+    fail_on: Option<String>,
     /// Write page, tables and charts here [default: results/NAME_audit]
     #[arg(long, value_name = "FOLDER", help_heading = "Output")]
     out: Option<PathBuf>,
@@ -81,6 +102,7 @@ pub struct Args {
     threads: Option<usize>,
 }
 
+/// Runs the audit. The exit code is 1 if `--fail-on` asks for it.
 pub fn audit(args: &Args) -> Result<()> {
     set_threads(args.threads)?;
     if !(399..=100_000).contains(&args.permutations) {
@@ -113,27 +135,23 @@ pub fn audit(args: &Args) -> Result<()> {
         ..AuditFiles::default()
     };
     let data = files.read()?;
-    if let Some(range) = &args.before_contact
-        && (range.is_empty() || range.end > data.n_frames)
-    {
-        let given = format!("{}..{}", range.start, range.end);
-        let allowed = format!("FROM..TO with FROM below TO, at most {}", data.n_frames);
-        return Err(Error::input("--before-contact", given, allowed));
-    }
+    let options = AuditOptions {
+        seed: args.seed,
+        n_permutations: args.permutations,
+        before_contact: args.before_contact.clone(),
+        untouched: args.untouched.iter().cloned().flatten().collect(),
+        not_claimed: args.not_claimed.clone(),
+        split: args.split.clone(),
+    };
+    options.check(&data, |name| format!("--{}", name.replace('_', "-")))?;
     // Known only now: the files that the audit reads.
     let claimed = DataFolder::claim(&out, "audit", AUDIT_FILES.iter().copied())?;
     for file in AUDIT_FILES {
         check_output(&out.join(file))?;
     }
-    let found = audited(
-        data,
-        AuditOptions {
-            seed: args.seed,
-            n_permutations: args.permutations,
-            before_contact: args.before_contact.clone(),
-        },
-    )?;
-    let text = audit_text(&found.findings, terminal_width());
+    let found = audited(data, options)?;
+    let text = audit_text(&found, terminal_width());
+    let is_failure = args.fail_on.is_some() && has_fault(&found.findings);
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let command = shell_line(&[&["bubbletouch"][..], &words].concat());
@@ -142,7 +160,21 @@ pub fn audit(args: &Args) -> Result<()> {
     claimed.write_manifest()?;
     write_files(&out, files)?;
     write_out(text.as_bytes())?;
-    say(format_args!("Page: {}", out.join("report.html").display()))
+    say(format_args!("Page: {}", out.join("report.html").display()))?;
+    if is_failure {
+        std::process::exit(1);
+    }
+    Ok(())
+}
+
+/// A taxel, or a range of taxels FROM..TO without its end.
+fn taxels(text: &str) -> std::result::Result<Range<usize>, String> {
+    match text.trim().parse() {
+        Ok(taxel) => Ok(taxel..taxel + 1),
+        Err(_) => {
+            super::calibrate::range(text).map_err(|_| "numbers of taxels, or FROM..TO".to_owned())
+        }
+    }
 }
 
 /// Returns the name of the data: the file name without ending, or the name of the folder.

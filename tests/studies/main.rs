@@ -11,7 +11,6 @@ mod study;
 use bubbletouch_sim::statistics::standard_errors;
 
 mod accuracy;
-mod audit;
 mod axes;
 mod calibration;
 mod experiments;

@@ -26,9 +26,9 @@ _Found = tuple[list[tuple[Any, ...]], list[tuple[str, str, str, dict[str, Any]]]
 class Finding:
     """Finding of an audit.
 
-    check: name of the check, such as "near_duplicates".
-    subject: part of the data, such as "group split"; may be empty.
-    verdict: "fault", "note", "passed" or "not_checked".
+    check: name of the check, such as "copies".
+    subject: part of the data, such as "group"; may be empty.
+    verdict: "fault", "not_checked", "note" or "passed".
     value: measured number; NaN if there is none. Its meaning is in the sentence.
     interval: list of the lower and upper end of the 95 % interval of the value; NaN if there is none.
     baseline: value without the fault, such as the accuracy by chance; NaN if there is none.
@@ -97,6 +97,9 @@ def audit(
     grid: tuple[int, int] | None = None,
     full_scale: float | None = None,
     before_contact: tuple[int, int] | None = None,
+    untouched: Sequence[int] = (),
+    split: str | None = None,
+    not_claimed: Sequence[str] | None = None,
     out: str | PathLike[str] | None = None,
     seed: int = 2018,
     permutations: int = 999,
@@ -117,8 +120,12 @@ def audit(
     or "ntyx".
     columns: columns of a table that are readings, names or patterns such as "taxel_*", separated by commas. None: all columns.
     grid: rows and columns of the skin, if the axis c lists its taxels row by row.
-    full_scale: reading at full scale. If None, a plateau of the largest readings counts as saturation.
-    before_contact: range (start, stop) of the frames of each touch before the contact. If None, the audit detects the frames without contact.
+    full_scale: reading at full scale. If None, a common largest reading of many touches counts as saturation.
+    before_contact: range (start, stop) of the frames of each touch before the contact. A class that can be read from them is a fault.
+    untouched: numbers of the taxels that nothing touches. A class that can be read from them is a fault.
+    split: split of the claim, "group", "session", "time" or "given". If None, all splits that the data allow are tested.
+    not_claimed: sources that should not name the class: "order", "session", "padding", "mean", "noise", "place", "single_taxel", "before_contact" and
+    "untouched". A class that can be read from them is a fault; from other sources, a note. If None: order, session, padding, before_contact and untouched.
     out: folder of the page, tables and charts. If None, a temporary folder is used and deleted with the Audit.
     seed, permutations: seed of splits and permutations, and number of permutations of each test.
 
@@ -144,7 +151,7 @@ def audit(
     kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
     folder = Path(kept.name) if kept is not None else Path(out or "")
     name = Path(data).stem if _is_path(data) else "arrays" if out is None else folder.name
-    found = _of_files(given, (order, columns, grid, full_scale, before_contact, seed, permutations, name, folder))
+    found = _of_files(given, (order, columns, grid, full_scale, before_contact, list(untouched), split, None if not_claimed is None else list(not_claimed), seed, permutations, name, folder))
     return Audit(folder, *found, kept)
 
 

@@ -1,183 +1,132 @@
-//! Permutation tests of dependence between rows: neighbours in time, and members of a group.
+//! Numbers of independent rows that dependent rows are worth.
 //!
-//! All statistics are sums of inner products of pairs of rows, where the mean of the class is subtracted from each row. A permutation exchanges rows of one
-//! class. Therefore the classes and their order in time are preserved.
+//! Rows are residuals: features less the mean of the class. The mean of n rows whose correlations are ρᵢⱼ has the variance of the mean of n/(1 + Σ ρᵢⱼ/n)
+//! independent rows, where the sum is over all ordered pairs of different rows.
 
-use crate::random::Seed;
-use ndarray::{Array2, ArrayView2};
-use rand::seq::SliceRandom;
+use ndarray::{Array1, Array2, ArrayView2, Axis};
 use std::collections::BTreeMap;
 
-/// Maximum distance in time of two rows that count as neighbours.
-const MAX_LAG: usize = 10;
-
-/// Minimum number of permutations if none of fewer permutations reaches the observed value. A p-value of 1/4,001 remains significant after a correction for 40
-/// tests.
-const N_EXTENDED: usize = 4000;
-
-/// Returns the maximum number of permutations of a test of `n_permutations` permutations, none of which reaches the observed value.
-pub fn max_permutations(n_permutations: usize) -> usize {
-    N_EXTENDED.max(4 * n_permutations)
+/// Returns rows less the means of their classes.
+pub fn without_class_means(rows: ArrayView2<f64>, labels: &[usize]) -> Array2<f64> {
+    let n_classes = labels.iter().max().map_or(0, |last| last + 1);
+    let mut means = Array2::<f64>::zeros((n_classes, rows.ncols()));
+    let mut counts = vec![0.0_f64; n_classes];
+    for (row, &label) in rows.rows().into_iter().zip(labels) {
+        let mut mean = means.row_mut(label);
+        mean += &row;
+        counts[label] += 1.0;
+    }
+    for (mut mean, count) in means.rows_mut().into_iter().zip(counts) {
+        mean /= count.max(1.0);
+    }
+    let mut residuals = rows.to_owned();
+    for (mut row, &label) in residuals.rows_mut().into_iter().zip(labels) {
+        row -= &means.row(label);
+    }
+    residuals
 }
 
-/// Returns whether a test of `n_permutations` permutations needs another one after `n_done` permutations, of which `at_least` reach the observed value. If none
-/// of them does, more permutations resolve smaller p-values.
-pub fn permutes_again(n_permutations: usize, n_done: usize, at_least: usize) -> bool {
-    n_done < n_permutations || (at_least == 0 && n_done < max_permutations(n_permutations))
-}
-
-/// Correlation of pairs of rows, and its permutation test.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dependence {
-    /// Mean inner product of the pairs, relative to the mean squared norm of a row; 0 for independent rows, 1 for equal rows.
-    pub correlation: f64,
-    /// Probability of at least this correlation if rows of a class are exchangeable.
-    pub p_value: f64,
-}
-
-/// Tests whether rows at most ten places apart in time are more alike than other rows of their classes. `residuals` are rows less the means of their classes.
-/// Returns `None` for fewer than 20 rows, or rows without spread.
-pub fn serial_dependence(
-    residuals: ArrayView2<f64>,
-    labels: &[usize],
-    n_permutations: usize,
-    seed: &Seed,
-) -> Option<Dependence> {
-    let n = labels.len();
-    if n < 20 {
-        return None;
+/// Returns the number of independent rows that rows in the order of recording are worth. The correlation of rows k places apart is summed over k up to the first
+/// pair of distances 2m, 2m + 1 without a positive sum (Geyer, *Practical Markov chain Monte Carlo*, 1992).
+pub fn effective_by_order(residuals: ArrayView2<f64>) -> f64 {
+    let n = residuals.nrows();
+    let scale = residuals.iter().map(|x| x * x).sum::<f64>() / n.max(1) as f64;
+    if scale <= 0.0 {
+        return n as f64;
     }
-    let lag = MAX_LAG.min(n / 10);
-    let pairs = (0..n).flat_map(|row| (1..=lag).map(move |lag| (row, row + lag)));
-    let pairs: Vec<(usize, usize)> = pairs.filter(|(_, other)| *other < n).collect();
-    test(residuals, labels, &pairs, n_permutations, seed)
-}
-
-/// Tests whether rows of one class and one group are more alike than other rows of the class. Returns `None` if no group has two rows of a class, each class
-/// is in a single group, or rows have no spread.
-pub fn group_dependence(
-    residuals: ArrayView2<f64>,
-    labels: &[usize],
-    groups: &[usize],
-    n_permutations: usize,
-    seed: &Seed,
-) -> Option<Dependence> {
-    let mut cells = BTreeMap::<(usize, usize), Vec<usize>>::new();
-    for (row, (&label, &group)) in labels.iter().zip(groups).enumerate() {
-        cells.entry((label, group)).or_default().push(row);
-    }
-    let n_classes = labels
-        .iter()
-        .collect::<std::collections::BTreeSet<_>>()
-        .len();
-    if cells.len() == n_classes {
-        return None;
-    }
-    let mut pairs = Vec::new();
-    for rows in cells.values() {
-        for (place, &row) in rows.iter().enumerate() {
-            pairs.extend(rows[place + 1..].iter().map(|&other| (row, other)));
-        }
-    }
-    test(residuals, labels, &pairs, n_permutations, seed)
-}
-
-fn test(
-    residuals: ArrayView2<f64>,
-    labels: &[usize],
-    pairs: &[(usize, usize)],
-    n_permutations: usize,
-    seed: &Seed,
-) -> Option<Dependence> {
-    let products: Array2<f64> = residuals.dot(&residuals.t());
-    let scale = products.diag().mean().unwrap_or(0.0);
-    if pairs.is_empty() || scale <= 0.0 {
-        return None;
-    }
-    let mut classes = BTreeMap::<usize, Vec<usize>>::new();
-    for (row, &label) in labels.iter().enumerate() {
-        classes.entry(label).or_default().push(row);
-    }
-    let sum = |place: &[usize]| -> f64 {
-        let pairs = pairs.iter();
-        pairs.map(|&(a, b)| products[(place[a], place[b])]).sum()
+    let correlation = |lag: usize| {
+        let pairs = residuals.outer_iter().zip(residuals.outer_iter().skip(lag));
+        let sum: f64 = pairs.map(|(a, b)| a.dot(&b)).sum();
+        sum / (n as f64 * scale)
     };
-    let mut places: Vec<usize> = (0..labels.len()).collect();
-    let observed = sum(&places);
-    let mut rng = seed.named("dependence").rng();
-    let (mut at_least, mut n_done) = (0, 0);
-    while permutes_again(n_permutations, n_done, at_least) {
-        n_done += 1;
-        for rows in classes.values() {
-            let mut shuffled = rows.clone();
-            shuffled.shuffle(&mut rng);
-            for (&row, place) in rows.iter().zip(shuffled) {
-                places[row] = place;
-            }
+    let mut sum = correlation(1);
+    for lag in (2..n.saturating_sub(1) / 2).step_by(2) {
+        let pair = correlation(lag) + correlation(lag + 1);
+        if sum <= 0.0 || pair <= 0.0 {
+            break;
         }
-        // Equal sums in another order of addition differ by rounding.
-        at_least += usize::from(sum(&places) >= observed - 1e-9 * observed.abs());
+        sum += pair;
     }
-    Some(Dependence {
-        correlation: observed / pairs.len() as f64 / scale,
-        p_value: (1 + at_least) as f64 / (1 + n_done) as f64,
-    })
+    (n as f64 / (1.0 + 2.0 * sum.max(0.0))).max(1.0)
 }
 
-/// Returns the standard deviation over taxels of the change of their level between the first and the last third of the rows. The part that noise explains
-/// is subtracted. `residuals` are the readings of untouched taxels, less the means of their classes.
-pub fn change_of_level(residuals: ArrayView2<f64>) -> f64 {
-    let n = residuals.nrows() / 3;
-    if n < 2 {
-        return 0.0;
+/// Returns the number of independent rows that rows in groups are worth. Rows of one group and class have one correlation, rows of one group and different
+/// classes another: the part of the group that the classes share.
+pub fn effective_by_groups(residuals: ArrayView2<f64>, labels: &[usize], groups: &[usize]) -> f64 {
+    let n = labels.len() as f64;
+    let square: f64 = residuals.iter().map(|x| x * x).sum();
+    if square <= 0.0 {
+        return n;
     }
-    let mut squares = 0.0;
-    for taxel in residuals.columns() {
-        let ends = [0..n, taxel.len() - n..taxel.len()].map(|rows| {
-            let rows = taxel.slice(ndarray::s![rows]);
-            (rows.mean().unwrap_or(0.0), rows.var(1.0) / n as f64)
-        });
-        squares += (ends[1].0 - ends[0].0).powi(2) - ends[0].1 - ends[1].1;
+    let of_cells = pairs(residuals, |row| (groups[row], labels[row]));
+    let of_groups = pairs(residuals, |row| (groups[row], 0));
+    let shared = (of_groups.0 - of_cells.0, of_groups.1 - of_cells.1);
+    // Sum of the correlations of ordered pairs: mean product of the pairs over the mean square, times the number of pairs.
+    let sum = |(product, n_pairs): (f64, f64)| match n_pairs > 0.0 {
+        true => (product / (square / n)).max(0.0),
+        false => 0.0,
+    };
+    n / (1.0 + (sum(of_cells) + sum(shared)) / n)
+}
+
+/// Returns the sum of the inner products of ordered pairs of different rows of one unit, and the number of these pairs.
+fn pairs(residuals: ArrayView2<f64>, unit: impl Fn(usize) -> (usize, usize)) -> (f64, f64) {
+    let mut units = BTreeMap::<(usize, usize), Vec<usize>>::new();
+    (0..residuals.nrows()).for_each(|row| units.entry(unit(row)).or_default().push(row));
+    let mut found = (0.0, 0.0);
+    for rows in units.values() {
+        let own = residuals.select(Axis(0), rows);
+        let sum: Array1<f64> = own.sum_axis(Axis(0));
+        found.0 += sum.dot(&sum) - own.iter().map(|x| x * x).sum::<f64>();
+        found.1 += (rows.len() * (rows.len() - 1)) as f64;
     }
-    (squares / residuals.ncols().max(1) as f64).max(0.0).sqrt()
+    found
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Seed;
     use rand::Rng;
     use rand_distr::StandardNormal;
 
+    /// AR(1) with coefficient 0.8 is worth n (1 − 0.8)/(1 + 0.8) rows; runs of 8 copies are worth n/8.
     #[test]
-    fn drift_and_groups_are_found_and_noise_is_not() {
-        let labels: Vec<usize> = (0..120).map(|row| row / 40).collect();
-        let groups: Vec<usize> = (0..120).map(|row| row / 8).collect();
-        let mut rng = Seed::new(2).named("noise").rng();
-        let mut found = Vec::new();
-        for trial in 0..40 {
-            let noise =
-                Array2::from_shape_simple_fn((120, 9), || rng.sample::<f64, _>(StandardNormal));
-            let noise = crate::audit::taxels::without_class_means(noise.view(), &labels);
-            let seed = Seed::new(trial);
-            let serial = serial_dependence(noise.view(), &labels, 99, &seed).unwrap();
-            let grouped = group_dependence(noise.view(), &labels, &groups, 99, &seed).unwrap();
-            found.extend([serial.p_value, grouped.p_value]);
-            if trial == 0 {
-                let drifting = Array2::from_shape_fn((120, 9), |(row, taxel)| {
-                    noise[(row, taxel)] + 0.01 * (row % 40) as f64 * (taxel as f64 - 4.0)
-                });
-                let drifting = crate::audit::taxels::without_class_means(drifting.view(), &labels);
-                let found = serial_dependence(drifting.view(), &labels, 99, &seed).unwrap();
-                assert_eq!(found.p_value, 1.0 / 4001.0);
-                let mut grouped = noise.clone();
-                for (row, mut readings) in grouped.rows_mut().into_iter().enumerate() {
-                    readings[groups[row] % 9] += 1.0;
-                }
-                let found = group_dependence(grouped.view(), &labels, &groups, 99, &seed).unwrap();
-                assert_eq!(found.p_value, 1.0 / 4001.0);
-            }
+    fn rows_in_order_are_worth_the_independent_rows_of_theory() {
+        let mut rng = Seed::new(1).named("order").rng();
+        let mut rows = Array2::from_shape_simple_fn((600, 30), || rng.sample(StandardNormal));
+        let independent: Array2<f64> = rows.clone();
+        for row in 1..600 {
+            let last = rows.row(row - 1).to_owned();
+            rows.row_mut(row)
+                .zip_mut_with(&last, |x, last| *x = 0.6 * *x + 0.8 * last);
         }
-        let n_low = found.iter().filter(|&&p| p <= 0.05).count();
-        assert!(n_low <= 12, "{n_low} of 80");
+        let found = effective_by_order(rows.view());
+        assert!((57.0..80.0).contains(&found), "{found}");
+        let places: Vec<usize> = (0..600).map(|row| row / 8).collect();
+        let found = effective_by_order(independent.select(Axis(0), &places).view());
+        assert!((65.0..85.0).contains(&found), "{found}");
+        let found = effective_by_order(independent.view());
+        assert!(found > 500.0, "{found}");
+    }
+
+    /// 20 groups of 6 classes of 4 rows. The style of a cell of variance 1 and noise of variance 1 are worth 480/(1 + 3/2) = 192 rows; the style of a
+    /// group of variance 1 is worth 480/(1 + 23/2) = 38 rows.
+    #[test]
+    fn rows_in_groups_are_worth_the_independent_rows_of_theory() {
+        let mut rng = Seed::new(2).named("groups").rng();
+        let mut normal = |n: usize| -> Array2<f64> {
+            Array2::from_shape_simple_fn((n, 30), || rng.sample(StandardNormal))
+        };
+        let noise = normal(480);
+        let groups: Vec<usize> = (0..480).map(|row| row / 24).collect();
+        let labels: Vec<usize> = (0..480).map(|row| row / 4 % 6).collect();
+        for (n_styles, run, expected) in [(120, 4, 192.0), (20, 24, 38.0)] {
+            let styles = normal(n_styles);
+            let of_rows: Vec<usize> = (0..480).map(|row| row / run).collect();
+            let rows = &noise + &styles.select(Axis(0), &of_rows);
+            let found = effective_by_groups(rows.view(), &labels, &groups);
+            assert!((0.75..1.33).contains(&(found / expected)), "{found}");
+        }
     }
 }

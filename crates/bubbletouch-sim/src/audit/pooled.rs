@@ -55,39 +55,11 @@ pub fn spans(frames: ArrayView2<f64>, n_frames: usize, n_spans: usize) -> Array2
 }
 
 /// Returns the sides (rows, columns) and the edge of the smallest square blocks of a grid of which there are at most `max_blocks`.
-pub fn blocks_of((rows, columns): (usize, usize), max_blocks: usize) -> ((usize, usize), usize) {
+fn blocks_of((rows, columns): (usize, usize), max_blocks: usize) -> ((usize, usize), usize) {
     let sides = |edge: usize| (rows.div_ceil(edge), columns.div_ceil(edge));
     let is_small = |edge: &usize| sides(*edge).0 * sides(*edge).1 <= max_blocks;
     let edge = (1..=rows.max(columns)).find(is_small).unwrap_or(1);
     (sides(edge), edge)
-}
-
-/// Averages Fourier magnitudes over mirrored images, and over turned images if the image is square. `magnitudes` are rows of the feature "Fourier magnitude" of
-/// images of shape (ny, nx): for u = 0 … ⌊nx/3⌋ the rows v = 0 … ⌊ny/3⌋, followed by v = −⌊ny/3⌋ … −1 for u > 0.
-pub fn symmetrised(magnitudes: ArrayView2<f64>, (ny, nx): (usize, usize)) -> Array2<f64> {
-    let (n_u, n_v) = (nx / 3, ny / 3);
-    let place = |u: usize, v: usize, is_negative: bool| match (u, is_negative && v > 0) {
-        (0, _) => v,
-        (_, false) => n_v + 1 + (u - 1) * (2 * n_v + 1) + v,
-        (_, true) => n_v + 1 + (u - 1) * (2 * n_v + 1) + 2 * n_v + 1 - v,
-    };
-    let mut orbits = Vec::new();
-    for u in 0..=n_u {
-        for v in 0..=n_v {
-            let mut orbit = vec![place(u, v, false), place(u, v, true)];
-            if ny == nx {
-                if u > v {
-                    continue;
-                }
-                orbit.extend([place(v, u, false), place(v, u, true)]);
-            }
-            orbits.push(orbit);
-        }
-    }
-    Array2::from_shape_fn((magnitudes.nrows(), orbits.len()), |(row, orbit)| {
-        let places = orbits[orbit].iter();
-        places.map(|&place| magnitudes[(row, place)]).sum::<f64>() / orbits[orbit].len() as f64
-    })
 }
 
 fn means_of_blocks(
@@ -129,41 +101,6 @@ fn signs(n_taxels: usize, n_values: usize) -> Array2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Frequencies u = 0 … 2, v = −2 … 2 of an image of 6 × 6 pixels, or v = −3 … 3 of 9 × 6.
-    #[test]
-    fn mirrored_and_turned_images_have_the_same_symmetrised_magnitudes() {
-        let magnitude = |u: f64, v: f64| (1.3 * u + 0.7 * v * v + u * v).sin();
-        let of = |turn: &dyn Fn(f64, f64) -> (f64, f64), ny: usize| {
-            let n_v = (ny / 3) as i32;
-            let mut row = Vec::new();
-            for u in 0..=2 {
-                let negative = if u == 0 { 0..0 } else { -n_v..0 };
-                for v in (0..=n_v).chain(negative) {
-                    let (u, v) = turn(f64::from(u), f64::from(v));
-                    // The magnitudes at (u, v) and (−u, −v) are equal.
-                    row.push(magnitude(u, v) + magnitude(-u, -v));
-                }
-            }
-            let row = Array2::from_shape_vec((1, row.len()), row).unwrap();
-            symmetrised(row.view(), (ny, 6))
-        };
-        for ny in [6, 9] {
-            let found = of(&|u, v| (u, v), ny);
-            assert!(
-                (&found - &of(&|u, v| (-u, v), ny))
-                    .iter()
-                    .all(|x| x.abs() < 1e-12)
-            );
-        }
-        let found = of(&|u, v| (u, v), 6);
-        assert_eq!(found.ncols(), 6);
-        assert!(
-            (&found - &of(&|u, v| (-v, u), 6))
-                .iter()
-                .all(|x| x.abs() < 1e-12)
-        );
-    }
 
     #[test]
     fn blocks_and_spans_are_means() {

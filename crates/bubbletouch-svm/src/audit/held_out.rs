@@ -8,7 +8,7 @@ use crate::streams::Streams;
 use ndarray::{Array1, Array2, ArrayView2, Axis};
 
 /// Maximum number of passes of the linear SVM. More passes change accuracies by less than their intervals and take longer.
-const MAX_PASSES: usize = 40;
+const MAX_PASSES: usize = 12;
 /// Penalty C of the linear SVM, for features of mean squared norm 1.
 const C: f64 = 10.0;
 /// Stopping tolerance of the linear SVM, in units of the margin.

@@ -4,7 +4,7 @@ use ndarray::{ArrayView1, ArrayView2, Axis, s};
 use std::ops::Range;
 
 /// Nearest rows of a block of rows.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct NearestRows {
     /// Indices of the k nearest other rows of each row of the block, nearest first; fewer if there are fewer rows.
     pub neighbours: Vec<Vec<usize>>,

@@ -1,114 +1,49 @@
-//! Permutation test of the hypothesis that labels cannot be read from features.
+//! Permutation tests of the accuracy with which labels can be read from features.
 //!
-//! Two classifiers predict each row from all other rows: the nearest class mean, and the vote of the nearest rows. The statistic is the larger of the two
-//! accuracies. If rows belong to units, such as the grasps of one object, a row is predicted from the rows of other units, because rows of one unit are alike
-//! whatever their label. The labels are permuted many times; rows of one label and one unit keep a common label. The cells of a unit exchange their labels;
-//! units of a single label exchange them with each other. The p-value is (1 + number of permutations with at least the observed accuracy) / (1 + number of
-//! permutations). The p-value is exact for exchangeable rows (Phipson and Smyth, *Permutation p-values should never be zero*, 2010). The two classifiers need
-//! only inner products of rows, so that a permutation costs n² additions for any number of features.
+//! Two classifiers predict each row from the rows of other units: the nearest class mean, and the vote of the nearest rows. They need only inner products of
+//! rows, so that a permutation costs n² additions for any number of features.
 
+use crate::audit::permutation::{Permuted, Units, exchange_within, generator, permute};
 use crate::streams::Streams;
 use ndarray::{Array2, ArrayView2, Axis};
-use rand::seq::SliceRandom;
-use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 /// Number of nearest rows that vote.
 const N_VOTES: usize = 5;
 
-/// Accuracy with which labels can be read from features, and its distribution under permuted labels.
+/// Accuracy with which labels can be read from features, and its distribution under exchanged labels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readability {
-    /// Fraction of rows whose label the better classifier predicts from the other rows.
+    /// Fraction of rows whose label the better classifier predicts from the rows of other units.
     pub accuracy: f64,
-    /// Mean accuracy over permutations of the labels.
-    pub chance: f64,
-    /// 95 % quantile of the accuracy over permutations of the labels.
-    pub bound: f64,
-    /// Probability of at least this accuracy if features and labels are independent.
-    pub p_value: f64,
-    /// Whether the better classifier predicts each row correctly.
-    pub is_correct: Vec<bool>,
+    /// The same over permutations of the labels.
+    pub permuted: Permuted,
 }
 
-/// Inner products of all pairs of rows, and the nearest rows of each row.
+/// Inner products of all pairs of rows, and the other rows of each row, nearest first.
 struct Pairs {
     products: Array2<f64>,
-    nearest: Vec<Vec<usize>>,
+    order: Vec<Vec<u32>>,
 }
 
-/// Scratch memory of the two classifiers.
-#[derive(Default)]
-struct Workspace {
-    /// Sums of the products of each row with the rows of each class.
-    sums: Vec<f64>,
-    /// Sums of the products of each row with the rows of each class in the row's own unit.
-    own_sums: Vec<f64>,
-    /// Number of rows, and squared norm of the sum of the rows, of each class outside each unit.
-    outside: Vec<(usize, f64)>,
-    is_correct: [Vec<bool>; 2],
+/// Rows that are held out together.
+struct Folds<'a> {
+    /// Fold of each row.
+    of: &'a [usize],
+    /// Number of folds.
+    n: usize,
+    /// Number of folds that are tested, from fold 0.
+    n_tested: usize,
 }
 
-/// Rows that are alike whatever their label, and rows that keep a common label.
-struct Units {
-    /// Unit of each row; without units, each row is a unit of its own.
-    of: Vec<usize>,
-    /// Rows of each unit.
-    rows: Vec<Vec<usize>>,
-    /// Rows of one label and one unit, for each label and unit.
-    cells: Vec<Vec<usize>>,
-    /// Cells that exchange their labels.
-    strata: Vec<Vec<usize>>,
-}
-
-impl Units {
-    fn new(units: Option<&[usize]>, labels: &[usize]) -> Self {
-        let n = labels.len();
-        let Some(units) = units else {
-            return Self {
-                of: (0..n).collect(),
-                rows: (0..n).map(|row| vec![row]).collect(),
-                cells: (0..n).map(|row| vec![row]).collect(),
-                strata: vec![(0..n).collect()],
-            };
-        };
-        let mut rows = BTreeMap::<usize, BTreeMap<usize, Vec<usize>>>::new();
-        for (row, (&unit, &label)) in units.iter().zip(labels).enumerate() {
-            let cells = rows.entry(unit).or_default();
-            cells.entry(label).or_default().push(row);
-        }
-        let mut found = Self {
-            of: vec![0; n],
-            rows: Vec::new(),
-            cells: Vec::new(),
-            strata: Vec::new(),
-        };
-        let mut single = Vec::new();
-        for (unit, cells) in rows.into_values().enumerate() {
-            let first = found.cells.len();
-            found.cells.extend(cells.into_values());
-            let numbers = first..found.cells.len();
-            let of_unit: Vec<usize> = found.cells[first..].concat();
-            of_unit.iter().for_each(|&row| found.of[row] = unit);
-            found.rows.push(of_unit);
-            match numbers.len() {
-                1 => single.extend(numbers),
-                _ => found.strata.push(numbers.collect()),
-            }
-        }
-        found.strata.push(single);
-        found
-    }
-}
-
-/// Tests whether the labels (in 0..n_classes) can be read from the features. `units` contains the unit of each row, or `None` if all rows are independent.
-/// The first number of the range `n_permutations` is made in any case; more permutations, up to the last number, only until one of them reaches the observed
-/// accuracy. Returns `None` for fewer than two rows per class on average, or a single class.
+/// Tests whether the labels (in 0..n_classes) can be read from the features. `units` contains the unit of each row, or `None` if all rows are independent: rows
+/// of one unit can be alike whatever their label, so that a row is predicted from other units, and the rows of a cell keep a common label. `n_permutations` is
+/// the range of [`permute`]. Returns `None` for fewer than two rows per class on average, or a single class.
 pub fn readability(
     features: ArrayView2<f64>,
     labels: &[usize],
     units: Option<&[usize]>,
-    n_permutations: RangeInclusive<usize>,
+    n_permutations: &RangeInclusive<usize>,
     seed: &dyn Streams,
 ) -> Option<Readability> {
     let n = labels.len();
@@ -120,52 +55,67 @@ pub fn readability(
         return None;
     }
     let units = Units::new(units, labels);
-    let pairs = Pairs::new(features, &units.of);
-    let mut workspace = Workspace::default();
-    let best = |counts: [usize; 2]| usize::from(counts[1] > counts[0]);
-    let observed = pairs.count_correct(labels, n_classes, &units, &mut workspace);
-    let method = best(observed);
-    let is_correct = workspace.is_correct[method].clone();
-    let n_correct = observed[method];
+    let pairs = Pairs::new(features);
+    let folds = Folds {
+        of: &units.of,
+        n: units.n,
+        n_tested: units.n,
+    };
+    let accuracy = |labels: &[usize]| {
+        let [by_mean, by_votes] = pairs.recognised(labels, n_classes, &folds).map(count);
+        by_mean.max(by_votes) as f64 / n as f64
+    };
+    let observed = accuracy(labels);
     let mut permuted = labels.to_vec();
-    let mut rng = seed.named("permutations").rng();
-    let mut found = Vec::with_capacity(*n_permutations.start());
-    let mut is_reached = false;
-    // More permutations resolve smaller p-values.
-    while found.len() < *n_permutations.start()
-        || (!is_reached && found.len() < *n_permutations.end())
-    {
-        for cells in &units.strata {
-            let label = |&cell: &usize| labels[units.cells[cell][0]];
-            let mut shuffled: Vec<usize> = cells.iter().map(label).collect();
-            shuffled.shuffle(&mut rng);
-            for (&cell, label) in cells.iter().zip(shuffled) {
-                units.cells[cell]
-                    .iter()
-                    .for_each(|&row| permuted[row] = label);
-            }
-        }
-        let counts = pairs.count_correct(&permuted, n_classes, &units, &mut workspace);
-        let count = counts[0].max(counts[1]);
-        is_reached |= count >= n_correct;
-        found.push(count);
-    }
-    let n_permutations = found.len();
-    found.sort_unstable();
-    let at_least = found.iter().filter(|&&count| count >= n_correct).count();
-    let share = |count: usize| count as f64 / n as f64;
-    let bound = found.get((0.95 * n_permutations as f64) as usize);
+    let mut rng = generator(seed);
+    let draw = || {
+        units.exchange(labels, &mut permuted, &mut rng);
+        accuracy(&permuted)
+    };
     Some(Readability {
-        accuracy: share(n_correct),
-        chance: found.iter().map(|&count| share(count)).sum::<f64>() / n_permutations.max(1) as f64,
-        bound: bound.map_or(1.0, |&count| share(count)),
-        p_value: (1 + at_least) as f64 / (1 + n_permutations) as f64,
-        is_correct,
+        accuracy: observed,
+        permuted: permute(n_permutations, observed, draw),
     })
 }
 
+/// Tests whether rows of other folds recognise a row less often than equally many rows drawn at random from the same classes. `folds` contains the fold of each
+/// row; the folds from 0 to `n_tested` − 1 are tested. A permutation exchanges the folds of rows of one class, so that both arms train on equally many rows of
+/// each class. The statistic is the fraction of wrong predictions, averaged over both classifiers.
+pub fn held_out_loss(
+    features: ArrayView2<f64>,
+    labels: &[usize],
+    (folds, n_tested): (&[usize], usize),
+    n_permutations: &RangeInclusive<usize>,
+    seed: &dyn Streams,
+) -> Option<Permuted> {
+    let n_classes = labels.iter().max()? + 1;
+    let n_folds = folds.iter().max()? + 1;
+    let n = folds.iter().filter(|&&fold| fold < n_tested).count();
+    let pairs = Pairs::new(features);
+    let wrong = |of: &[usize]| {
+        let folds = Folds {
+            of,
+            n: n_folds,
+            n_tested,
+        };
+        let counts = pairs.recognised(labels, n_classes, &folds).map(count);
+        1.0 - counts.iter().sum::<usize>() as f64 / (2 * n.max(1)) as f64
+    };
+    let observed = wrong(folds);
+    let mut permuted = folds.to_vec();
+    let mut rng = generator(seed);
+    Some(permute(n_permutations, observed, || {
+        exchange_within(labels, &mut permuted, &mut rng);
+        wrong(&permuted)
+    }))
+}
+
+fn count(recognised: Vec<bool>) -> usize {
+    recognised.into_iter().filter(|&is| is).count()
+}
+
 impl Pairs {
-    fn new(features: ArrayView2<f64>, units: &[usize]) -> Self {
+    fn new(features: ArrayView2<f64>) -> Self {
         let mean = features.mean_axis(Axis(0));
         let centred = match mean {
             Some(mean) => &features - &mean,
@@ -175,39 +125,27 @@ impl Pairs {
         let products = centred.dot(&centred.t());
         let products = products.as_standard_layout().into_owned();
         let n = products.nrows();
-        let nearest = (0..n).map(|row| {
-            let distance =
-                |other: &usize| products[(*other, *other)] - 2.0 * products[(row, *other)];
-            let mut others: Vec<usize> =
-                (0..n).filter(|&other| units[other] != units[row]).collect();
-            let k = N_VOTES.min(others.len());
-            if k < others.len() {
-                others.select_nth_unstable_by(k, |a, b| {
-                    distance(a).total_cmp(&distance(b)).then(a.cmp(b))
-                });
-                others.truncate(k);
-            }
-            others.sort_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+        let order = (0..n).map(|row| {
+            let distance = |other: u32| {
+                let other = other as usize;
+                products[(other, other)] - 2.0 * products[(row, other)]
+            };
+            let mut others: Vec<u32> = (0..n as u32)
+                .filter(|&other| other as usize != row)
+                .collect();
+            others.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(a.cmp(&b)));
             others
         });
-        let nearest = nearest.collect();
-        Self { products, nearest }
+        let order = order.collect();
+        Self { products, order }
     }
 
-    /// Returns the numbers of rows that the nearest class mean and the nearest rows predict correctly, from rows of other units.
-    fn count_correct(
-        &self,
-        labels: &[usize],
-        n_classes: usize,
-        units: &Units,
-        workspace: &mut Workspace,
-    ) -> [usize; 2] {
+    /// Returns whether the nearest class mean, and whether the nearest rows predict each row correctly from rows of other folds; false if it is not tested.
+    fn recognised(&self, labels: &[usize], n_classes: usize, folds: &Folds) -> [Vec<bool>; 2] {
         let n = labels.len();
-        let (sums, own_sums) = (&mut workspace.sums, &mut workspace.own_sums);
-        for sums in [&mut *sums, &mut *own_sums] {
-            sums.clear();
-            sums.resize(n * n_classes, 0.0);
-        }
+        // Sums of the products of each row with the rows of each class, and with those in its own fold.
+        let mut sums = vec![0.0; n * n_classes];
+        let mut own_sums = sums.clone();
         let mut of_classes = vec![(0, 0.0); n_classes];
         for (row, sums) in sums.chunks_exact_mut(n_classes).enumerate() {
             for (product, &label) in self.products.row(row).iter().zip(labels) {
@@ -217,10 +155,13 @@ impl Pairs {
             *count += 1;
             *square += sums[labels[row]];
         }
-        // Let S be the sum of the rows of a class, and U the sum of its rows within a unit: |S − U|² = |S|² − 2 S·U + |U|².
-        let outside = &mut workspace.outside;
-        outside.clear();
-        for rows in &units.rows {
+        let mut rows_of = vec![Vec::new(); folds.n];
+        for (row, &fold) in folds.of.iter().enumerate() {
+            rows_of[fold].push(row);
+        }
+        // Let S be the sum of the rows of a class, and U the sum of its rows within a fold: |S − U|² = |S|² − 2 S·U + |U|².
+        let mut outside: Vec<(usize, f64)> = Vec::with_capacity(folds.n * n_classes);
+        for rows in &rows_of {
             let first = outside.len();
             outside.extend(&of_classes);
             for &row in rows {
@@ -234,13 +175,15 @@ impl Pairs {
                 *square += own_sums[label] - 2.0 * sums[row * n_classes + label];
             }
         }
-        let [by_mean, by_votes] = &mut workspace.is_correct;
-        by_mean.clear();
-        by_votes.clear();
+        let mut found = [vec![false; n], vec![false; n]];
         let mut votes = vec![0_usize; n_classes];
         for (row, &own) in labels.iter().enumerate() {
+            let fold = folds.of[row];
+            if fold >= folds.n_tested {
+                continue;
+            }
             let (sums, own_sums) = (&sums[row * n_classes..], &own_sums[row * n_classes..]);
-            let outside = &outside[units.of[row] * n_classes..];
+            let outside = &outside[fold * n_classes..];
             let distance = |class: usize| match outside[class] {
                 (0, _) => f64::INFINITY,
                 (count, square) => {
@@ -249,21 +192,20 @@ impl Pairs {
                 }
             };
             let of_own = distance(own);
-            by_mean.push(
-                of_own.is_finite()
-                    && (0..n_classes).all(|class| class == own || of_own < distance(class)),
-            );
-            let near = &self.nearest[row];
-            near.iter().for_each(|&other| votes[labels[other]] += 1);
-            let most = near.iter().map(|&other| votes[labels[other]]).max();
+            let mut others = (0..n_classes).filter(|&class| class != own);
+            found[0][row] = of_own.is_finite() && others.all(|class| of_own < distance(class));
+            let near = self.order[row].iter().map(|&other| other as usize);
+            let near = near.filter(|&other| folds.of[other] != fold).take(N_VOTES);
+            near.clone().for_each(|other| votes[labels[other]] += 1);
+            let most = near.clone().map(|other| votes[labels[other]]).max();
             // The nearest row among those with the most votes decides.
             let winner = near
-                .iter()
-                .find(|&&other| Some(votes[labels[other]]) == most);
-            by_votes.push(winner.is_some_and(|&other| labels[other] == own));
-            near.iter().for_each(|&other| votes[labels[other]] = 0);
+                .clone()
+                .find(|&other| Some(votes[labels[other]]) == most);
+            found[1][row] = winner.is_some_and(|other| labels[other] == own);
+            near.for_each(|other| votes[labels[other]] = 0);
         }
-        [&*by_mean, &*by_votes].map(|correct| correct.iter().filter(|&&is| is).count())
+        found
     }
 }
 
@@ -281,9 +223,11 @@ mod tests {
     fn p_values_of_noise_are_uniform_and_those_of_labels_smallest() {
         let labels: Vec<usize> = (0..60).map(|row| row % 4).collect();
         let of = |features: Array2<f64>, seed: u64| {
-            readability(features.view(), &labels, None, 99..=4000, &seed).unwrap()
+            readability(features.view(), &labels, None, &(99..=4000), &seed).unwrap()
         };
-        let p_values: Vec<f64> = (0..100).map(|k| of(noise(60, 6, k), k).p_value).collect();
+        let p_values: Vec<f64> = (0..100)
+            .map(|k| of(noise(60, 6, k), k).permuted.p_value)
+            .collect();
         let below = |bound: f64| p_values.iter().filter(|&&p| p <= bound).count();
         // Binomial counts of 100 with probabilities 0.05 and 0.5, within 4.5 standard deviations.
         assert!(below(0.05) <= 15, "{}", below(0.05));
@@ -293,8 +237,11 @@ mod tests {
             row[0] += 2.0 * label as f64;
         }
         let found = of(features, 1);
-        assert_eq!(found.p_value, 1.0 / 4001.0);
-        assert!(found.accuracy > 0.95 && found.bound < 0.5, "{found:?}");
+        assert_eq!(found.permuted.p_value, 1.0 / 4001.0);
+        assert!(
+            found.accuracy > 0.95 && found.permuted.bound < 0.5,
+            "{found:?}"
+        );
     }
 
     #[test]
@@ -304,9 +251,13 @@ mod tests {
         let grouped: Vec<usize> = (0..40).map(|row| 7 * row % 11).collect();
         for grouped in [None, Some(&grouped[..])] {
             let units = Units::new(grouped, &labels);
-            let pairs = Pairs::new(features.view(), &units.of);
-            let mut workspace = Workspace::default();
-            pairs.count_correct(&labels, 2, &units, &mut workspace);
+            let pairs = Pairs::new(features.view());
+            let folds = Folds {
+                of: &units.of,
+                n: units.n,
+                n_tested: units.n,
+            };
+            let found = pairs.recognised(&labels, 2, &folds);
             for row in 0..40 {
                 let is_other = |other: usize| match grouped {
                     Some(grouped) => grouped[other] != grouped[row],
@@ -320,7 +271,7 @@ mod tests {
                     (&mean - &features.row(row)).mapv(|x| x * x).sum()
                 };
                 let expected = distance(labels[row]) < distance(1 - labels[row]);
-                assert_eq!(workspace.is_correct[0][row], expected);
+                assert_eq!(found[0][row], expected);
             }
         }
     }
@@ -338,7 +289,9 @@ mod tests {
                 features += &levels.row(row / 5);
             }
             let of = |features: &Array2<f64>, units: Option<&[usize]>| {
-                readability(features.view(), &labels, units, 199..=4000, &5_u64).unwrap()
+                readability(features.view(), &labels, units, &(199..=4000), &5_u64)
+                    .unwrap()
+                    .permuted
             };
             assert!(of(&features, None).p_value <= 0.005);
             let within = of(&features, Some(&units));
@@ -348,5 +301,33 @@ mod tests {
             }
             assert!(of(&features, Some(&units)).p_value <= 0.005);
         }
+    }
+
+    /// Groups without an effect: the p-values of both tests are uniform. Groups with an effect: held-out groups cost accuracy.
+    #[test]
+    fn tests_with_groups_keep_their_level() {
+        let labels: Vec<usize> = (0..96).map(|row| row / 4 % 4).collect();
+        let groups: Vec<usize> = (0..96).map(|row| row / 16).collect();
+        let range = 199..=199;
+        let (mut read, mut lost) = (0, 0);
+        for k in 0..200 {
+            let mut features = noise(96, 4, 1000 + k);
+            let p = held_out_loss(features.view(), &labels, (&groups, 6), &range, &k).unwrap();
+            lost += usize::from(p.p_value <= 0.05);
+            // Each cell of a group and a class has a style of its own.
+            let styles = noise(24, 4, 5000 + k);
+            for (row, mut own) in features.rows_mut().into_iter().enumerate() {
+                own += &(&styles.row(row / 4) * 3.0);
+            }
+            let found = readability(features.view(), &labels, Some(&groups), &range, &k).unwrap();
+            read += usize::from(found.permuted.p_value <= 0.05);
+            if k < 5 {
+                let p = held_out_loss(features.view(), &labels, (&groups, 6), &range, &k).unwrap();
+                assert!(p.p_value <= 0.01, "{p:?}");
+            }
+        }
+        // 3 to 7 % of 200 null sets.
+        assert!((6..=14).contains(&read), "{read}");
+        assert!((6..=14).contains(&lost), "{lost}");
     }
 }

@@ -1,0 +1,69 @@
+//! Laws of audits: they depend on data and seed alone, and a clock that wraps around continues.
+
+use crate::sets::*;
+use bubbletouch::audit::{AuditData, Verdict};
+use ndarray::Array2;
+
+#[test]
+fn an_audit_depends_on_data_and_seed_alone() {
+    let findings = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        format!("{:?}", pool.install(|| Set::discs(3).findings()))
+    };
+    assert_eq!(findings(1), findings(3));
+}
+
+/// The user decides what is part of the claim: the same number is a note or a fault.
+#[test]
+fn what_is_not_claimed_becomes_a_fault_and_the_named_split_a_note() {
+    let verdict = |names: Option<&str>| {
+        let mut set = Set::discs(1);
+        set.options.not_claimed = names.map(|name| vec![name.to_owned()]);
+        let findings = set.findings();
+        findings
+            .iter()
+            .find(|finding| finding.check == "mean")
+            .unwrap()
+            .verdict
+    };
+    assert_eq!(
+        [verdict(None), verdict(Some("mean"))],
+        [Verdict::Note, Verdict::Fault]
+    );
+}
+
+/// Law: times of a clock that wraps around continue, and times that fall back otherwise are sorted by value.
+#[test]
+fn a_clock_that_wraps_around_continues() {
+    let sorted = |time: &dyn Fn(usize) -> f64| {
+        let mut data = AuditData {
+            frames: Array2::from_shape_fn((60, 1), |(touch, _)| touch as f64),
+            n_frames: 1,
+            ..AuditData::default()
+        };
+        data.sort_by_time(&(0..60).map(time).collect::<Vec<_>>());
+        data.frames.into_raw_vec_and_offset().0
+    };
+    let in_order: Vec<f64> = (0..60).map(|touch| touch as f64).collect();
+    let start = 4_294_967_296.0 - 20_500.0;
+    for factor in [1.0, 1e-3, 1e-6] {
+        let wrapped = |touch: usize| (start + 1000.0 * touch as f64) % 4_294_967_296.0 * factor;
+        assert_eq!(sorted(&wrapped), in_order);
+    }
+    // Signed counters, and 16 bits.
+    assert_eq!(
+        sorted(&|touch| f64::from((2_147_480_000 + 500 * touch as u32) as i32)),
+        in_order
+    );
+    assert_eq!(
+        sorted(&|touch| f64::from((60_000 + 500 * touch as u32) as u16)),
+        in_order
+    );
+    // Touches that are listed by class.
+    let by_class = sorted(&|touch| (touch % 20 * 3 + touch / 20) as f64);
+    let expected: Vec<f64> = (0..60).map(|k| (k / 3 + 20 * (k % 3)) as f64).collect();
+    assert_eq!(by_class, expected);
+}
