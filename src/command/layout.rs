@@ -24,7 +24,7 @@ pub struct Args {
     /// Set the unit of --mesh: m, cm, mm or in [default: m]
     #[arg(long, value_name = "UNIT", requires = "mesh", help_heading = "Input")]
     mesh_unit: Option<LengthUnit>,
-    /// Set the unit of a file that does not state it: m, cm, mm or in
+    /// Set the unit of the file: m, cm, mm or in
     #[arg(long, value_name = "UNIT", help_heading = "Input")]
     unit: Option<LengthUnit>,
     /// Read the sensor of this name in a robot's file
