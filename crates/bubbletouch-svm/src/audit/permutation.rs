@@ -1,7 +1,7 @@
 //! The engine of all permutation tests of an audit, and the units that it exchanges.
 //!
-//! A test computes a statistic of the data and of data whose independent units are exchanged. The p-value is (1 + number of permutations with a larger statistic
-//! + half the number with an equal one) / (1 + number of permutations) (Phipson and Smyth, *Permutation p-values should never be zero*, 2010). A test ends early
+//! A test computes a statistic of the data and of data whose independent units are exchanged. The p-value is (1 + L + E/2) / (1 + n) for n
+//! permutations, of which L have a larger and E an equal statistic (Phipson and Smyth, *Permutation p-values should never be zero*, 2010). A test ends early
 //! once 50 permutations reach the statistic (Besag and Clifford, *Sequential Monte Carlo p-values*, 1991).
 
 use crate::streams::Streams;
