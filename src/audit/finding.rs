@@ -62,7 +62,7 @@ pub const TITLES: &[(&str, &str)] = &[
 /// Finding of one check about one subject.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Name of the check, such as `copies`; one of [`TITLES`].
+    /// Name of the check, such as `copies`.
     pub check: &'static str,
     /// Part of the data that the finding is about, such as `group`; may be empty.
     pub subject: String,
