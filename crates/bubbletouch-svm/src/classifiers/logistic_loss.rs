@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1e-7;
 
 /// Number of products that must add less than a tenth to the predicted decrease before it ends the training [Strakoš & Tichý 2002]. With a smaller value, the
 /// training ends far from the minimum if the objective is flat along some direction; with a larger value, the last step needs more products.
-const LAST_PRODUCTS: usize = 10;
+const LAST_PRODUCTS: usize = 40;
 
 /// Minimum decrease of the objective in an accepted step, relative to the decrease predicted by the gradient (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;

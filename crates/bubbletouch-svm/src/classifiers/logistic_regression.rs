@@ -30,7 +30,7 @@ pub struct LogisticParams {
     /// Weight C > 0 of the data relative to the regularisation.
     pub c: f64,
     /// Stopping tolerance, above 0: predicted decrease of the objective in the last step, relative to the objective. The difference between the objective and
-    /// its minimum is usually below this fraction of the minimum, and below four times this fraction if features are nearly collinear and C is large.
+    /// its minimum is usually smaller than this fraction of the minimum.
     pub tolerance: f64,
     /// Maximum number of Newton steps, at least 1. If it is reached, the solver stops and the model is marked as capped.
     pub max_iterations: usize,
