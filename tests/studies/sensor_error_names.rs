@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const MAY_NAME: [&str; 3] = [
     "crates/bubbletouch-sim/src/signal",
     "crates/bubbletouch-sim/src/calibration",
-    "src/audit/readings.rs",
+    "src/audit",
 ];
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
