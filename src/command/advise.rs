@@ -56,9 +56,6 @@ pub struct Args {
     /// Print the answer as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
-    /// Former name of --budget
-    #[arg(long, hide = true, value_parser = renamed)]
-    budget_us: Option<f64>,
 }
 
 #[derive(clap::Args)]
@@ -125,14 +122,6 @@ struct RequirementArgs {
         help_heading = "Requirements"
     )]
     max_training_s: Option<f64>,
-}
-
-/// Returns an error for an option that was renamed.
-fn renamed(_: &str) -> std::result::Result<f64, String> {
-    Err(
-        "it is called --budget, in the unit of --cost (microseconds per decision by default)"
-            .to_owned(),
-    )
 }
 
 pub fn advise(args: &Args) -> Result<()> {

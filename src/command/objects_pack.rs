@@ -28,9 +28,6 @@ pub struct Args {
     /// Limit the distance between spheres and surface
     #[arg(long, value_name = "MM", help_heading = "Packing")]
     surface_error_mm: f64,
-    /// Former name of --surface-error-mm
-    #[arg(long, hide = true, value_parser = renamed)]
-    tolerance_mm: Option<f64>,
     /// Write the spheres: columns x, y, z, r, metres
     #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
     out: PathBuf,
@@ -50,11 +47,6 @@ pub fn pack(args: &Args) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// Returns an error for an option that was renamed.
-pub fn renamed(_: &str) -> std::result::Result<f64, String> {
-    Err("it is called --surface-error-mm, as in press and in studies".to_owned())
 }
 
 fn describe_solid(solid: &Solid, spheres: &SphereUnion, tolerance: f64) -> String {

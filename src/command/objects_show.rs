@@ -1,6 +1,5 @@
 //! `bubbletouch objects show`: draws an object, its spheres, and the error between them in three panels.
 
-use super::objects_pack::renamed;
 use crate::command::options::unused::check_used;
 use crate::command::options::which_object::WhichObject;
 use crate::command::terminal::output::check_ending;
@@ -27,9 +26,6 @@ pub struct Args {
         help_heading = "Packing"
     )]
     surface_error_mm: f64,
-    /// Former name of --surface-error-mm
-    #[arg(long, hide = true, value_parser = renamed)]
-    tolerance_mm: Option<f64>,
     /// Show the spheres of a CSV file (columns x,y,z,r)
     #[arg(
         long,

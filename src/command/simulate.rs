@@ -39,13 +39,6 @@ pub struct Args {
 
 pub fn simulate(args: &Args) -> Result<()> {
     let mut plan = ScenePlan::read(&args.scene)?;
-    let text = std::fs::read_to_string(&args.scene).unwrap_or_default();
-    if SceneSpec::has_old_names(&text) {
-        let scene = args.scene.display();
-        note(format_args!(
-            "note: {scene}: rpy_deg is called rotation_deg now; the old name is read in this version only"
-        ));
-    }
     if let Some(until) = args.until_s {
         plan.cut("--until-s", until)?;
     }

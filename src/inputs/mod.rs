@@ -12,7 +12,6 @@ pub mod object_files;
 pub mod objects_spec;
 pub mod packings;
 pub mod range;
-pub(crate) mod renamed_keys;
 pub(crate) mod schema_types;
 pub mod sensor_errors;
 pub(crate) mod toml_value;

@@ -1,7 +1,7 @@
 //! Specification of objects: the table `[objects]` of a study or scene file.
 
 use crate::files::{FilePath, SetName};
-use crate::inputs::schema_types::{Names, with_mesh_unit};
+use crate::inputs::schema_types::Names;
 use crate::inputs::units::MM;
 use crate::mesh::{LengthUnit, SizeLimits};
 use schemars::JsonSchema;
@@ -13,7 +13,6 @@ const SURFACE_ERROR_MM: f64 = 0.25;
 /// Keys of the table `[objects]`: the objects of a study or scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(transform = with_mesh_unit)]
 pub struct ObjectsSpec {
     /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`, `hands`) or paths of TOML files relative to the study file.
     #[serde(default)]
@@ -27,7 +26,6 @@ pub struct ObjectsSpec {
     /// Model that is built from each mesh: `mesh` (default), `packed` or `vertex_spheres`.
     pub model: Option<ModelSpec>,
     /// Length unit of the mesh files. Default: metres. The size of each mesh must then be within plausible limits.
-    #[serde(alias = "mesh_unit")]
     #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
     /// Range of allowed sizes of meshes without a given unit. This is not a key of the file: the plan derives the limits from the arrays.

@@ -4,7 +4,6 @@ use bubbletouch_sim::features::{Features, ImageFeature};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::DeserializeOwned;
 use serde::de::value::StrDeserializer;
-use serde_json::{Map, Value};
 use std::any::type_name;
 use std::borrow::Cow;
 use std::fmt;
@@ -99,35 +98,5 @@ impl JsonSchema for FeatureNames {
                 { "title": "several image features joined by `+`", "type": "string", "pattern": format!(r"^\s*({one})\s*(\+\s*({one})\s*)+$") },
             ]
         })
-    }
-}
-
-/// Adds the key `rpy_deg`, the former name of `rotation_deg`, to a JSON schema.
-pub fn with_rpy_deg(schema: &mut Schema) {
-    also_named("rotation_deg", "rpy_deg", schema.ensure_object());
-}
-
-/// Adds the key `mesh_unit`, the former name of `unit`, to a JSON schema.
-pub fn with_mesh_unit(schema: &mut Schema) {
-    also_named("unit", "mesh_unit", schema.ensure_object());
-}
-
-/// Adds the key `other`, with the meaning of the key `name`, to all tables of a JSON schema that have `name`.
-fn also_named(name: &str, other: &str, schema: &mut Map<String, Value>) {
-    if let Some(keys) = schema.get_mut("properties").and_then(Value::as_object_mut)
-        && let Some(mut own) = keys.get(name).cloned()
-    {
-        own["deprecated"] = true.into();
-        own["description"] = format!("Another name of `{name}`.").into();
-        keys.insert(other.to_owned(), own);
-    }
-    for value in schema.values_mut() {
-        let inner = match value {
-            Value::Array(values) => values.iter_mut().collect(),
-            one => vec![one],
-        };
-        for table in inner.into_iter().filter_map(Value::as_object_mut) {
-            also_named(name, other, table);
-        }
     }
 }

@@ -104,21 +104,6 @@ impl SceneSpec {
         toml_text::read(place, text)
     }
 
-    /// Returns whether the text contains the key `rpy_deg`, the former name of `rotation_deg`.
-    pub fn has_old_names(text: &str) -> bool {
-        fn is_old(value: &toml::Value) -> bool {
-            match value {
-                toml::Value::Table(table) => {
-                    table.contains_key("rpy_deg") || table.values().any(is_old)
-                }
-                toml::Value::Array(values) => values.iter().any(is_old),
-                _ => false,
-            }
-        }
-        let table = toml_text::table(text);
-        table.is_some_and(|table| is_old(&table.into()))
-    }
-
     /// Returns the scene as TOML text that contains all default values.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("every field of a scene has a TOML form")

@@ -1,7 +1,7 @@
 //! Specification of poses and motions in a scene file.
 
 use crate::files::FilePath;
-use crate::inputs::schema_types::{Names, with_rpy_deg};
+use crate::inputs::schema_types::Names;
 use crate::world::Interpolation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,13 +10,12 @@ use std::collections::BTreeMap;
 /// Position and rotation of a body, such as `at = { position_mm = [0.0, 0.0, 50.0], rotation_deg = [180.0, 0.0, 0.0] }`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(transform = with_rpy_deg)]
 pub struct PoseSpec {
     /// Position of the body's origin, mm. Default: 0.
     #[serde(default)]
     pub position_mm: [f64; 3],
     /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0.
-    #[serde(default, alias = "rpy_deg")]
+    #[serde(default)]
     pub rotation_deg: [f64; 3],
 }
 
@@ -76,7 +75,6 @@ pub struct OscillationSpec {
 /// Pose at a given time (way-point), such as `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(transform = with_rpy_deg)]
 pub struct WayPointSpec {
     /// Time of the way-point since the start of the scene, s.
     pub time_s: f64,
@@ -85,7 +83,7 @@ pub struct WayPointSpec {
     pub position_mm: [f64; 3],
     /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0. If one angle changes between two way-points, the body turns by this
     /// change, also beyond 180°. If several change, the body takes the shorter way, and changes of 180° or more are refused.
-    #[serde(default, alias = "rpy_deg")]
+    #[serde(default)]
     pub rotation_deg: [f64; 3],
 }
 

@@ -3,7 +3,7 @@
 use super::numbers::Numbers;
 use crate::files::FilePath;
 use crate::inputs::objects_spec::ModelSpec;
-use crate::inputs::schema_types::{Names, with_mesh_unit};
+use crate::inputs::schema_types::Names;
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::{MotionSpec, PoseSpec};
 use schemars::JsonSchema;
@@ -13,7 +13,6 @@ use std::collections::BTreeMap;
 /// Keys of a table `[[objects]]`: an object of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(transform = with_mesh_unit)]
 pub struct ObjectSpec {
     /// Name of the object, unique in the scene.
     pub name: String,
@@ -44,7 +43,7 @@ pub struct ObjectSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelSpec>,
     /// Length unit of a mesh or of spheres. Default: metres. The size must then be between 0.1 mm and 10 m.
-    #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
     /// Maximum distance between the spheres and the surface of a solid or packed mesh, mm. Default: 0.25, or a tenth of the finest pitch for a packed mesh.

@@ -2,7 +2,7 @@
 
 use super::numbers::Numbers;
 use crate::files::FilePath;
-use crate::inputs::schema_types::{Names, with_mesh_unit};
+use crate::inputs::schema_types::Names;
 use crate::inputs::sensor_errors::{NOISES, all_strengths, noise_words, strength_words};
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::PoseSpec;
@@ -117,7 +117,6 @@ fn scene_steps() -> impl Iterator<Item = (&'static str, String)> {
 /// Layout of the taxels, such as `layout = { grid = { nx = 64, ny = 64, pitch_mm = 2.0 } }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-#[schemars(transform = with_mesh_unit)]
 pub enum LayoutSpec {
     /// Grid of nx × ny taxels in square cells.
     Grid {
@@ -184,7 +183,7 @@ pub enum LayoutSpec {
         #[schemars(with = "Option<String>")]
         mesh: Option<FilePath>,
         /// Length unit of the mesh file. Default: metres. The size must then be between 0.1 mm and 10 m.
-        #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<Names<LengthUnit>>")]
         unit: Option<LengthUnit>,
         /// Shapes of the patch's own link that form the surface, instead of a mesh file: `collision` or `visual`. The shapes include meshes of the robot's file.

@@ -179,50 +179,6 @@ fn one_thread_is_not_called_threads() {
 }
 
 #[test]
-fn an_option_that_has_another_name_now_says_which() {
-    let case = Case::new();
-    for (arguments, name) in [
-        (
-            &[
-                "objects",
-                "pack",
-                "mug",
-                "--tolerance-mm",
-                "1",
-                "--out",
-                "x.csv",
-            ][..],
-            "--surface-error-mm",
-        ),
-        (
-            &[
-                "objects",
-                "show",
-                "mug",
-                "--tolerance-mm",
-                "1",
-                "--out",
-                "x.png",
-            ],
-            "--surface-error-mm",
-        ),
-        (&["advise", "results", "--budget-us", "50"], "--budget"),
-    ] {
-        let output = case.run(arguments);
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(error.contains(&format!("it is called {name}")), "{error}");
-        let (help, _) = case.succeeds(&[arguments[0], "--help"]);
-        assert!(
-            !help.contains("tolerance-mm") && !help.contains("budget-us"),
-            "{help}"
-        );
-    }
-    let (help, _) = case.succeeds(&["objects", "--help"]);
-    assert!(help.contains("hands"), "{help}");
-}
-
-#[test]
 fn without_a_subcommand_the_quickstart_is_what_would_run() {
     // The study takes half a minute, so it is only planned here, in a folder without experiments.
     let case = Case::new();

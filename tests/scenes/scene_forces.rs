@@ -684,7 +684,7 @@ fn forces_of_a_frame_sum_to_the_wrench_on_every_layout_for_every_kind_of_object(
         }
         let friction = ["", "friction = 0.5\ndamping_n_s_per_m = 1.0\n"][number % 2];
         let turn = match bottom == 40.0 {
-            true => "rpy_deg = [0.0, -90.0, 0.0]",
+            true => "rotation_deg = [0.0, -90.0, 0.0]",
             false => "",
         };
         let text = format!(

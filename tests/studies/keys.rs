@@ -7,9 +7,6 @@ use bubbletouch::table::Role;
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// Second name of a key.
-const ALIAS: &str = "objects.mesh_unit";
-
 /// Collects the keys of a table and its subtables. A key with a description is not searched for further keys.
 fn collect(table: &Value, path: &str, described: &BTreeSet<&str>, found: &mut BTreeSet<String>) {
     for (name, inner) in table["properties"].as_object().into_iter().flatten() {
@@ -17,9 +14,6 @@ fn collect(table: &Value, path: &str, described: &BTreeSet<&str>, found: &mut BT
             "" => name.clone(),
             path => format!("{path}.{name}"),
         };
-        if path == ALIAS {
-            continue;
-        }
         let n_before = found.len();
         match described.contains(&path[..]) {
             true => drop(found.insert(path.clone())),

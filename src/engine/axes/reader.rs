@@ -5,7 +5,6 @@ use super::study_axis::StudyAxis;
 use super::toml_path::{find, insert, table_at};
 use crate::error::{Error, Result};
 use crate::inputs::keys::{AxisPlace, KeyAbout};
-use crate::inputs::renamed_keys::check_renamed;
 use crate::toml_lines::line_of;
 use crate::toml_text::{check_brackets, check_numbers};
 use serde::de::DeserializeOwned;
@@ -28,7 +27,6 @@ pub fn read<S: DeserializeOwned>(
     check_numbers(place, text)?;
     let said = |error| Error::toml(place, text, &error);
     let mut table = DeTable::parse(text).map_err(said)?;
-    check_renamed(place, text, table.get_ref())?;
     let mut found = Vec::new();
     if let Some((name, given)) = table.get_mut().remove_entry("axes") {
         let line = line_of(text, name.span().start);

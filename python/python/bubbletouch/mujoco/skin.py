@@ -173,7 +173,7 @@ class Skin:
         """
         if not self.fits(data.model):
             raise ValueError("data: of a model with other surfaces than the skin; a new Skin for each model")
-        if not data.xmat.any():
+        if not data.xmat[0, 0]:
             raise ValueError("data: no poses yet; call mujoco.mj_forward(model, data) or mj_step first")
         patch_poses = self._frames.poses(data)
         body_poses = (data.geom_xpos[self._geoms], data.geom_xmat[self._geoms])

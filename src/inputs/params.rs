@@ -1,0 +1,575 @@
+//! Declarations of the keys of files: one declaration for each key.
+//!
+//! [`params!`](params) declares a table: for each key its meaning, type, default, range, role and place among the axes. The struct, its reader, the checks, the
+//! columns, the JSON Schema and the reference page follow from the declaration. [`words!`](words) declares an enum by its words, and [`variants!`](variants) a
+//! value that has several forms.
+
+use crate::engine::axis::Axis;
+use crate::files::{FilePath, SetName};
+use crate::inputs::keys::KeyAbout;
+use crate::inputs::range::Range;
+use serde::de::value::StrDeserializer;
+use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer, MapAccess};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Type of the value of a key.
+pub trait Described: Sized {
+    /// Returns the JSON Schema of the values.
+    fn schema() -> Value;
+
+    /// Returns the value of a key without default that is not given; `None` if such a key is required.
+    fn absent() -> Option<Self> {
+        None
+    }
+
+    /// Adds the descriptions of the keys of a table, given its path; nothing for other values.
+    fn keys(_path: &str, _keys: &mut Vec<KeyAbout>) {}
+
+    /// Returns the keys that the value takes from the table around it; empty for the value of a key.
+    fn inner_names() -> Vec<&'static str> {
+        Vec::new()
+    }
+
+    /// Reads one of the keys that the value takes from the table around it.
+    ///
+    /// # Errors
+    /// If the value of the key has another type.
+    fn read_inner<'de, M: MapAccess<'de>>(
+        _slot: &mut Option<Self>,
+        _name: &'static str,
+        map: &mut M,
+    ) -> Result<(), M::Error> {
+        map.next_value()
+    }
+}
+
+/// Declares a table of keys. Each line has the meaning, the name and the type of a key, its default, and behind `=>` its range, its role in result tables, the
+/// place at which it may have a list of values, and other fields of [`KeyAbout`]. A table inside the table has no `=>`. A key without a default is required,
+/// unless its type is an `Option`. The part `unread` lists fields that the file does not set.
+macro_rules! params {
+    (
+        $(#[doc = $about:literal])+
+        $(#[derive($($derive:ident),*)])?
+        pub struct $name:ident {
+            $(
+                $(#[doc = $doc:literal])+
+                $(#[serde($($serde:tt)*)])?
+                $key:ident: $type:ty $(= $default:expr)? $(=> $range:expr $(, $role:ident, $place:ident $(, $field:ident: $value:expr)*)?)?;
+            )*
+        }
+        $(unread { $($(#[doc = $unread_doc:literal])+ $unread:ident: $unread_type:ty;)* })?
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Debug, PartialEq, serde::Serialize $($(, $derive)*)?)]
+        pub struct $name {
+            $($(#[doc = $doc])+ $(#[serde($($serde)*)])? pub $key: $type,)*
+            $($($(#[doc = $unread_doc])+ #[serde(skip)] pub $unread: $unread_type,)*)?
+        }
+
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+                use $crate::inputs::params::{Described, KeyName, required};
+                struct Keys;
+                impl<'de> serde::de::Visitor<'de> for Keys {
+                    type Value = $name;
+                    fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                        f.write_str(concat!("struct ", stringify!($name)))
+                    }
+                    fn visit_map<M: serde::de::MapAccess<'de>>(self, mut map: M) -> std::result::Result<$name, M::Error> {
+                        $(let mut $key: Option<$type> = None;)*
+                        let names = $name::names();
+                        while let Some(name) = map.next_key_seed(KeyName(&names))? {
+                            $(
+                                if <$type>::inner_names().contains(&name) {
+                                    <$type>::read_inner(&mut $key, name, &mut map)?;
+                                    continue;
+                                }
+                                if name == stringify!($key) {
+                                    $key = Some(map.next_value()?);
+                                    continue;
+                                }
+                            )*
+                        }
+                        Ok($name {
+                            $($key: match $key {
+                                Some(value) => value,
+                                None => required(stringify!($key), params!(@default $type $(, $default)?))?,
+                            },)*
+                            $($($unread: Default::default(),)*)?
+                        })
+                    }
+                }
+                deserializer.deserialize_map(Keys)
+            }
+        }
+
+        impl $name {
+            /// Returns the names of all keys of the table, in the order of their declaration.
+            fn names() -> Vec<&'static str> {
+                use $crate::inputs::params::{Described, own_or_inner};
+                [$(own_or_inner(stringify!($key), <$type>::inner_names())),*].concat()
+            }
+        }
+
+        impl $crate::inputs::params::Described for $name {
+            fn schema() -> serde_json::Value {
+                use $crate::inputs::params::{Described, TableSchema};
+                let mut table = TableSchema::new(&[$($about),+]);
+                $(table.add::<$type>(
+                    stringify!($key),
+                    &[$($doc),+],
+                    params!(@range $($range)?),
+                    params!(@default $type $(, $default)?),
+                );)*
+                table.schema()
+            }
+
+            fn keys(path: &str, keys: &mut Vec<$crate::inputs::keys::KeyAbout>) {
+                use $crate::inputs::params::Described;
+                $(params!(@about $type, path, stringify!($key), keys $(, $range $(, $role, $place $(, $field: $value)*)?)?);)*
+            }
+        }
+    };
+    (@default $type:ty) => { <$type as $crate::inputs::params::Described>::absent() };
+    (@default $type:ty, $default:expr) => { Some::<$type>($default) };
+    (@range) => { None };
+    (@range $range:expr) => { Some($range) };
+    (@about $type:ty, $path:ident, $name:expr, $keys:ident) => {
+        <$type>::keys(&$crate::inputs::params::joined($path, $name), $keys);
+    };
+    (@about $type:ty, $path:ident, $name:expr, $keys:ident, $range:expr) => {};
+    (@about $type:ty, $path:ident, $name:expr, $keys:ident, $range:expr, $role:ident, $place:ident $(, $field:ident: $value:expr)*) => {
+        $keys.push($crate::inputs::keys::KeyAbout {
+            $($field: Some($value),)*
+            ..$crate::inputs::keys::KeyAbout::new(
+                $crate::inputs::params::joined($path, $name).leak(),
+                $crate::inputs::keys::AxisPlace::$place,
+                $crate::table::Role::$role,
+                $range,
+            )
+        });
+    };
+}
+pub(crate) use params;
+
+/// Declares an enum whose values are words: each variant with its meaning and its word.
+macro_rules! words {
+    (
+        $(#[doc = $about:literal])+
+        pub enum $name:ident $(= $default:ident)? {
+            $($(#[doc = $doc:literal])+ $variant:ident = $word:literal),* $(,)?
+        }
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+        pub enum $name {
+            $($(#[doc = $doc])+ #[serde(rename = $word)] $variant,)*
+        }
+
+        $(impl Default for $name {
+            fn default() -> Self {
+                Self::$default
+            }
+        })?
+
+        impl $crate::inputs::params::Described for $name {
+            fn schema() -> serde_json::Value {
+                use $crate::inputs::params::{described, meaning};
+                let words = [$(($word, meaning(&[$($doc),+]))),*];
+                let words = words.map(|(word, meaning)| serde_json::json!({ "type": "string", "const": word, "description": meaning }));
+                described(serde_json::json!({ "oneOf": words }), &[$($about),+])
+            }
+        }
+    };
+}
+pub(crate) use words;
+
+/// Declares a value that has one of several forms: tables with a single key each, or, if `untagged`, values of different types.
+macro_rules! variants {
+    (
+        $(#[doc = $about:literal])+
+        pub enum $name:ident {
+            $($(#[doc = $doc:literal])+ $variant:ident = $word:literal ($type:ty)),* $(,)?
+        }
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub enum $name {
+            $($(#[doc = $doc])+ #[serde(rename = $word)] $variant($type),)*
+        }
+
+        impl $crate::inputs::params::Described for $name {
+            fn schema() -> serde_json::Value {
+                use $crate::inputs::params::{Described, described};
+                let forms = [$(described(
+                    serde_json::json!({
+                        "type": "object",
+                        "properties": { $word: <$type>::schema() },
+                        "required": [$word],
+                        "additionalProperties": false,
+                    }),
+                    &[$($doc),+],
+                )),*];
+                described(serde_json::json!({ "oneOf": forms }), &[$($about),+])
+            }
+        }
+    };
+    (
+        $(#[doc = $about:literal])+
+        $(#[serde(expecting = $expecting:literal)])?
+        pub untagged enum $name:ident $(titled $title:literal)? $(, $derive:ident)* {
+            $($(#[doc = $doc:literal])+ $variant:ident($type:ty)),* $(,)?
+        }
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Debug, PartialEq, serde::Serialize $(, serde::$derive)*)]
+        #[serde(untagged $(, expecting = $expecting)?)]
+        pub enum $name {
+            $($(#[doc = $doc])+ $variant($type),)*
+        }
+
+        impl $crate::inputs::params::Described for $name {
+            fn schema() -> serde_json::Value {
+                use $crate::inputs::params::{Described, described};
+                let forms = [$(described(<$type>::schema(), &[$($doc),+])),*];
+                let mut schema = described(serde_json::json!({ "anyOf": forms }), &[$($about),+]);
+                $(schema["title"] = $title.into();)?
+                schema
+            }
+        }
+    };
+}
+pub(crate) use variants;
+
+/// Implements [`Described`] for enums of the other crates, whose values are words.
+macro_rules! named {
+    ($($type:ty),* $(,)?) => {
+        $(impl $crate::inputs::params::Described for $type {
+            fn schema() -> serde_json::Value {
+                serde_json::json!({ "type": "string", "enum": $crate::inputs::params::names::<Self>() })
+            }
+        })*
+    };
+}
+pub(crate) use named;
+
+/// Returns the path of a key, given the path of its table.
+pub(crate) fn joined(path: &str, name: &str) -> String {
+    match path {
+        "" => name.to_owned(),
+        path => format!("{path}.{name}"),
+    }
+}
+
+/// Returns the names that a key adds to its table: those that its value takes from the table, or its own.
+pub(crate) fn own_or_inner(name: &'static str, inner: Vec<&'static str>) -> Vec<&'static str> {
+    match inner.is_empty() {
+        true => vec![name],
+        false => inner,
+    }
+}
+
+/// Returns the value of a key that is not given.
+///
+/// # Errors
+/// If the key is required.
+pub(crate) fn required<T, E: serde::de::Error>(
+    name: &'static str,
+    absent: Option<T>,
+) -> Result<T, E> {
+    absent.ok_or_else(|| E::missing_field(name))
+}
+
+/// Returns the table without a given key.
+///
+/// # Panics
+/// If a key of the table is required.
+pub(crate) fn empty_table<T: DeserializeOwned>() -> T {
+    let empty = toml::Table::new();
+    empty.try_into().expect("all keys have defaults")
+}
+
+/// Returns the descriptions of all keys of a file.
+pub(crate) fn keys_of<T: Described>() -> Vec<KeyAbout> {
+    let mut keys = Vec::new();
+    T::keys("", &mut keys);
+    keys
+}
+
+/// Reads the name of a key, one of the given names.
+pub(crate) struct KeyName<'n>(pub &'n [&'static str]);
+
+impl<'de> DeserializeSeed<'de> for KeyName<'_> {
+    type Value = &'static str;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<&'static str, D::Error> {
+        let given = String::deserialize(deserializer)?;
+        let found = self.0.iter().copied().find(|name| *name == given);
+        found.ok_or_else(|| serde::de::Error::custom(unknown("field", &given, self.0)))
+    }
+}
+
+/// Returns the message of an unknown key or word, as serde words it.
+pub(crate) fn unknown(what: &str, given: &str, known: &[&str]) -> String {
+    let known: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+    let expected = match &known[..] {
+        [] => return format!("unknown {what} `{given}`, there are no {what}s"),
+        [one] => one.clone(),
+        [one, other] => format!("{one} or {other}"),
+        all => format!("one of {}", all.join(", ")),
+    };
+    format!("unknown {what} `{given}`, expected {expected}")
+}
+
+/// Returns the names of all variants of an enum type. The enum's deserialiser lists them in the error for an unknown name.
+pub(crate) fn names<T: DeserializeOwned>() -> &'static [&'static str] {
+    /// Error that contains the list of accepted names.
+    #[derive(Debug)]
+    struct Expected(&'static [&'static str]);
+    impl fmt::Display for Expected {
+        fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            write!(f, "one of {}", self.0.join(", "))
+        }
+    }
+    impl std::error::Error for Expected {}
+    impl serde::de::Error for Expected {
+        fn custom<T: fmt::Display>(_: T) -> Self {
+            Self(&[])
+        }
+        fn unknown_variant(_: &str, expected: &'static [&'static str]) -> Self {
+            Self(expected)
+        }
+    }
+    let found = T::deserialize(StrDeserializer::<Expected>::new("?"));
+    found.err().map_or(&[], |Expected(names)| names)
+}
+
+/// Converts the lines of a doc comment to plain text: one line per paragraph, without links to items of the library.
+pub(crate) fn meaning(lines: &[&str]) -> String {
+    let paragraphs = lines.split(|line| line.trim().is_empty());
+    let paragraphs = paragraphs.map(|lines| {
+        let lines: Vec<&str> = lines.iter().map(|line| line.trim()).collect();
+        lines.join(" ")
+    });
+    plain(&paragraphs.collect::<Vec<_>>().join("\n\n"))
+}
+
+/// Adds the text of a doc comment to a schema.
+pub(crate) fn described(mut schema: Value, lines: &[&str]) -> Value {
+    schema["description"] = meaning(lines).into();
+    schema
+}
+
+/// JSON Schema of a table, to which keys are added.
+pub(crate) struct TableSchema {
+    about: String,
+    keys: Map<String, Value>,
+    required: Vec<&'static str>,
+}
+
+impl TableSchema {
+    pub fn new(about: &[&str]) -> Self {
+        Self {
+            about: meaning(about),
+            keys: Map::new(),
+            required: Vec::new(),
+        }
+    }
+
+    /// Adds a key: its name, doc comment, range, and the value that it has if it is not given.
+    pub fn add<T: Described + Serialize>(
+        &mut self,
+        name: &'static str,
+        lines: &[&str],
+        range: Option<Range>,
+        absent: Option<T>,
+    ) {
+        let mut schema = T::schema();
+        if !T::inner_names().is_empty() {
+            let inner = schema["properties"].take();
+            self.keys.extend(inner.as_object().cloned().unwrap_or_default());
+            return;
+        }
+        if let Some(range) = range {
+            bound(&mut schema, &range.keywords());
+        }
+        schema = described(schema, lines);
+        match absent {
+            None => self.required.push(name),
+            Some(value) => {
+                let value = without_nulls(json!(value));
+                if !value.is_null() {
+                    schema["default"] = value;
+                }
+            }
+        }
+        self.keys.insert(name.to_owned(), schema);
+    }
+
+    pub fn schema(self) -> Value {
+        let mut schema = json!({
+            "type": "object",
+            "description": self.about,
+            "properties": self.keys,
+            "additionalProperties": false,
+        });
+        if !self.required.is_empty() {
+            schema["required"] = json!(self.required);
+        }
+        schema
+    }
+}
+
+/// Returns a value without the keys that are absent: TOML has no null.
+fn without_nulls(value: Value) -> Value {
+    match value {
+        Value::Object(keys) => {
+            let given = keys.into_iter().filter(|(_, value)| !value.is_null());
+            Value::Object(given.map(|(key, value)| (key, without_nulls(value))).collect())
+        }
+        other => other,
+    }
+}
+
+/// Adds the bounds of the allowed numbers to the schema of a key: to single numbers, and to the numbers of lists.
+fn bound(schema: &mut Value, bounds: &Map<String, Value>) {
+    match schema["type"].as_str() {
+        Some("number" | "integer") => {
+            if let Some(keywords) = schema.as_object_mut() {
+                keywords.extend(bounds.clone());
+            }
+        }
+        Some("array") if schema.get("items").is_some() => bound(&mut schema["items"], bounds),
+        _ => {
+            let choices = schema.get_mut("anyOf").and_then(Value::as_array_mut);
+            for choice in choices.into_iter().flatten() {
+                bound(choice, bounds);
+            }
+        }
+    }
+}
+
+/// Implements [`Described`] for types with a fixed schema.
+macro_rules! simple {
+    ($($type:ty: $schema:tt;)*) => {
+        $(impl Described for $type {
+            fn schema() -> Value {
+                json!($schema)
+            }
+        })*
+    };
+}
+
+simple! {
+    f64: { "type": "number" };
+    usize: { "type": "integer", "minimum": 0 };
+    u64: { "type": "integer", "minimum": 0 };
+    bool: { "type": "boolean" };
+    String: { "type": "string" };
+    PathBuf: { "type": "string" };
+    FilePath: { "type": "string" };
+    SetName: { "type": "string" };
+    toml::Table: { "type": "object", "additionalProperties": true };
+}
+
+impl<T: Described> Described for Option<T> {
+    fn schema() -> Value {
+        T::schema()
+    }
+
+    fn absent() -> Option<Self> {
+        Some(None)
+    }
+
+    fn keys(path: &str, keys: &mut Vec<KeyAbout>) {
+        T::keys(path, keys);
+    }
+}
+
+impl<T: Described> Described for Box<T> {
+    fn schema() -> Value {
+        T::schema()
+    }
+}
+
+impl<T: Described> Described for Vec<T> {
+    fn schema() -> Value {
+        json!({ "type": "array", "items": T::schema() })
+    }
+
+    fn keys(path: &str, keys: &mut Vec<KeyAbout>) {
+        T::keys(path, keys);
+    }
+}
+
+impl<T: Described, const N: usize> Described for [T; N] {
+    fn schema() -> Value {
+        json!({ "type": "array", "items": T::schema(), "minItems": N, "maxItems": N })
+    }
+}
+
+impl<A: Described, B: Described> Described for (A, B) {
+    fn schema() -> Value {
+        json!({ "type": "array", "prefixItems": [A::schema(), B::schema()], "minItems": 2, "maxItems": 2 })
+    }
+}
+
+impl<A: Described, B: Described, C: Described> Described for (A, B, C) {
+    fn schema() -> Value {
+        json!({ "type": "array", "prefixItems": [A::schema(), B::schema(), C::schema()], "minItems": 3, "maxItems": 3 })
+    }
+}
+
+impl<T: Described> Described for BTreeMap<String, T> {
+    fn schema() -> Value {
+        json!({ "type": "object", "additionalProperties": T::schema() })
+    }
+}
+
+impl<T: Described> Described for Axis<T> {
+    fn schema() -> Value {
+        let one = T::schema();
+        json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1, "uniqueItems": true }] })
+    }
+}
+
+/// Returns a text without links to items of the library.
+fn plain(words: &str) -> String {
+    let mut rest = words;
+    let mut plain = String::new();
+    while let Some(start) = rest.find('[') {
+        let (before, link) = rest.split_at(start);
+        plain.push_str(before);
+        let is_escaped = before.ends_with('\\');
+        match link_of(link).filter(|_| !is_escaped) {
+            Some((words, after)) => {
+                plain.push_str(words);
+                rest = after;
+            }
+            None => {
+                plain.push('[');
+                rest = &link[1..];
+            }
+        }
+    }
+    plain.push_str(rest);
+    plain.replace("\\[", "[").replace("\\]", "]")
+}
+
+/// Splits a text that begins with a documentation link into the words of the link and the rest of the text. A link is [`Type`] or [words](path).
+fn link_of(text: &str) -> Option<(&str, &str)> {
+    let end = text.find(']')?;
+    let (words, after) = (&text[1..end], &text[end + 1..]);
+    if let Some(target) = after.strip_prefix('(') {
+        let (target, after) = target.split_once(')')?;
+        return (!target.starts_with("http")).then_some((words, after));
+    }
+    let is_item = words.starts_with('`') && words.ends_with('`') && words.len() > 2;
+    // `[signal]` in back quotes is the name of a TOML table.
+    is_item.then_some((words, after))
+}
+
