@@ -1,4 +1,4 @@
-//! Macros that implement reading for types of study files.
+//! Macros that declare types of study files.
 
 /// Implements `parse` for a type that is read from the text of a TOML file.
 macro_rules! toml_file {
@@ -16,22 +16,20 @@ macro_rules! toml_file {
 }
 pub(crate) use toml_file;
 
-/// Defines the type of a study file, with the keys that all study files share and the keys of a kind.
+/// Declares the keys of a study file: those that all study files share, and those of a kind.
 macro_rules! study_file {
-    (pub struct $study:ident { $($(#[$of_field:meta])* pub $field:ident: $type:ty,)* }) => {
-        /// Contents of a study file.
-        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-        #[serde(deny_unknown_fields)]
-        pub struct $study {
-            /// Question that the study answers, in one sentence.
-            pub question: String,
-            /// Answer that the author expected before the first run. Default: empty.
-            #[serde(default)]
-            pub expected: String,
-            /// Seed of all random numbers. Default: 2018.
-            #[serde(default = "crate::studies::recognition::spec::study::default_seed")]
-            pub seed: u64,
-            $($(#[$of_field])* pub $field: $type,)*
+    (pub struct $study:ident { $($of_kind:tt)* }) => {
+        $crate::inputs::params::params! {
+            /// Contents of a study file.
+            pub struct $study {
+                /// Question that the study answers, in one sentence.
+                question: String => $crate::inputs::range::Range::Unchecked, Note, Never;
+                /// Answer that the author expected before the first run. Default: empty.
+                expected: String = String::new() => $crate::inputs::range::Range::Unchecked, Note, Never;
+                /// Seed of all random numbers. Default: 2018.
+                seed: u64 = $crate::studies::recognition::spec::study::DEFAULT_SEED => $crate::inputs::range::Range::Unchecked, Subject, Never;
+                $($of_kind)*
+            }
         }
 
         $crate::study_file::toml_file!($study);

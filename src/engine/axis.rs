@@ -1,10 +1,8 @@
 //! Axis of a sweep in a study file: one value or a list of values.
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{self, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
-use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -42,21 +40,6 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Axis<T> {
     }
 }
 
-impl<T: JsonSchema> JsonSchema for Axis<T> {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        format!("Axis_of_{}", T::schema_name()).into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let one = generator.subschema_for::<T>();
-        json_schema!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1, "uniqueItems": true }] })
-    }
-}
-
 struct AxisVisitor<T>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisVisitor<T> {
@@ -85,9 +68,4 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisVisitor<T> {
     fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> std::result::Result<Axis<T>, A::Error> {
         Vec::deserialize(SeqAccessDeserializer::new(values)).map(Axis::Many)
     }
-}
-
-/// Returns an axis that has the single value 1; used as the default of keys that a study can sweep.
-pub(crate) fn one_value() -> Axis<usize> {
-    Axis::One(1)
 }

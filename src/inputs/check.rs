@@ -78,7 +78,7 @@ impl Check<'_> {
         &self,
         key: &str,
         value: f64,
-        is_allowed: fn(f64) -> bool,
+        is_allowed: impl Fn(f64) -> bool,
         allowed: &str,
     ) -> Result<f64> {
         if is_allowed(value) {

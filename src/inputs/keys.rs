@@ -1,6 +1,4 @@
-//! Descriptions of the keys of study files: range, axis, role, title, unit and scale of each key, in one line.
-//!
-//! Types, defaults and texts of the keys are in the structs that read them (`spec.rs`, `spec/`).
+//! Descriptions of the keys of study files: range, axis, role, title, unit and scale of each key, from its declaration ([`params!`](super::params)).
 
 use crate::inputs::range::Range;
 use crate::inputs::toml_value::is_at;
@@ -68,24 +66,6 @@ const UNITS: [(&str, &str); 18] = [
     ("_s", "s"),
     ("_g", "g"),
 ];
-
-/// Declares a list of keys of a study file. Each line contains a path, the place of a list, the role, the range, and other fields of [`KeyAbout`] that differ
-/// from the default.
-macro_rules! keys {
-    ($($path:literal: $axis:ident, $role:ident, $range:expr $(, $field:ident: $value:expr)*;)*) => {
-        &[$($crate::inputs::keys::KeyAbout {
-            $($field: Some($value),)*
-            ..$crate::inputs::keys::KeyAbout::new(
-                $path,
-                $crate::inputs::keys::AxisPlace::$axis,
-                $crate::table::Role::$role,
-                $range,
-            )
-        }),*]
-    };
-}
-
-pub(crate) use keys;
 
 impl KeyAbout {
     /// Creates the description of a key whose title and unit follow from its name.
@@ -167,13 +147,19 @@ mod tests {
 
     #[test]
     fn title_and_unit_come_from_the_name_unless_they_are_given() {
-        const KEYS: &[KeyAbout] = keys! {
-            "skin.damping_n_s_per_m": Axes, Choice, Range::NotNegative;
-            "touches.per_object": Axes, Choice, Range::AtLeastOne;
-            "a.m": Axes, Choice, Range::Any;
-            "a.noise_mm": Axes, Condition, Range::Any, title: "noise", unit: "%", scale: Scale::Share;
-        };
-        let shown = KEYS.iter().map(|key| (key.title(), key.unit()));
+        let key = |path| KeyAbout::new(path, AxisPlace::Axes, Role::Choice, Range::Any);
+        let keys = [
+            key("skin.damping_n_s_per_m"),
+            key("touches.per_object"),
+            key("a.m"),
+            KeyAbout {
+                title: Some("noise"),
+                unit: Some("%"),
+                scale: Some(Scale::Share),
+                ..key("a.noise_mm")
+            },
+        ];
+        let shown = keys.iter().map(|key| (key.title(), key.unit()));
         let expected = [
             ("damping", "N·s/m"),
             ("touches per object", ""),
@@ -182,16 +168,14 @@ mod tests {
         ];
         let expected = expected.map(|(title, unit)| (title.to_owned(), unit));
         assert_eq!(shown.collect::<Vec<_>>(), expected);
-        assert_eq!(KEYS[3].column("n").scale, Scale::Share);
+        assert_eq!(keys[3].column("n").scale, Scale::Share);
     }
 
     #[test]
     fn a_key_below_a_described_key_has_its_description() {
-        const KEYS: &[KeyAbout] = keys! {
-            "a.b": Axes, Choice, Range::Any;
-            "a.b_mm": Axes, Choice, Range::Any;
-        };
-        let path = |path: &str| find(KEYS, path).map(|key| key.path);
+        let keys = ["a.b", "a.b_mm"];
+        let keys = keys.map(|path| KeyAbout::new(path, AxisPlace::Axes, Role::Choice, Range::Any));
+        let path = |path: &str| find(&keys, path).map(|key| key.path);
         assert_eq!(path("a.b"), Some("a.b"));
         assert_eq!(path("a.b_mm.within"), Some("a.b_mm"));
         assert_eq!((path("a"), path("a.bc")), (None, None));

@@ -1,59 +1,57 @@
 //! Specification of objects: the table `[objects]` of a study or scene file.
 
 use crate::files::{FilePath, SetName};
-use crate::inputs::schema_types::Names;
+use crate::inputs::params::{named, params, words};
+use crate::inputs::range::Range::{Any, Positive, Unchecked};
+use crate::inputs::range::SURFACE_ERROR;
 use crate::inputs::units::MM;
 use crate::mesh::{LengthUnit, SizeLimits};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+
+named!(LengthUnit);
 
 /// Default maximum distance between the surface of a solid and the spheres that represent it, mm.
 const SURFACE_ERROR_MM: f64 = 0.25;
 
-/// Keys of the table `[objects]`: the objects of a study or scene.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ObjectsSpec {
-    /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`, `hands`) or paths of TOML files relative to the study file.
-    #[serde(default)]
-    #[schemars(with = "Vec<String>")]
-    pub sets: Vec<SetName>,
-    /// Names of the objects that are selected from the sets and meshes. Default: all objects.
-    pub names: Option<Vec<String>>,
-    /// Folder of PLY, OBJ, STL, Collada or glTF meshes with one object per file, relative to the study file.
-    #[schemars(with = "Option<String>")]
-    pub meshes: Option<FilePath>,
-    /// Model that is built from each mesh: `mesh` (default), `packed` or `vertex_spheres`.
-    pub model: Option<ModelSpec>,
-    /// Length unit of the mesh files. Default: metres. The size of each mesh must then be within plausible limits.
-    #[schemars(with = "Option<Names<LengthUnit>>")]
-    pub unit: Option<LengthUnit>,
-    /// Range of allowed sizes of meshes without a given unit. This is not a key of the file: the plan derives the limits from the arrays.
-    #[serde(skip)]
-    pub sizes: Option<SizeLimits>,
-    /// Pitch of the finest array, metres. This is not a key of the file. If vertex spheres are farther than half a pitch from their mesh, a note is printed on
-    /// standard error.
-    #[serde(skip)]
-    pub pitch: Option<f64>,
-    /// Maximum distance between the surface of a solid or packed mesh and its spheres, mm, at least 1e-6. Spheres extend at most half of this distance beyond
-    /// the surface, so the mean heights are equal. Default: 0.25, or a tenth of the finest pitch with `model = "packed"`, which gives a mean deflection error
-    /// of about 2 % of the pitch.
-    pub surface_error_mm: Option<f64>,
-    /// Maximum width of holes that are closed before a mesh is packed or used, mm. Default: no holes are closed.
-    pub close_holes_mm: Option<f64>,
+params! {
+    /// Keys of the table `[objects]`: the objects of a study or scene.
+    #[derive(Default)]
+    pub struct ObjectsSpec {
+        /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`, `hands`) or paths of TOML files relative to the study file.
+        sets: Vec<SetName> = Vec::new() => Unchecked, Condition, Axes;
+        /// Names of the objects that are selected from the sets and meshes. Default: all objects.
+        names: Option<Vec<String>> => Any, Condition, Axes;
+        /// Folder of PLY, OBJ, STL, Collada or glTF meshes with one object per file, relative to the study file.
+        meshes: Option<FilePath> => Unchecked, Condition, Axes;
+        /// Model that is built from each mesh: `mesh` (default), `packed` or `vertex_spheres`.
+        model: Option<ModelSpec> => Any, Condition, Axes;
+        /// Length unit of the mesh files. Default: metres. The size of each mesh must then be within plausible limits.
+        unit: Option<LengthUnit> => Any, Condition, Axes;
+        /// Maximum distance between the surface of a solid or packed mesh and its spheres, mm, at least 1e-6. Spheres extend at most half of this distance beyond
+        /// the surface, so the mean heights are equal. Default: 0.25, or a tenth of the finest pitch with `model = "packed"`, which gives a mean deflection error
+        /// of about 2 % of the pitch.
+        surface_error_mm: Option<f64> => SURFACE_ERROR, Condition, Axes;
+        /// Maximum width of holes that are closed before a mesh is packed or used, mm. Default: no holes are closed.
+        close_holes_mm: Option<f64> => Positive, Condition, Axes;
+    }
+    unread {
+        /// Range of allowed sizes of meshes without a given unit. This is not a key of the file: the plan derives the limits from the arrays.
+        sizes: Option<SizeLimits>;
+        /// Pitch of the finest array, metres. This is not a key of the file. If vertex spheres are farther than half a pitch from their mesh, a note is printed on
+        /// standard error.
+        pitch: Option<f64>;
+    }
 }
 
-/// Contact model that is built from a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ModelSpec {
-    /// One sphere around each vertex, as in the published protocol \[BT\].
-    VertexSpheres,
-    /// Triangle mesh, for which contacts are computed exactly.
-    #[default]
-    Mesh,
-    /// Few spheres whose distance from the mesh is at most `surface_error_mm`; the mesh must be closed.
-    Packed,
+words! {
+    /// Contact model that is built from a mesh.
+    pub enum ModelSpec = Mesh {
+        /// One sphere around each vertex, as in the published protocol \[BT\].
+        VertexSpheres = "vertex_spheres",
+        /// Triangle mesh, for which contacts are computed exactly.
+        Mesh = "mesh",
+        /// Few spheres whose distance from the mesh is at most `surface_error_mm`; the mesh must be closed.
+        Packed = "packed",
+    }
 }
 
 impl ModelSpec {

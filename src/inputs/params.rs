@@ -5,19 +5,32 @@
 //! value that has several forms.
 
 use crate::engine::axis::Axis;
+use crate::files::file_path;
 use crate::files::{FilePath, SetName};
+use crate::inputs::doc_comment::plain;
 use crate::inputs::keys::KeyAbout;
 use crate::inputs::range::Range;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer, MapAccess};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
+use std::any::TypeId;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::marker::PhantomData;
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 
 /// Type of the value of a key.
-pub trait Described: Sized {
+pub trait Described: DeserializeOwned + 'static {
+    /// Reads a value.
+    ///
+    /// # Errors
+    /// If the value has another type.
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::deserialize(deserializer)
+    }
+
     /// Returns the JSON Schema of the values.
     fn schema() -> Value;
 
@@ -27,7 +40,7 @@ pub trait Described: Sized {
     }
 
     /// Adds the descriptions of the keys of a table, given its path; nothing for other values.
-    fn keys(_path: &str, _keys: &mut Vec<KeyAbout>) {}
+    fn describe_keys(_path: &str, _keys: &mut Vec<KeyAbout>) {}
 
     /// Returns the keys that the value takes from the table around it; empty for the value of a key.
     fn inner_names() -> Vec<&'static str> {
@@ -44,6 +57,23 @@ pub trait Described: Sized {
         map: &mut M,
     ) -> Result<(), M::Error> {
         map.next_value()
+    }
+}
+
+/// Reads the value of a key by [`Described::read`].
+pub(crate) struct ValueOf<T>(PhantomData<T>);
+
+impl<T> Default for ValueOf<T> {
+    fn default() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<'de, T: Described> DeserializeSeed<'de> for ValueOf<T> {
+    type Value = T;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<T, D::Error> {
+        T::read(deserializer)
     }
 }
 
@@ -72,7 +102,7 @@ macro_rules! params {
 
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-                use $crate::inputs::params::{Described, KeyName, required};
+                use $crate::inputs::params::{KeyName, ValueOf, required};
                 struct Keys;
                 impl<'de> serde::de::Visitor<'de> for Keys {
                     type Value = $name;
@@ -84,12 +114,12 @@ macro_rules! params {
                         let names = $name::names();
                         while let Some(name) = map.next_key_seed(KeyName(&names))? {
                             $(
-                                if <$type>::inner_names().contains(&name) {
-                                    <$type>::read_inner(&mut $key, name, &mut map)?;
+                                if <$type as $crate::inputs::params::Described>::inner_names().contains(&name) {
+                                    <$type as $crate::inputs::params::Described>::read_inner(&mut $key, name, &mut map)?;
                                     continue;
                                 }
                                 if name == stringify!($key) {
-                                    $key = Some(map.next_value()?);
+                                    $key = Some(map.next_value_seed(ValueOf::default())?);
                                     continue;
                                 }
                             )*
@@ -97,7 +127,7 @@ macro_rules! params {
                         Ok($name {
                             $($key: match $key {
                                 Some(value) => value,
-                                None => required(stringify!($key), params!(@default $type $(, $default)?))?,
+                                None => required(stringify!($key), $crate::inputs::params::params!(@default $type $(, $default)?))?,
                             },)*
                             $($($unread: Default::default(),)*)?
                         })
@@ -110,27 +140,27 @@ macro_rules! params {
         impl $name {
             /// Returns the names of all keys of the table, in the order of their declaration.
             fn names() -> Vec<&'static str> {
-                use $crate::inputs::params::{Described, own_or_inner};
-                [$(own_or_inner(stringify!($key), <$type>::inner_names())),*].concat()
+                use $crate::inputs::params::own_or_inner;
+                [$(own_or_inner(stringify!($key), <$type as $crate::inputs::params::Described>::inner_names())),*].concat()
             }
         }
 
         impl $crate::inputs::params::Described for $name {
             fn schema() -> serde_json::Value {
-                use $crate::inputs::params::{Described, TableSchema};
+                use $crate::inputs::params::TableSchema;
                 let mut table = TableSchema::new(&[$($about),+]);
                 $(table.add::<$type>(
                     stringify!($key),
                     &[$($doc),+],
-                    params!(@range $($range)?),
-                    params!(@default $type $(, $default)?),
+                    $crate::inputs::params::params!(@range $($range)?),
+                    $crate::inputs::params::params!(@default $type $(, $default)?),
                 );)*
                 table.schema()
             }
 
-            fn keys(path: &str, keys: &mut Vec<$crate::inputs::keys::KeyAbout>) {
-                use $crate::inputs::params::Described;
-                $(params!(@about $type, path, stringify!($key), keys $(, $range $(, $role, $place $(, $field: $value)*)?)?);)*
+            fn describe_keys(path: &str, keys: &mut Vec<$crate::inputs::keys::KeyAbout>) {
+                let _ = (path, &keys);
+                $($crate::inputs::params::params!(@about $type, path, stringify!($key), keys $(, $range $(, $role, $place $(, $field: $value)*)?)?);)*
             }
         }
     };
@@ -139,7 +169,7 @@ macro_rules! params {
     (@range) => { None };
     (@range $range:expr) => { Some($range) };
     (@about $type:ty, $path:ident, $name:expr, $keys:ident) => {
-        <$type>::keys(&$crate::inputs::params::joined($path, $name), $keys);
+        <$type as $crate::inputs::params::Described>::describe_keys(&$crate::inputs::params::joined($path, $name), $keys);
     };
     (@about $type:ty, $path:ident, $name:expr, $keys:ident, $range:expr) => {};
     (@about $type:ty, $path:ident, $name:expr, $keys:ident, $range:expr, $role:ident, $place:ident $(, $field:ident: $value:expr)*) => {
@@ -204,11 +234,11 @@ macro_rules! variants {
 
         impl $crate::inputs::params::Described for $name {
             fn schema() -> serde_json::Value {
-                use $crate::inputs::params::{Described, described};
+                use $crate::inputs::params::described;
                 let forms = [$(described(
                     serde_json::json!({
                         "type": "object",
-                        "properties": { $word: <$type>::schema() },
+                        "properties": { $word: <$type as $crate::inputs::params::Described>::schema() },
                         "required": [$word],
                         "additionalProperties": false,
                     }),
@@ -234,11 +264,10 @@ macro_rules! variants {
 
         impl $crate::inputs::params::Described for $name {
             fn schema() -> serde_json::Value {
-                use $crate::inputs::params::{Described, described};
-                let forms = [$(described(<$type>::schema(), &[$($doc),+])),*];
-                let mut schema = described(serde_json::json!({ "anyOf": forms }), &[$($about),+]);
-                $(schema["title"] = $title.into();)?
-                schema
+                use $crate::inputs::params::described;
+                let forms = [$(described(<$type as $crate::inputs::params::Described>::schema(), &[$($doc),+])),*];
+                let forms = serde_json::json!({ "anyOf": forms $(, "title": $title)? });
+                described(forms, &[$($about),+])
             }
         }
     };
@@ -294,10 +323,14 @@ pub(crate) fn empty_table<T: DeserializeOwned>() -> T {
 }
 
 /// Returns the descriptions of all keys of a file.
-pub(crate) fn keys_of<T: Described>() -> Vec<KeyAbout> {
-    let mut keys = Vec::new();
-    T::keys("", &mut keys);
-    keys
+pub(crate) fn keys_of<T: Described>() -> &'static [KeyAbout] {
+    static KNOWN: Mutex<BTreeMap<TypeId, &[KeyAbout]>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    known.entry(TypeId::of::<T>()).or_insert_with(|| {
+        let mut keys = Vec::new();
+        T::describe_keys("", &mut keys);
+        keys.leak()
+    })
 }
 
 /// Reads the name of a key, one of the given names.
@@ -348,14 +381,16 @@ pub(crate) fn names<T: DeserializeOwned>() -> &'static [&'static str] {
     found.err().map_or(&[], |Expected(names)| names)
 }
 
-/// Converts the lines of a doc comment to plain text: one line per paragraph, without links to items of the library.
+/// Returns a text with a capital first letter.
+pub(crate) fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+/// Returns the text of a doc comment, given its lines.
 pub(crate) fn meaning(lines: &[&str]) -> String {
-    let paragraphs = lines.split(|line| line.trim().is_empty());
-    let paragraphs = paragraphs.map(|lines| {
-        let lines: Vec<&str> = lines.iter().map(|line| line.trim()).collect();
-        lines.join(" ")
-    });
-    plain(&paragraphs.collect::<Vec<_>>().join("\n\n"))
+    plain(&lines.join("\n"))
 }
 
 /// Adds the text of a doc comment to a schema.
@@ -364,10 +399,14 @@ pub(crate) fn described(mut schema: Value, lines: &[&str]) -> Value {
     schema
 }
 
+/// Keyword of a schema that lists the keys of a table in the order of their declaration.
+pub(crate) const ORDER: &str = "x-order";
+
 /// JSON Schema of a table, to which keys are added.
 pub(crate) struct TableSchema {
     about: String,
     keys: Map<String, Value>,
+    order: Vec<&'static str>,
     required: Vec<&'static str>,
 }
 
@@ -376,6 +415,7 @@ impl TableSchema {
         Self {
             about: meaning(about),
             keys: Map::new(),
+            order: Vec::new(),
             required: Vec::new(),
         }
     }
@@ -389,20 +429,19 @@ impl TableSchema {
         absent: Option<T>,
     ) {
         let mut schema = T::schema();
+        self.order.extend(own_or_inner(name, T::inner_names()));
         if !T::inner_names().is_empty() {
             let inner = schema["properties"].take();
-            self.keys.extend(inner.as_object().cloned().unwrap_or_default());
+            self.keys
+                .extend(inner.as_object().cloned().unwrap_or_default());
             return;
         }
-        if let Some(range) = range {
-            bound(&mut schema, &range.keywords());
-        }
-        schema = described(schema, lines);
+        schema = key_schema(schema, range, lines);
         match absent {
             None => self.required.push(name),
             Some(value) => {
                 let value = without_nulls(json!(value));
-                if !value.is_null() {
+                if !is_empty(&value) {
                     schema["default"] = value;
                 }
             }
@@ -416,6 +455,7 @@ impl TableSchema {
             "description": self.about,
             "properties": self.keys,
             "additionalProperties": false,
+            ORDER: self.order,
         });
         if !self.required.is_empty() {
             schema["required"] = json!(self.required);
@@ -424,14 +464,37 @@ impl TableSchema {
     }
 }
 
+/// Returns the schema of a key, given the schema of its values, its range and its doc comment.
+pub(crate) fn key_schema(mut values: Value, range: Option<Range>, lines: &[&str]) -> Value {
+    if let Some(range) = range {
+        bound(&mut values, &range.keywords());
+    }
+    described(values, lines)
+}
+
 /// Returns a value without the keys that are absent: TOML has no null.
 fn without_nulls(value: Value) -> Value {
     match value {
         Value::Object(keys) => {
             let given = keys.into_iter().filter(|(_, value)| !value.is_null());
-            Value::Object(given.map(|(key, value)| (key, without_nulls(value))).collect())
+            Value::Object(
+                given
+                    .map(|(key, value)| (key, without_nulls(value)))
+                    .collect(),
+            )
         }
         other => other,
+    }
+}
+
+/// Returns whether a value is nothing, an empty text, an empty list or an empty table.
+fn is_empty(value: &Value) -> bool {
+    match value {
+        Value::Null => true,
+        Value::String(text) => text.is_empty(),
+        Value::Array(values) => values.is_empty(),
+        Value::Object(keys) => keys.is_empty(),
+        Value::Bool(_) | Value::Number(_) => false,
     }
 }
 
@@ -470,13 +533,27 @@ simple! {
     u64: { "type": "integer", "minimum": 0 };
     bool: { "type": "boolean" };
     String: { "type": "string" };
-    PathBuf: { "type": "string" };
     FilePath: { "type": "string" };
     SetName: { "type": "string" };
     toml::Table: { "type": "object", "additionalProperties": true };
 }
 
+/// Path that is relative to the folder of its file.
+impl Described for PathBuf {
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        file_path(deserializer)
+    }
+
+    fn schema() -> Value {
+        String::schema()
+    }
+}
+
 impl<T: Described> Described for Option<T> {
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        T::read(deserializer).map(Some)
+    }
+
     fn schema() -> Value {
         T::schema()
     }
@@ -485,8 +562,8 @@ impl<T: Described> Described for Option<T> {
         Some(None)
     }
 
-    fn keys(path: &str, keys: &mut Vec<KeyAbout>) {
-        T::keys(path, keys);
+    fn describe_keys(path: &str, keys: &mut Vec<KeyAbout>) {
+        T::describe_keys(path, keys);
     }
 }
 
@@ -501,12 +578,15 @@ impl<T: Described> Described for Vec<T> {
         json!({ "type": "array", "items": T::schema() })
     }
 
-    fn keys(path: &str, keys: &mut Vec<KeyAbout>) {
-        T::keys(path, keys);
+    fn describe_keys(path: &str, keys: &mut Vec<KeyAbout>) {
+        T::describe_keys(path, keys);
     }
 }
 
-impl<T: Described, const N: usize> Described for [T; N] {
+impl<T: Described, const N: usize> Described for [T; N]
+where
+    [T; N]: DeserializeOwned,
+{
     fn schema() -> Value {
         json!({ "type": "array", "items": T::schema(), "minItems": N, "maxItems": N })
     }
@@ -537,39 +617,85 @@ impl<T: Described> Described for Axis<T> {
     }
 }
 
-/// Returns a text without links to items of the library.
-fn plain(words: &str) -> String {
-    let mut rest = words;
-    let mut plain = String::new();
-    while let Some(start) = rest.find('[') {
-        let (before, link) = rest.split_at(start);
-        plain.push_str(before);
-        let is_escaped = before.ends_with('\\');
-        match link_of(link).filter(|_| !is_escaped) {
-            Some((words, after)) => {
-                plain.push_str(words);
-                rest = after;
-            }
-            None => {
-                plain.push('[');
-                rest = &link[1..];
-            }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inputs::range::Range::{Any, Positive};
+
+    params! {
+        /// Table with every kind of key.
+        pub struct Example {
+            /// Length, mm. Default: 4.
+            length_mm: f64 = 4.0 => Positive, Choice, Table, title: "size";
+            /// Names.
+            names: Option<Vec<String>> => Any, Condition, Never;
+            /// Table `[inner]`.
+            inner: Inner;
+        }
+        unread {
+            /// Field that the file does not set.
+            memory: usize;
         }
     }
-    plain.push_str(rest);
-    plain.replace("\\[", "[").replace("\\]", "]")
-}
 
-/// Splits a text that begins with a documentation link into the words of the link and the rest of the text. A link is [`Type`] or [words](path).
-fn link_of(text: &str) -> Option<(&str, &str)> {
-    let end = text.find(']')?;
-    let (words, after) = (&text[1..end], &text[end + 1..]);
-    if let Some(target) = after.strip_prefix('(') {
-        let (target, after) = target.split_once(')')?;
-        return (!target.starts_with("http")).then_some((words, after));
+    params! {
+        /// Table inside the table.
+        pub struct Inner {
+            /// Form.
+            form: Form = Form::Round => Any, Choice, Axes;
+            /// Required count.
+            n: usize;
+        }
     }
-    let is_item = words.starts_with('`') && words.ends_with('`') && words.len() > 2;
-    // `[signal]` in back quotes is the name of a TOML table.
-    is_item.then_some((words, after))
-}
 
+    words! {
+        /// Forms.
+        pub enum Form {
+            /// Like a ball.
+            Round = "round",
+            /// Like a box.
+            Square = "square",
+        }
+    }
+
+    #[test]
+    fn a_declaration_is_reader_schema_and_list_of_keys() {
+        let read = |text: &str| toml::from_str::<Example>(text);
+        let found = read("[inner]\nform = \"square\"\nn = 2").unwrap();
+        assert_eq!(
+            (found.length_mm, &found.names, found.memory),
+            (4.0, &None, 0)
+        );
+        assert_eq!((found.inner.form, found.inner.n), (Form::Square, 2));
+        for (text, words) in [
+            (
+                "length_m = 1.0",
+                "unknown field `length_m`, expected one of `length_mm`, `names`, `inner`",
+            ),
+            ("[inner]", "missing field `n`"),
+            ("length_mm = 1.0", "missing field `inner`"),
+            (
+                "length_mm = \"a\"",
+                "invalid type: string \"a\", expected f64",
+            ),
+            (
+                "[inner]\nform = \"flat\"",
+                "unknown variant `flat`, expected `round` or `square`",
+            ),
+        ] {
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.contains(words), "{text}: {error}");
+        }
+        let keys: Vec<&str> = keys_of::<Example>().iter().map(|key| key.path).collect();
+        assert_eq!(keys, ["length_mm", "names", "inner.form"]);
+        assert_eq!(keys_of::<Example>()[0].title(), "size");
+        let schema = Example::schema();
+        assert_eq!(schema["required"], json!(["inner"]));
+        let length = json!({ "type": "number", "exclusiveMinimum": 0, "default": 4.0, "description": "Length, mm. Default: 4." });
+        assert_eq!(schema["properties"]["length_mm"], length);
+        assert_eq!(
+            schema["properties"]["inner"]["properties"]["form"]["default"],
+            "round"
+        );
+    }
+}

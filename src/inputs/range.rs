@@ -1,8 +1,10 @@
 //! Ranges of the numbers that keys allow.
 
 use crate::inputs::units::MAX_SIDE;
+use crate::signal::Strength;
 use crate::world::MAX_TOUCHES;
 use bubbletouch_svm::classifiers::parameters::Parameter;
+use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 
 /// Smallest positive value that a key allows. Squares and reciprocals of smaller values approach the limits of f64; no quantity is measured in such small
@@ -42,8 +44,8 @@ pub enum Range {
     ZeroOrBetween(f64, f64, &'static str),
     /// Range of numbers that a classifier declares for a parameter.
     Declared(&'static Parameter),
-    /// Numbers for which a function returns true, with a description in words.
-    Of(fn(f64) -> bool, &'static str),
+    /// Range of numbers that a sensor error declares for a strength.
+    Strength(&'static Strength),
     /// Any text or truth value is allowed. A list of them contains each value once.
     Any,
     /// Values that only the reader of the key checks, such as texts, files, vectors and tables.
@@ -64,7 +66,7 @@ impl Range {
             Self::Between(low, high, _) => (low..=high).contains(&value),
             Self::ZeroOrBetween(low, high, _) => value == 0.0 || (low..=high).contains(&value),
             Self::Declared(Parameter { range, .. }) => (range[0]..=range[1]).contains(&value),
-            Self::Of(is_allowed, _) => is_allowed(value),
+            Self::Strength(strength) => strength.is_allowed(value),
             Self::Any | Self::Unchecked => true,
         }
     }
@@ -82,14 +84,39 @@ impl Range {
                 return format!("at least {least} and at most {most}").into();
             }
             Self::Declared(parameter) => return parameter.allowed().into(),
-            Self::Between(.., words) | Self::ZeroOrBetween(.., words) | Self::Of(_, words) => words,
+            Self::Strength(strength) => strength.allowed,
+            Self::Between(.., words) | Self::ZeroOrBetween(.., words) => words,
             Self::Any | Self::Unchecked => "any value",
         };
         words.into()
     }
 
-    /// Returns the smallest and the largest allowed number, which are infinite without a bound. Returns `None` for [`Of`](Self::Of) and for values other than
-    /// numbers. The bounds of [`Part`](Self::Part) are not allowed themselves.
+    /// Returns the keywords of a JSON Schema that bound the allowed numbers.
+    pub fn keywords(self) -> Map<String, Value> {
+        let Some([low, high]) = self.bounds() else {
+            return Map::new();
+        };
+        let is_open = matches!(self, Self::Part);
+        let number = |bound: f64| match bound.fract() == 0.0 && bound.abs() < 1e15 {
+            true => json!(bound as i64),
+            false => json!(bound),
+        };
+        let least = match low {
+            _ if low <= f64::MIN => None,
+            MIN_POSITIVE => Some(("exclusiveMinimum", number(0.0))),
+            _ if is_open => Some(("exclusiveMinimum", number(low))),
+            _ => Some(("minimum", number(low))),
+        };
+        let most = match high {
+            _ if high >= f64::MAX => None,
+            _ if is_open => Some(("exclusiveMaximum", number(high))),
+            _ => Some(("maximum", number(high))),
+        };
+        let ends = least.into_iter().chain(most);
+        ends.map(|(name, bound)| (name.to_owned(), bound)).collect()
+    }
+
+    /// Returns the smallest and the largest allowed number, which are infinite without a bound. Returns `None` for values other than numbers. The bounds of [`Part`](Self::Part) are not allowed themselves.
     pub fn bounds(self) -> Option<[f64; 2]> {
         Some(match self {
             Self::Positive => [MIN_POSITIVE, f64::INFINITY],
@@ -101,7 +128,8 @@ impl Range {
             Self::Between(low, high, _) => [low, high],
             Self::ZeroOrBetween(_, high, _) => [0.0, high],
             Self::Declared(parameter) => parameter.range,
-            Self::Of(..) | Self::Any | Self::Unchecked => return None,
+            Self::Strength(strength) => strength.range,
+            Self::Any | Self::Unchecked => return None,
         })
     }
 }

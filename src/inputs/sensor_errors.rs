@@ -1,23 +1,21 @@
 //! Strengths of a study's sensor errors, and the choice of the skin that test touches use.
 
 use crate::inputs::keys::{AxisPlace, KeyAbout};
+use crate::inputs::params::words;
 use crate::inputs::range::Range;
 use crate::random::Seed;
 use crate::signal::{MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
 use crate::table::{Column, Role, Scale};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
-/// Skin of the test touches, compared with the skin of the training touches.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum TestSensor {
-    /// The test touches use the skin of the training touches, whose individual errors a classifier may learn.
-    #[default]
-    SameSkin,
-    /// Each trial uses another skin of the same type for testing: gains, drift and faults are drawn again.
-    AnotherSkin,
+words! {
+    /// Skin of the test touches, compared with the skin of the training touches.
+    pub enum TestSensor = SameSkin {
+        /// The test touches use the skin of the training touches, whose individual errors a classifier may learn.
+        SameSkin = "same_skin",
+        /// Each trial uses another skin of the same type for testing: gains, drift and faults are drawn again.
+        AnotherSkin = "another_skin",
+    }
 }
 
 /// Number of strengths (parameters) that all sensor errors have together.
@@ -48,7 +46,7 @@ pub fn strength_keys() -> &'static [KeyAbout] {
                 _ => Scale::Linear,
             };
             let path: &'static str = format!("signal.{}", strength.key).leak();
-            let range = Range::Of(strength.is_allowed, strength.allowed);
+            let range = Range::Strength(strength);
             KeyAbout {
                 title: Some(strength.words),
                 unit: Some(strength.unit),

@@ -1,18 +1,18 @@
 //! Value of a key: one number that applies to all elements, or a list with one number per element.
 
-use schemars::JsonSchema;
+use crate::inputs::params::variants;
+use serde::Deserialize;
 use serde::de::{Deserializer, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// One number for all taxels or times, or a list: `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Numbers {
-    /// One number that applies to all elements.
-    One(f64),
-    /// List with one number for each element.
-    Each(Vec<f64>),
+variants! {
+    /// One number for all taxels or times, or a list: `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
+    pub untagged enum Numbers {
+        /// One number that applies to all elements.
+        One(f64),
+        /// List with one number for each element.
+        Each(Vec<f64>),
+    }
 }
 
 // Implemented manually, because the error of serde's untagged enum only states that no variant matched.

@@ -6,7 +6,8 @@ use super::plan_robot::PlannedRobot;
 use super::plan_signal::PlannedSignal;
 use super::reader::{MM, Reader};
 use super::spec::{
-    FileLayoutSpec, LayoutSpec, ObjectSpec, PatchSpec, ProjectedGridSpec, RegionSpec,
+    AnnulusSpec, CylinderSpec, DiscSpec, DrapedSpec, FileLayoutSpec, GridSpec, HexagonalSpec,
+    LayoutSpec, ObjectSpec, PatchSpec, ProjectedGridSpec, RegionSpec, SphereCapSpec,
 };
 use crate::error::Result;
 use crate::geometry::Aabb;
@@ -52,13 +53,13 @@ impl LayoutSpec {
     pub fn pitch_mm(&self) -> Option<f64> {
         Some(match *self {
             Self::File(_) | Self::Sensor(_) => return None,
-            Self::Grid { pitch_mm, .. }
-            | Self::Hexagonal { pitch_mm, .. }
-            | Self::Disc { pitch_mm, .. }
-            | Self::Annulus { pitch_mm, .. }
-            | Self::Cylinder { pitch_mm, .. }
-            | Self::SphereCap { pitch_mm, .. }
-            | Self::Draped { pitch_mm, .. } => pitch_mm,
+            Self::Grid(GridSpec { pitch_mm, .. })
+            | Self::Hexagonal(HexagonalSpec { pitch_mm, .. })
+            | Self::Disc(DiscSpec { pitch_mm, .. })
+            | Self::Annulus(AnnulusSpec { pitch_mm, .. })
+            | Self::Cylinder(CylinderSpec { pitch_mm, .. })
+            | Self::SphereCap(SphereCapSpec { pitch_mm, .. })
+            | Self::Draped(DrapedSpec { pitch_mm, .. }) => pitch_mm,
         })
     }
 }
@@ -113,30 +114,30 @@ impl Reader<'_> {
         let pitch = spec.layout.pitch_mm().unwrap_or_default() * MM;
         let layout = match spec.layout {
             LayoutSpec::File(_) | LayoutSpec::Sensor(_) => unreachable!("taxels that are listed"),
-            LayoutSpec::Grid { nx, ny, .. } => Layout::grid(&Grid { nx, ny, pitch }),
-            LayoutSpec::Hexagonal { nx, ny, .. } => Layout::hexagonal(nx, ny, pitch),
-            LayoutSpec::Disc { radius_mm, .. } => Layout::disc(radius_mm * MM, pitch),
-            LayoutSpec::Annulus {
+            LayoutSpec::Grid(GridSpec { nx, ny, .. }) => Layout::grid(&Grid { nx, ny, pitch }),
+            LayoutSpec::Hexagonal(HexagonalSpec { nx, ny, .. }) => Layout::hexagonal(nx, ny, pitch),
+            LayoutSpec::Disc(DiscSpec { radius_mm, .. }) => Layout::disc(radius_mm * MM, pitch),
+            LayoutSpec::Annulus(AnnulusSpec {
                 inner_mm, outer_mm, ..
-            } => Layout::annulus(inner_mm * MM, outer_mm * MM, pitch),
-            LayoutSpec::Cylinder {
+            }) => Layout::annulus(inner_mm * MM, outer_mm * MM, pitch),
+            LayoutSpec::Cylinder(CylinderSpec {
                 radius_mm,
                 length_mm,
                 arc_deg,
                 ..
-            } => Layout::cylinder(radius_mm * MM, length_mm * MM, arc_deg.to_radians(), pitch),
-            LayoutSpec::SphereCap {
+            }) => Layout::cylinder(radius_mm * MM, length_mm * MM, arc_deg.to_radians(), pitch),
+            LayoutSpec::SphereCap(SphereCapSpec {
                 radius_mm,
                 half_angle_deg,
                 ..
-            } => Layout::sphere_cap(radius_mm * MM, half_angle_deg.to_radians(), pitch),
-            LayoutSpec::Draped {
+            }) => Layout::sphere_cap(radius_mm * MM, half_angle_deg.to_radians(), pitch),
+            LayoutSpec::Draped(DrapedSpec {
                 mesh: ref path,
                 unit,
                 ref region,
                 ref grid,
                 ..
-            } => {
+            }) => {
                 let region_key = &format!("{key}.region");
                 let link = region.as_ref().and_then(|region| region.link.as_deref());
                 let mesh = match (path, link) {
@@ -290,9 +291,9 @@ impl Reader<'_> {
         spec: &mut PatchSpec,
         robots: &[PlannedRobot],
     ) -> Result<()> {
-        let LayoutSpec::Draped {
+        let LayoutSpec::Draped(DrapedSpec {
             mesh, on, region, ..
-        } = &mut spec.layout
+        }) = &mut spec.layout
         else {
             return Ok(());
         };
@@ -321,7 +322,7 @@ impl Reader<'_> {
 
     /// Mounts a patch whose taxels are draped over a robot link on this link.
     fn mount_on_draped_link(&self, key: &str, spec: &mut PatchSpec) -> Result<()> {
-        let LayoutSpec::Draped { region, .. } = &spec.layout else {
+        let LayoutSpec::Draped(DrapedSpec { region, .. }) = &spec.layout else {
             return Ok(());
         };
         let Some(draped) = region.as_ref().and_then(|region| region.link.as_ref()) else {

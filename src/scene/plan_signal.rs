@@ -137,9 +137,12 @@ impl Reader<'_> {
             };
             let strength = &about.strengths[place];
             let key = &format!("{key}.{name}");
-            strengths[place] =
-                self.check
-                    .value(key, value, strength.is_allowed, strength.allowed)?;
+            strengths[place] = self.check.value(
+                key,
+                value,
+                |value| strength.is_allowed(value),
+                strength.allowed,
+            )?;
         }
         Ok(error.step(&strengths, skin))
     }

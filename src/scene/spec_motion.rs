@@ -1,109 +1,104 @@
 //! Specification of poses and motions in a scene file.
 
 use crate::files::FilePath;
-use crate::inputs::schema_types::Names;
+use crate::inputs::params::{named, params};
+use crate::inputs::range::Range::NotNegative;
 use crate::world::Interpolation;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Position and rotation of a body, such as `at = { position_mm = [0.0, 0.0, 50.0], rotation_deg = [180.0, 0.0, 0.0] }`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PoseSpec {
-    /// Position of the body's origin, mm. Default: 0.
-    #[serde(default)]
-    pub position_mm: [f64; 3],
-    /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0.
-    #[serde(default)]
-    pub rotation_deg: [f64; 3],
+named!(Interpolation);
+
+params! {
+    /// Position and rotation of a body, such as `at = { position_mm = [0.0, 0.0, 50.0], rotation_deg = [180.0, 0.0, 0.0] }`.
+    #[derive(Copy, Default)]
+    pub struct PoseSpec {
+        /// Position of the body's origin, mm. Default: 0.
+        position_mm: [f64; 3] = [0.0; 3];
+        /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0.
+        rotation_deg: [f64; 3] = [0.0; 3];
+    }
 }
 
-/// Imposed motion of a base or an object: phases of constant velocity, an oscillation, way-points, or a CSV file of way-points.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MotionSpec {
-    /// Phases of constant velocity, one after another, starting at the pose `at`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub phases: Vec<PhaseSpec>,
-    /// Poses at given times, in the world or on the link that carries the object; replaces `at`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub way_points: Vec<WayPointSpec>,
-    /// Sinusoidal motion about the pose `at`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub oscillation: Option<OscillationSpec>,
-    /// CSV file with a time and a pose in each row (way-points).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<String>")]
-    pub csv: Option<FilePath>,
-    /// Interpolation of the poses between way-points. Default: `cubic`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<Names<Interpolation>>")]
-    pub interpolation: Option<Interpolation>,
+params! {
+    /// Imposed motion of a base or an object: phases of constant velocity, an oscillation, way-points, or a CSV file of way-points.
+    #[derive(Default)]
+    pub struct MotionSpec {
+        /// Phases of constant velocity, one after another, starting at the pose `at`.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        phases: Vec<PhaseSpec> = Vec::new();
+        /// Poses at given times, in the world or on the link that carries the object; replaces `at`.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        way_points: Vec<WayPointSpec> = Vec::new();
+        /// Sinusoidal motion about the pose `at`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        oscillation: Option<OscillationSpec>;
+        /// CSV file with a time and a pose in each row (way-points).
+        #[serde(skip_serializing_if = "Option::is_none")]
+        csv: Option<FilePath>;
+        /// Interpolation of the poses between way-points. Default: `cubic`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        interpolation: Option<Interpolation>;
+    }
 }
 
-/// Phase of a motion with constant velocity, such as `{ duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -5.0] }`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PhaseSpec {
-    /// Duration of the phase, s.
-    pub duration_s: f64,
-    /// Velocity of the body's origin in the world frame, mm/s. Default: 0.
-    #[serde(default)]
-    pub linear_mm_per_s: [f64; 3],
-    /// Angular velocity about the body's origin in the world frame, degrees per second. Default: 0.
-    #[serde(default)]
-    pub angular_deg_per_s: [f64; 3],
+params! {
+    /// Phase of a motion with constant velocity, such as `{ duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -5.0] }`.
+    #[derive(Copy)]
+    pub struct PhaseSpec {
+        /// Duration of the phase, s.
+        duration_s: f64 => NotNegative;
+        /// Velocity of the body's origin in the world frame, mm/s. Default: 0.
+        linear_mm_per_s: [f64; 3] = [0.0; 3];
+        /// Angular velocity about the body's origin in the world frame, degrees per second. Default: 0.
+        angular_deg_per_s: [f64; 3] = [0.0; 3];
+    }
 }
 
-/// Sinusoidal motion, such as `{ linear_mm = [0.0, 0.0, 10.0], period_s = 0.5 }`.
-///
-/// At time t, with s = sin(2π t / period), the body at `at` is rotated about the origin by s · `angular_deg`, then translated by s · `linear_mm`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct OscillationSpec {
-    /// Amplitude of the translation in the world or link frame, mm. Default: 0.
-    #[serde(default)]
-    pub linear_mm: [f64; 3],
-    /// Amplitude of the rotation vector about the origin of the world or link frame, degrees. Default: 0.
-    #[serde(default)]
-    pub angular_deg: [f64; 3],
-    /// Period of the oscillation, s, positive.
-    pub period_s: f64,
+params! {
+    /// Sinusoidal motion, such as `{ linear_mm = [0.0, 0.0, 10.0], period_s = 0.5 }`.
+    ///
+    /// At time t, with s = sin(2π t / period), the body at `at` is rotated about the origin by s · `angular_deg`, then translated by s · `linear_mm`.
+    #[derive(Copy)]
+    pub struct OscillationSpec {
+        /// Amplitude of the translation in the world or link frame, mm. Default: 0.
+        linear_mm: [f64; 3] = [0.0; 3];
+        /// Amplitude of the rotation vector about the origin of the world or link frame, degrees. Default: 0.
+        angular_deg: [f64; 3] = [0.0; 3];
+        /// Period of the oscillation, s, positive.
+        period_s: f64;
+    }
 }
 
-/// Pose at a given time (way-point), such as `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct WayPointSpec {
-    /// Time of the way-point since the start of the scene, s.
-    pub time_s: f64,
-    /// Position of the body's origin in the world frame, mm. Default: 0.
-    #[serde(default)]
-    pub position_mm: [f64; 3],
-    /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0. If one angle changes between two way-points, the body turns by this
-    /// change, also beyond 180°. If several change, the body takes the shorter way, and changes of 180° or more are refused.
-    #[serde(default)]
-    pub rotation_deg: [f64; 3],
+params! {
+    /// Pose at a given time (way-point), such as `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`.
+    #[derive(Copy)]
+    pub struct WayPointSpec {
+        /// Time of the way-point since the start of the scene, s.
+        time_s: f64;
+        /// Position of the body's origin in the world frame, mm. Default: 0.
+        position_mm: [f64; 3] = [0.0; 3];
+        /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0. If one angle changes between two way-points, the body turns by this
+        /// change, also beyond 180°. If several change, the body takes the shorter way, and changes of 180° or more are refused.
+        rotation_deg: [f64; 3] = [0.0; 3];
+    }
 }
 
-/// Joint positions over time: way-points in the scene file or in a CSV file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JointsSpec {
-    /// CSV file with a time and the joint positions in each row (way-points).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<String>")]
-    pub csv: Option<FilePath>,
-    /// Interpolation of the joint positions between way-points. Default: `cubic`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<Names<Interpolation>>")]
-    pub interpolation: Option<Interpolation>,
-    /// Times of the way-points since the start of the scene, s.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub time_s: Vec<f64>,
-    /// Positions of each moved joint, one number for each time. A key is the joint's name with its unit, such as `elbow_deg`, `elbow_rad`, `slide_mm` or
-    /// `slide_m`.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub positions: BTreeMap<String, Vec<f64>>,
+params! {
+    /// Joint positions over time: way-points in the scene file or in a CSV file.
+    #[derive(Default)]
+    pub struct JointsSpec {
+        /// CSV file with a time and the joint positions in each row (way-points).
+        #[serde(skip_serializing_if = "Option::is_none")]
+        csv: Option<FilePath>;
+        /// Interpolation of the joint positions between way-points. Default: `cubic`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        interpolation: Option<Interpolation>;
+        /// Times of the way-points since the start of the scene, s.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        time_s: Vec<f64> = Vec::new();
+        /// Positions of each moved joint, one number for each time. A key is the joint's name with its unit, such as `elbow_deg`, `elbow_rad`, `slide_mm` or
+        /// `slide_m`.
+        #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+        positions: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    }
 }

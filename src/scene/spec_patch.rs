@@ -2,63 +2,69 @@
 
 use super::numbers::Numbers;
 use crate::files::FilePath;
-use crate::inputs::schema_types::Names;
+use crate::inputs::params::{Described, named, params, variants, words};
+use crate::inputs::range::MIN_POSITIVE;
+use crate::inputs::range::Range::{self, AtLeastOne, Between, NotNegative, Positive};
 use crate::inputs::sensor_errors::{NOISES, all_strengths, noise_words, strength_words};
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::PoseSpec;
 use crate::signal::MAX_STRENGTHS;
 use crate::world::{MissingTaxels, ShapeRole};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// Keys of a table `[[patches]]`: a patch of skin.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PatchSpec {
-    /// Name of the patch, unique in the scene.
-    pub name: String,
-    /// Name of the robot that carries the patch. Default: the patch is fixed in the world.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub robot: Option<String>,
-    /// Name of the robot link that carries the patch. Default: the base.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub link: Option<String>,
-    /// Name of the object that carries the patch, instead of a robot. A patch never touches the object that carries it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub object: Option<String>,
-    /// Pose of the patch on the link, on the object, or in the world. Default: the origin.
-    #[serde(default)]
-    pub at: PoseSpec,
-    /// Layout of the taxels on the patch, for example a grid.
-    pub layout: LayoutSpec,
-    /// Radius of the spherical taxels, mm. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number per
-    /// taxel, or a column of `taxels_csv`. Lists have the order of the layout (for a grid, row by row).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub taxel_radius_mm: Option<Numbers>,
-    /// Stroke (maximum deflection) of the taxels, mm; required.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stroke_mm: Option<Numbers>,
-    /// Stiffness of the taxels along their axes, N/m. Default: 100.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stiffness_n_per_m: Option<Numbers>,
-    /// Damping coefficient of the taxels along their axes, N·s/m. Default: 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub damping_n_s_per_m: Option<Numbers>,
-    /// Friction coefficient between taxels and objects. With friction, tangential springs hold the contacts until they slip. Default: no friction.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub friction: Option<Numbers>,
-    /// Tangential stiffness of the taxels, N/m, used with `friction`. Default: the stiffness along the axes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shear_stiffness_n_per_m: Option<Numbers>,
-    /// CSV file with one row per taxel. Its columns have the names of the keys above; only columns that differ between taxels are needed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<String>")]
-    pub taxels_csv: Option<FilePath>,
-    /// Steps of the patch's signal chain (noise and sensor errors), in order. Default: none.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub signal: Vec<SignalStepSpec>,
+named!(ShapeRole);
+
+/// Allowed angles around a cylinder.
+const TURN: Range = Between(MIN_POSITIVE, 360.0, "above 0, at most 360");
+/// Allowed angles from the pole of a sphere.
+const HALF_TURN: Range = Between(MIN_POSITIVE, 180.0, "above 0, at most 180");
+
+params! {
+    /// Keys of a table `[[patches]]`: a patch of skin.
+    pub struct PatchSpec {
+        /// Name of the patch, unique in the scene.
+        name: String;
+        /// Name of the robot that carries the patch. Default: the patch is fixed in the world.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        robot: Option<String>;
+        /// Name of the robot link that carries the patch. Default: the base.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        link: Option<String>;
+        /// Name of the object that carries the patch, instead of a robot. A patch never touches the object that carries it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        object: Option<String>;
+        /// Pose of the patch on the link, on the object, or in the world. Default: the origin.
+        at: PoseSpec = PoseSpec::default();
+        /// Layout of the taxels on the patch, for example a grid.
+        layout: LayoutSpec;
+        /// Radius of the spherical taxels, mm. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number per
+        /// taxel, or a column of `taxels_csv`. Lists have the order of the layout (for a grid, row by row).
+        #[serde(skip_serializing_if = "Option::is_none")]
+        taxel_radius_mm: Option<Numbers> => Positive;
+        /// Stroke (maximum deflection) of the taxels, mm; required.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        stroke_mm: Option<Numbers> => Positive;
+        /// Stiffness of the taxels along their axes, N/m. Default: 100.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        stiffness_n_per_m: Option<Numbers> => Positive;
+        /// Damping coefficient of the taxels along their axes, N·s/m. Default: 0.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        damping_n_s_per_m: Option<Numbers> => NotNegative;
+        /// Friction coefficient between taxels and objects. With friction, tangential springs hold the contacts until they slip. Default: no friction.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        friction: Option<Numbers> => NotNegative;
+        /// Tangential stiffness of the taxels, N/m, used with `friction`. Default: the stiffness along the axes.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        shear_stiffness_n_per_m: Option<Numbers> => Positive;
+        /// CSV file with one row per taxel. Its columns have the names of the keys above; only columns that differ between taxels are needed.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        taxels_csv: Option<FilePath>;
+        /// Steps of the patch's signal chain (noise and sensor errors), in order. Default: none.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        signal: Vec<SignalStepSpec> = Vec::new();
+    }
 }
 
 /// Step of the signal chain, as in `signal = ["force", { noise_std_n = 0.1 }, { dead_fraction = 0.01 }]`. The keys are the same as in `[signal]` of studies.
@@ -71,29 +77,19 @@ pub enum SignalStepSpec {
     Strengths(BTreeMap<String, f64>),
 }
 
-/// JSON schema built from the list of sensor errors, which also defines the accepted keys.
-impl JsonSchema for SignalStepSpec {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "SignalStepSpec".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        let mut keys = serde_json::Map::new();
-        for (key, words) in scene_steps() {
-            let number = json_schema!({ "type": "number", "minimum": 0, "description": words });
-            keys.insert(key.to_owned(), number.into());
-        }
-        json_schema!({
+impl Described for SignalStepSpec {
+    fn schema() -> Value {
+        let keys = scene_steps().map(|(key, words)| {
+            let number = json!({ "type": "number", "minimum": 0, "description": words });
+            (key.to_owned(), number)
+        });
+        json!({
             "title": "`\"force\"` or a table with a key of a step, such as `{ noise_std_n = 0.1 }`",
             "anyOf": [
                 { "type": "string", "const": "force" },
                 {
                     "type": "object",
-                    "properties": keys,
+                    "properties": Map::from_iter(keys),
                     "additionalProperties": false,
                     "minProperties": 1,
                     "maxProperties": MAX_STRENGTHS,
@@ -114,117 +110,153 @@ fn scene_steps() -> impl Iterator<Item = (&'static str, String)> {
         .chain(errors)
 }
 
-/// Layout of the taxels, such as `layout = { grid = { nx = 64, ny = 64, pitch_mm = 2.0 } }`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum LayoutSpec {
+variants! {
+    /// Layout of the taxels, such as `layout = { grid = { nx = 64, ny = 64, pitch_mm = 2.0 } }`.
+    pub enum LayoutSpec {
+        /// Grid of nx × ny taxels in square cells.
+        Grid = "grid"(GridSpec),
+        /// Hexagonal lattice with staggered rows, in a rectangle.
+        Hexagonal = "hexagonal"(HexagonalSpec),
+        /// Hexagonal lattice in a disc.
+        Disc = "disc"(DiscSpec),
+        /// Taxels in an annulus between two radii.
+        Annulus = "annulus"(AnnulusSpec),
+        /// Taxels on a cylindrical surface, as on a forearm or finger.
+        Cylinder = "cylinder"(CylinderSpec),
+        /// Taxels on a spherical cap, as on a fingertip.
+        SphereCap = "sphere_cap"(SphereCapSpec),
+        /// Taxels listed in a file, such as `layout = { file = "palm.csv" }`: `.csv`, `.npz`, `.txt` or `.ini` (iCub), `.json` (PaXini) or `.urdf`.
+        File = "file"(FileLayoutSpec),
+        /// Taxels of a tactile sensor, which is given by its name in the robot's file.
+        Sensor = "sensor"(String),
+        /// Taxels on the outer surface of a triangle mesh, or of a link of the patch's robot.
+        Draped = "draped"(DrapedSpec),
+    }
+}
+
+params! {
     /// Grid of nx × ny taxels in square cells.
-    Grid {
+    #[derive(Copy)]
+    pub struct GridSpec {
         /// Number of columns, along the patch's x axis.
-        nx: usize,
+        nx: usize => AtLeastOne;
         /// Number of rows, along the patch's y axis.
-        ny: usize,
+        ny: usize => AtLeastOne;
         /// Distance between neighbouring taxels, mm.
-        pitch_mm: f64,
-    },
+        pitch_mm: f64 => Positive;
+    }
+}
+
+params! {
     /// Hexagonal lattice with staggered rows, in a rectangle.
-    Hexagonal {
+    #[derive(Copy)]
+    pub struct HexagonalSpec {
         /// Number of taxels per row, along the patch's x axis.
-        nx: usize,
+        nx: usize => AtLeastOne;
         /// Number of rows, along the patch's y axis.
-        ny: usize,
+        ny: usize => AtLeastOne;
         /// Distance between a taxel and its six neighbours, mm; rows are 0.866 times this distance apart.
-        pitch_mm: f64,
-    },
+        pitch_mm: f64 => Positive;
+    }
+}
+
+params! {
     /// Hexagonal lattice in a disc.
-    Disc {
+    #[derive(Copy)]
+    pub struct DiscSpec {
         /// Radius of the disc, mm.
-        radius_mm: f64,
+        radius_mm: f64 => Positive;
         /// Distance between a taxel and its six neighbours, mm.
-        pitch_mm: f64,
-    },
+        pitch_mm: f64 => Positive;
+    }
+}
+
+params! {
     /// Taxels in an annulus between two radii.
-    Annulus {
+    #[derive(Copy)]
+    pub struct AnnulusSpec {
         /// Inner radius of the annulus, mm.
-        inner_mm: f64,
+        inner_mm: f64 => Positive;
         /// Outer radius of the annulus, mm.
-        outer_mm: f64,
+        outer_mm: f64 => Positive;
         /// Distance between neighbouring taxels, mm.
-        pitch_mm: f64,
-    },
+        pitch_mm: f64 => Positive;
+    }
+}
+
+params! {
     /// Taxels on a cylindrical surface, as on a forearm or finger.
-    Cylinder {
+    #[derive(Copy)]
+    pub struct CylinderSpec {
         /// Radius of the cylinder, mm.
-        radius_mm: f64,
+        radius_mm: f64 => Positive;
         /// Length along the cylinder's axis, mm.
-        length_mm: f64,
+        length_mm: f64 => NotNegative;
         /// Angle around the cylinder's axis that the taxels cover, degrees.
-        arc_deg: f64,
+        arc_deg: f64 => TURN;
         /// Distance between neighbouring taxels, mm.
-        pitch_mm: f64,
-    },
+        pitch_mm: f64 => Positive;
+    }
+}
+
+params! {
     /// Taxels on a spherical cap, as on a fingertip.
-    SphereCap {
+    #[derive(Copy)]
+    pub struct SphereCapSpec {
         /// Radius of the sphere, mm.
-        radius_mm: f64,
+        radius_mm: f64 => Positive;
         /// Angle from the pole to the rim of the cap, degrees.
-        half_angle_deg: f64,
+        half_angle_deg: f64 => HALF_TURN;
         /// Distance between neighbouring taxels, mm.
-        pitch_mm: f64,
-    },
-    /// Taxels listed in a file, such as `layout = { file = "palm.csv" }`: `.csv`, `.npz`, `.txt` or `.ini` (iCub), `.json` (PaXini) or `.urdf`.
-    File(FileLayoutSpec),
-    /// Taxels of a tactile sensor, which is given by its name in the robot's file.
-    Sensor(String),
+        pitch_mm: f64 => Positive;
+    }
+}
+
+params! {
     /// Taxels on the outer surface of a triangle mesh, or of a link of the patch's robot.
-    Draped {
+    pub struct DrapedSpec {
         /// Mesh file of the surface; omitted if `on` or `region.link` is given.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        #[schemars(with = "Option<String>")]
-        mesh: Option<FilePath>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        mesh: Option<FilePath>;
         /// Length unit of the mesh file. Default: metres. The size must then be between 0.1 mm and 10 m.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        #[schemars(with = "Option<Names<LengthUnit>>")]
-        unit: Option<LengthUnit>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        unit: Option<LengthUnit>;
         /// Shapes of the patch's own link that form the surface, instead of a mesh file: `collision` or `visual`. The shapes include meshes of the robot's file.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        #[schemars(with = "Option<Names<ShapeRole>>")]
-        on: Option<ShapeRole>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        on: Option<ShapeRole>;
         /// Distance between neighbouring taxels, mm.
-        pitch_mm: f64,
+        pitch_mm: f64 => Positive;
         /// Part of the surface that carries taxels. Default: the whole outer surface.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        region: Option<Box<RegionSpec>>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        region: Option<Box<RegionSpec>>;
         /// Flat grid of taxels that is wrapped around the surface. Default: the taxels are distributed over the surface.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        grid: Option<Box<ProjectedGridSpec>>,
-    },
+        #[serde(skip_serializing_if = "Option::is_none")]
+        grid: Option<Box<ProjectedGridSpec>>;
+    }
 }
 
-/// Flat grid of taxels that is wrapped around a surface. Each taxel moves along −z of the grid to the surface and takes the surface normal there as its axis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ProjectedGridSpec {
-    /// Number of columns, along the grid's x axis, `pitch_mm` apart.
-    pub nx: usize,
-    /// Number of rows, along the grid's y axis, `pitch_mm` apart.
-    pub ny: usize,
-    /// Pose of the grid's middle in the frame of the mesh or link. The pose is in front of the surface, and its z axis points away from the surface.
-    pub at: PoseSpec,
-    /// Treatment of taxels that do not meet the surface: `error` refuses the scene, `drop` omits them. Default: `error`.
-    #[serde(default)]
-    pub missing: MissingSpec,
+params! {
+    /// Flat grid of taxels that is wrapped around a surface. Each taxel moves along −z of the grid to the surface and takes the surface normal there as its axis.
+    pub struct ProjectedGridSpec {
+        /// Number of columns, along the grid's x axis, `pitch_mm` apart.
+        nx: usize => AtLeastOne;
+        /// Number of rows, along the grid's y axis, `pitch_mm` apart.
+        ny: usize => AtLeastOne;
+        /// Pose of the grid's middle in the frame of the mesh or link. The pose is in front of the surface, and its z axis points away from the surface.
+        at: PoseSpec;
+        /// Treatment of taxels that do not meet the surface: `error` refuses the scene, `drop` omits them. Default: `error`.
+        missing: MissingSpec = MissingSpec::default();
+    }
 }
 
-/// Treatment of taxels of a projected grid that do not meet the surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum MissingSpec {
-    /// The scene is refused.
-    #[default]
-    Error,
-    /// The taxels are omitted.
-    Drop,
+words! {
+    /// Treatment of taxels of a projected grid that do not meet the surface.
+    pub enum MissingSpec = Error {
+        /// The scene is refused.
+        Error = "error",
+        /// The taxels are omitted.
+        Drop = "drop",
+    }
 }
 
 impl From<MissingSpec> for MissingTaxels {
@@ -236,64 +268,61 @@ impl From<MissingSpec> for MissingTaxels {
     }
 }
 
-/// Layout file, as `file = "palm.csv"` or `file = { path = "points.json", mesh = "fingertip.stl" }`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum FileLayoutSpec {
-    /// Path of the layout file, for formats that need no further information.
-    Path(#[schemars(with = "String")] FilePath),
-    /// Path of the layout file, and the further information that its format needs.
-    Parts(FileLayoutParts),
+variants! {
+    /// Layout file, as `file = "palm.csv"` or `file = { path = "points.json", mesh = "fingertip.stl" }`.
+    pub untagged enum FileLayoutSpec, Deserialize {
+        /// Path of the layout file, for formats that need no further information.
+        Path(FilePath),
+        /// Path of the layout file, and the further information that its format needs.
+        Parts(FileLayoutParts),
+    }
 }
 
-/// Layout file, and the further information that its format needs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FileLayoutParts {
-    /// Path of the layout file.
-    #[schemars(with = "String")]
-    pub path: FilePath,
-    /// Mesh whose surface normals are the taxel axes, for files of points without normals.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<String>")]
-    pub mesh: Option<FilePath>,
-    /// Length unit of the mesh file. Default: metres.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<Names<LengthUnit>>")]
-    pub unit: Option<LengthUnit>,
-    /// Name of the tactile sensor, if a robot's file contains several sensors.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sensor: Option<String>,
+params! {
+    /// Layout file, and the further information that its format needs.
+    pub struct FileLayoutParts {
+        /// Path of the layout file.
+        path: FilePath;
+        /// Mesh whose surface normals are the taxel axes, for files of points without normals.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        mesh: Option<FilePath>;
+        /// Length unit of the mesh file. Default: metres.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        unit: Option<LengthUnit>;
+        /// Name of the tactile sensor, if a robot's file contains several sensors.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        sensor: Option<String>;
+    }
 }
 
-/// Part of a surface on which taxels are placed, such as `region = { group = "fingertip", box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [20.0, 20.0, 10.0] }`. A
-/// point belongs to the region if it satisfies all given keys.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RegionSpec {
-    /// Smallest coordinates of a box in the mesh frame, mm, together with `box_max_mm`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub box_min_mm: Option<[f64; 3]>,
-    /// Largest coordinates of the box in the mesh frame, mm, together with `box_min_mm`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub box_max_mm: Option<[f64; 3]>,
-    /// Normal of a plane that bounds the region; its length is arbitrary, and it points to the side of the region.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plane_normal: Option<[f64; 3]>,
-    /// Point of the plane, mm, together with `plane_normal`. Default: the origin of the mesh.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plane_point_mm: Option<[f64; 3]>,
-    /// Name of the link of the patch's `robot` whose shapes replace a mesh file; this link carries the patch. The box and the plane are then in the link frame.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub link: Option<String>,
-    /// Shapes of `link` that form the surface: `collision` or `visual`. Default: the collision shapes, or the visual ones if the link has no collision shapes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<Names<ShapeRole>>")]
-    pub shapes: Option<ShapeRole>,
-    /// Name of a group (`g`) or object (`o`) of an OBJ file that forms the region.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub group: Option<String>,
-    /// Numbers of the first and last triangle of the region, counted from 0 in the order of the mesh file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub triangles: Option<[usize; 2]>,
+params! {
+    /// Part of a surface on which taxels are placed, such as `region = { group = "fingertip", box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [20.0, 20.0, 10.0] }`. A
+    /// point belongs to the region if it satisfies all given keys.
+    #[derive(Default)]
+    pub struct RegionSpec {
+        /// Smallest coordinates of a box in the mesh frame, mm, together with `box_max_mm`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        box_min_mm: Option<[f64; 3]>;
+        /// Largest coordinates of the box in the mesh frame, mm, together with `box_min_mm`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        box_max_mm: Option<[f64; 3]>;
+        /// Normal of a plane that bounds the region; its length is arbitrary, and it points to the side of the region.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        plane_normal: Option<[f64; 3]>;
+        /// Point of the plane, mm, together with `plane_normal`. Default: the origin of the mesh.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        plane_point_mm: Option<[f64; 3]>;
+        /// Name of the link of the patch's `robot` whose shapes replace a mesh file; this link carries the patch. The box and the plane are then in the link frame.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        link: Option<String>;
+        /// Shapes of `link` that form the surface: `collision` or `visual`. Default: the collision shapes, or the visual ones if the link has no collision shapes.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        shapes: Option<ShapeRole>;
+        /// Name of a group (`g`) or object (`o`) of an OBJ file that forms the region.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        group: Option<String>;
+        /// Numbers of the first and last triangle of the region, counted from 0 in the order of the mesh file.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        triangles: Option<[usize; 2]>;
+    }
 }

@@ -1,6 +1,6 @@
 //! Schemas of the tables `[axes]` and `[test]`, which repeat keys of other tables.
 
-use super::tidy::properties;
+use super::properties;
 use crate::inputs::keys::AxisPlace;
 use crate::inputs::toml_value::is_at;
 use crate::studies::recognition::plan::tested::{SHARED, TABLES};

@@ -1,12 +1,11 @@
 //! The page `guide/reference.md`: all keys of study and scene files.
 
 use super::axes_schema::is_axis;
+use super::properties;
 use super::scene_schema;
 use super::study_schema::{KindSchema, kinds};
-use super::tidy::properties;
 use crate::inputs::keys::{AxisPlace, KeyAbout, unit_of};
-use crate::inputs::schema_types::accepted_keys;
-use crate::scene::SceneSpec;
+use crate::inputs::params::{ORDER, sentence};
 use crate::table::short_number;
 use serde_json::Value;
 
@@ -76,7 +75,6 @@ pub fn reference_page() -> String {
         page.push_str(&words_of_kind(kind, &kinds[0]));
         let file = FileKind {
             schema: &kind.schema,
-            accepted_keys: kind.accepted_keys,
             keys: &kind.keys,
         };
         file.write(&mut written, &mut page);
@@ -87,7 +85,6 @@ pub fn reference_page() -> String {
     page.push_str(SCENES);
     let file = FileKind {
         schema: &scene_schema(),
-        accepted_keys: accepted_keys::<SceneSpec>,
         keys: &[],
     };
     file.write(&mut Vec::new(), &mut page);
@@ -129,15 +126,6 @@ fn words_of_kind(kind: &KindSchema, first: &KindSchema) -> String {
     words
 }
 
-/// Returns a text with a capital first letter.
-fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters
-        .next()
-        .map(|letter| letter.to_uppercase().to_string());
-    format!("{}{}", first.unwrap_or_default(), letters.as_str())
-}
-
 /// Returns a link to the section with the given heading.
 fn link(heading: &str) -> String {
     let anchor = heading.to_lowercase();
@@ -151,7 +139,6 @@ fn link(heading: &str) -> String {
 /// Kind of input file, such as a study or a scene.
 struct FileKind<'s> {
     schema: &'s Value,
-    accepted_keys: fn(toml::Value) -> Vec<String>,
     /// Descriptions of the keys; empty for scene files, whose keys cannot be swept.
     keys: &'s [KeyAbout],
 }
@@ -207,12 +194,12 @@ impl FileKind<'_> {
             .unwrap_or_default();
         let mut inner = Vec::new();
         let mut lists = String::new();
-        for name in table.names(self.accepted_keys) {
-            let key = &table.schema["properties"][&name];
-            if key["deprecated"] == true || REPEATED.contains(&&name[..]) && table.path.is_empty() {
+        for name in table.names() {
+            let key = &table.schema["properties"][name];
+            if REPEATED.contains(&name) && table.path.is_empty() {
                 continue;
             }
-            let nested = table.nested_tables(&name, key);
+            let nested = table.nested_tables(name, key);
             let values = match &nested[..] {
                 [] => values(key),
                 tables => {
@@ -222,22 +209,22 @@ impl FileKind<'_> {
                     links.chain(values).collect::<Vec<_>>().join(", ")
                 }
             };
-            let default = match required.contains(&name.clone().into()) {
+            let default = match required.contains(&name.into()) {
                 true => "required".to_owned(),
                 false => default(key),
             };
-            let about = table.about(&name, self.keys);
+            let about = table.about(name, self.keys);
             let axis = match self.keys.is_empty() {
                 true => String::new(),
                 false => format!(" {} |", axis(about)),
             };
             page.push_str(&format!(
                 "| `{name}` | {values} | {} | {} | {default} |{axis} {} |\n",
-                unit(&name, about),
+                unit(name, about),
                 range(key),
                 meaning(key),
             ));
-            lists.push_str(&meanings_of_values(&name, key));
+            lists.push_str(&meanings_of_values(name, key));
             inner.extend(nested);
         }
         page.push_str(&lists);
@@ -279,13 +266,9 @@ impl<'s> Table<'s> {
     }
 
     /// Returns the names of all keys, in the order of their declaration.
-    fn names(&self, accepted_keys: fn(toml::Value) -> Vec<String>) -> Vec<String> {
-        let mut names = accepted_keys(self.probe());
-        let own = properties(self.schema).map(|(name, _)| name);
-        let missing: Vec<String> = own.filter(|name| !names.contains(name)).cloned().collect();
-        names.retain(|name| self.schema["properties"].get(name).is_some());
-        names.extend(missing);
-        names
+    fn names(&self) -> impl Iterator<Item = &'s str> {
+        let order = self.schema[ORDER].as_array();
+        order.into_iter().flatten().filter_map(Value::as_str)
     }
 
     /// Returns the description of a key in the table.
@@ -293,21 +276,6 @@ impl<'s> Table<'s> {
         let names = self.path.iter().map(|step| &step.name[..]).chain([name]);
         let path = names.collect::<Vec<_>>().join(".");
         keys.iter().find(|key| key.path == path)
-    }
-
-    /// Returns a file that contains only this table with the unknown key `?`.
-    fn probe(&self) -> toml::Value {
-        let table = |name: &str, value| {
-            toml::Value::Table([(name.to_owned(), value)].into_iter().collect())
-        };
-        let unknown = table("?", 0.into());
-        self.path
-            .iter()
-            .rev()
-            .fold(unknown, |inner, step| match step.is_list {
-                true => table(&step.name, toml::Value::Array(vec![inner])),
-                false => table(&step.name, inner),
-            })
     }
 
     /// Returns the tables that are the value of a key: a single table, or one for each variant.

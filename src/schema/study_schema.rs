@@ -3,9 +3,7 @@
 //! All kinds use tables such as `[skin]`, so the schema lists each table once. Conditions then state which tables a file of each kind may have and must
 //! have. The kind follows from the table that only this kind has.
 
-use super::ranges::bound;
-use super::tidy::{properties, tidy};
-use super::{DIALECT, axes_schema, generator};
+use super::{DIALECT, axes_schema, properties};
 use crate::inputs::keys::KeyAbout;
 use crate::studies;
 use serde_json::{Map, Value, json};
@@ -18,22 +16,14 @@ pub(super) struct KindSchema {
     pub words: &'static str,
     /// Schema of a file of this kind, without conditions.
     pub schema: Value,
-    /// Function that returns all keys that the reader of a file accepts.
-    pub accepted_keys: fn(toml::Value) -> Vec<String>,
     /// Descriptions of all keys.
     pub keys: Vec<KeyAbout>,
 }
 
 /// Returns the schema of each kind of study, recognition first.
 pub(super) fn kinds() -> Vec<KindSchema> {
-    let kinds = studies::kind_files(generator).into_iter().rev();
+    let kinds = studies::kind_files().into_iter().rev();
     let kinds = kinds.map(|mut kind| {
-        tidy(&mut kind.schema);
-        for key in &kind.keys {
-            bound(&mut kind.schema, key.path, |number| {
-                key.range.contains(number)
-            });
-        }
         if kind.about.table == studies::RECOGNITION_TABLE {
             axes_schema::complete(&mut kind.schema);
         }
@@ -41,7 +31,6 @@ pub(super) fn kinds() -> Vec<KindSchema> {
             table: kind.about.table,
             words: kind.about.words,
             schema: kind.schema,
-            accepted_keys: kind.accepted_keys,
             keys: kind.keys,
         }
     });

@@ -1,90 +1,52 @@
 //! Tests that schemas and generated pages agree with the code that reads files.
 
 use super::study_schema::kinds;
-use super::tidy::properties;
 use super::*;
-use crate::inputs::schema_types::accepted_keys;
-use std::collections::BTreeSet;
+use crate::scene::ScenePlan;
 use std::path::Path;
 
-/// Reader of a file kind: function that returns the keys accepted in the table that contains the probe key `?`.
-type Accepts = fn(toml::Value) -> Vec<String>;
-
-/// Returns the schema and the reader of each kind of file.
-fn files() -> Vec<(Value, Accepts)> {
-    let studies = kinds()
-        .into_iter()
-        .map(|kind| (kind.schema, kind.accepted_keys));
-    let scene: (Value, Accepts) = (scene_schema(), accepted_keys::<SceneSpec>);
-    studies.chain([scene]).collect()
+/// Returns the schema of each kind of file.
+fn files() -> Vec<Value> {
+    let studies = kinds().into_iter().map(|kind| kind.schema);
+    studies.chain([scene_schema()]).collect()
 }
 
-/// Calls `visit` for each table of a schema, together with an example file that contains the single key `?` in this table.
-fn each_table(
-    schema: &Value,
-    probe: &dyn Fn(toml::Value) -> toml::Value,
-    visit: &mut dyn FnMut(&Value, toml::Value),
-) {
-    let table = |name: &str, value: toml::Value| -> toml::Value {
-        toml::Value::Table([(name.to_owned(), value)].into_iter().collect())
-    };
+/// Calls `visit` for each table of a schema.
+fn each_table(schema: &Value, visit: &mut dyn FnMut(&Value)) {
     if schema.get("properties").is_some() {
-        visit(schema, probe(table("?", 0.into())));
+        visit(schema);
     }
     for (name, key) in properties(schema) {
-        // These tables repeat keys of others, and their readers are not serde's.
-        if !["axes", "test", "signal"].contains(&&name[..])
-            || key["type"] == "object" && name == "signal"
-        {
-            each_table(key, &|inner| probe(table(name, inner)), visit);
+        // These tables repeat keys of others.
+        if !["axes", "test"].contains(&&name[..]) {
+            each_table(key, visit);
         }
     }
     if schema["type"] == "array" {
-        each_table(&schema["items"], &|inner| probe(vec![inner].into()), visit);
+        each_table(&schema["items"], visit);
     }
     for variant in schema["oneOf"].as_array().into_iter().flatten() {
-        for (name, key) in properties(variant) {
-            each_table(key, &|inner| probe(table(name, inner)), visit);
+        for (_, key) in properties(variant) {
+            each_table(key, visit);
         }
     }
-}
-
-#[test]
-fn a_schema_has_the_keys_that_the_reader_accepts_and_no_other() {
-    let mut n_tables = 0;
-    for (schema, accepted_keys) in files() {
-        each_table(&schema, &|probe| probe, &mut |table, probe| {
-            let own: BTreeSet<&str> = properties(table).map(|(name, _)| &name[..]).collect();
-            let accepted = accepted_keys(probe.clone());
-            let mut accepted: BTreeSet<&str> = accepted.iter().map(String::as_str).collect();
-            // The reader of a study takes `[axes]` out before the other tables are read.
-            accepted.extend(own.get("axes"));
-            if table["additionalProperties"] == false {
-                assert_eq!(own, accepted, "{probe}");
-            }
-            n_tables += 1;
-        });
-    }
-    assert!(n_tables > 40, "{n_tables}");
 }
 
 #[test]
 fn every_key_and_column_has_a_meaning_and_a_row() {
     let page = reference_page();
     let has_row = |name: &str| page.contains(&format!("| `{name}` |"));
-    for (schema, _) in files() {
-        each_table(&schema, &|probe| probe, &mut |table, probe| {
+    for schema in files() {
+        each_table(&schema, &mut |table| {
             for (name, key) in properties(table) {
                 assert!(
                     key["description"]
                         .as_str()
                         .is_some_and(|words| !words.is_empty()),
-                    "{name} in {probe}"
+                    "{name} in {table}"
                 );
                 assert!(
-                    has_row(name)
-                        || key["deprecated"] == true
-                        || ["test", "axes"].contains(&&name[..]),
+                    has_row(name) || ["test", "axes"].contains(&&name[..]),
                     "{name}"
                 );
             }
@@ -132,8 +94,8 @@ fn leading_number(text: &str) -> Option<f64> {
 #[test]
 fn a_default_in_words_is_the_default_of_the_reader_and_no_choice_of_words_lacks_one() {
     let (mut n_numbers, mut n_words) = (0, 0);
-    for (schema, _) in files() {
-        each_table(&schema, &|probe| probe, &mut |table, _| {
+    for schema in files() {
+        each_table(&schema, &mut |table| {
             let required = table["required"].as_array().into_iter().flatten();
             let required: Vec<&str> = required.filter_map(Value::as_str).collect();
             for (name, key) in properties(table) {
@@ -156,4 +118,126 @@ fn a_default_in_words_is_the_default_of_the_reader_and_no_choice_of_words_lacks_
         });
     }
     assert!(n_numbers > 20 && n_words > 3, "{n_numbers} {n_words}");
+}
+
+/// Scenes whose numbers are all allowed. Together they have every number with a range but those of layouts draped over a mesh.
+const SCENES: [&str; 3] = [
+    r#"title = "a"
+dt_ms = 1.0
+output_hz = 10.0
+duration_s = 0.1
+robots = [{ name = "r", floating = true, motion = { phases = [{ duration_s = 0.1 }] } }]
+[[patches]]
+name = "p"
+robot = "r"
+layout = { grid = { nx = 4, ny = 4, pitch_mm = 2.0 } }
+taxel_radius_mm = 1.0
+stroke_mm = 2.0
+stiffness_n_per_m = 100.0
+damping_n_s_per_m = 0.0
+friction = 0.5
+shear_stiffness_n_per_m = 50.0
+[[objects]]
+name = "o"
+object = "golf"
+surface_error_mm = 0.5
+at.position_mm = [0.0, 0.0, 40.0]
+motion = { phases = [{ duration_s = 0.1 }] }
+press = { patch = "p", direction = [0.0, 0.0, -1.0], force_n = 1.0, speed_mm_per_s = 1.0, travel_mm = 1.0 }
+"#,
+    r#"title = "b"
+duration_s = 0.1
+[[patches]]
+name = "a"
+stroke_mm = 1.0
+layout = { hexagonal = { nx = 3, ny = 3, pitch_mm = 2.0 } }
+[[objects]]
+name = "o"
+object = "golf"
+at.position_mm = [0.0, 0.0, 40.0]
+free = { mass_kg = 0.1 }
+"#,
+    r#"title = "c"
+duration_s = 0.1
+patches = [
+    { name = "a", stroke_mm = 1.0, layout = { disc = { radius_mm = 5.0, pitch_mm = 2.0 } } },
+    { name = "b", stroke_mm = 1.0, layout = { annulus = { inner_mm = 5.0, outer_mm = 9.0, pitch_mm = 2.0 } } },
+    { name = "c", stroke_mm = 1.0, layout = { cylinder = { radius_mm = 20.0, length_mm = 9.0, arc_deg = 90.0, pitch_mm = 2.0 } } },
+    { name = "d", stroke_mm = 1.0, layout = { sphere_cap = { radius_mm = 20.0, half_angle_deg = 30.0, pitch_mm = 2.0 } } },
+]
+"#,
+];
+
+/// Calls `visit` with the path and the schema of each number of a file, given the schema of the file.
+fn each_number(
+    value: &toml::Value,
+    schema: &Value,
+    path: &[String],
+    visit: &mut dyn FnMut(&[String], &Value),
+) {
+    let forms = ["anyOf", "oneOf"].map(|forms| schema[forms].as_array());
+    for form in forms.into_iter().flatten().flatten() {
+        each_number(value, form, path, visit);
+    }
+    let below = |name: String| [path, &[name]].concat();
+    match value {
+        toml::Value::Table(table) => {
+            for (name, inner) in table {
+                let schema = &schema["properties"][name];
+                each_number(inner, schema, &below(name.clone()), visit);
+            }
+        }
+        toml::Value::Array(values) => {
+            for (number, inner) in values.iter().enumerate() {
+                each_number(inner, &schema["items"], &below(number.to_string()), visit);
+            }
+        }
+        _ if schema["type"] == "number" || schema["type"] == "integer" => visit(path, schema),
+        _ => {}
+    }
+}
+
+#[test]
+fn a_scene_has_the_numbers_that_its_schema_allows() {
+    let schema = scene_schema();
+    let plan = |scene: &toml::Value| {
+        let text = toml::to_string(scene).unwrap();
+        let spec = SceneSpec::parse("s.toml", &text)?;
+        ScenePlan::new("s.toml", Path::new(""), spec)
+    };
+    let mut n_bounds = 0;
+    for text in SCENES {
+        let scene = toml::Value::Table(text.parse().unwrap());
+        plan(&scene).unwrap();
+        each_number(&scene, &schema, &[], &mut |path, schema| {
+            for number in [-1.0, 0.0] {
+                let is_above = |least: &str, is_in: fn(f64, f64) -> bool| {
+                    schema[least]
+                        .as_f64()
+                        .is_none_or(|least| is_in(number, least))
+                };
+                let is_allowed = is_above("minimum", |n, least| n >= least)
+                    && is_above("exclusiveMinimum", |n, least| n > least);
+                let mut scene = scene.clone();
+                let place =
+                    path.iter()
+                        .fold(&mut scene, |value, name| match name.parse::<usize>() {
+                            Ok(number) if value.is_array() => &mut value[number],
+                            _ => &mut value[&name[..]],
+                        });
+                *place = match schema["type"] == "integer" {
+                    true => toml::Value::Integer(number as i64),
+                    false => toml::Value::Float(number),
+                };
+                // A number without bounds may be refused for another reason.
+                if !is_allowed {
+                    assert!(plan(&scene).is_err(), "{path:?} = {number}");
+                    n_bounds += 1;
+                } else if schema.get("minimum").is_some() {
+                    assert!(plan(&scene).is_ok(), "{path:?} = {number}");
+                }
+            }
+        });
+    }
+    assert!(n_bounds > 60, "{n_bounds}");
 }

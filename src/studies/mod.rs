@@ -32,13 +32,12 @@ use crate::error::{Error, Result};
 use crate::files::{OwnedFiles, RUN, with_folder};
 use crate::inputs::check::Check;
 use crate::inputs::keys::KeyAbout;
-use crate::inputs::schema_types::accepted_keys;
+use crate::inputs::params::Described;
 use crate::report::csv_tables::FAILURES_FILE;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::table::{FileAbout, Table};
 use crate::toml_numbers::with_line;
 use crate::toml_text;
-use schemars::{Schema, SchemaGenerator};
 use std::path::Path;
 
 /// Registry entry of a kind of study, without static type, so that all kinds are in one list.
@@ -46,9 +45,8 @@ struct Entry {
     about: About,
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
     tables: TableFiles,
-    schema: fn(SchemaGenerator) -> Schema,
+    schema: fn() -> serde_json::Value,
     keys: fn() -> Vec<KeyAbout>,
-    accepted_keys: fn(toml::Value) -> Vec<String>,
 }
 
 /// Registry of all kinds of studies.
@@ -68,9 +66,8 @@ const fn entry<K: Study>() -> Entry {
         about: K::ABOUT,
         load: |source| Ok(Box::new(Loaded::<K>::load(source)?)),
         tables: K::TABLES,
-        schema: SchemaGenerator::into_root_schema_for::<K::Spec>,
+        schema: K::Spec::schema,
         keys: K::keys,
-        accepted_keys: accepted_keys::<K::Spec>,
     }
 }
 
@@ -80,8 +77,6 @@ pub(crate) struct KindFiles {
     pub about: About,
     /// JSON Schema of the kind's study files.
     pub schema: serde_json::Value,
-    /// Function that returns the keys which the study reader accepts; see [`accepted_keys`].
-    pub accepted_keys: fn(toml::Value) -> Vec<String>,
     /// Descriptions of all keys that a study file of the kind may have.
     pub keys: Vec<KeyAbout>,
     /// Table files that a study of the kind writes.
@@ -89,11 +84,10 @@ pub(crate) struct KindFiles {
 }
 
 /// Returns a description of each kind of study's input and result files.
-pub(crate) fn kind_files(generator: fn() -> SchemaGenerator) -> Vec<KindFiles> {
+pub(crate) fn kind_files() -> Vec<KindFiles> {
     let kinds = KINDS.iter().map(|entry| KindFiles {
         about: entry.about,
-        schema: (entry.schema)(generator()).to_value(),
-        accepted_keys: entry.accepted_keys,
+        schema: (entry.schema)(),
         keys: (entry.keys)(),
         tables: entry.tables,
     });

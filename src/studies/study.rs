@@ -6,13 +6,12 @@ use crate::engine::work_items::{
 };
 use crate::error::{Error, Result};
 use crate::inputs::keys::KeyAbout;
+use crate::inputs::params::Described;
 use crate::report::study_content::Beyond;
 use crate::studies::source::Source;
 use crate::table::{ChartSpec, Columns, File, FileAbout, Table};
 use crate::toml_text;
-use schemars::JsonSchema;
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -183,7 +182,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
 
     /// Specification of a study: the keys that its file may have.
-    type Spec: JsonSchema + DeserializeOwned;
+    type Spec: Described;
 
     /// Type of the result rows of a work item.
     type Rows: ItemRows;

@@ -194,35 +194,38 @@ fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::V
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inputs::keys::keys;
-    use crate::inputs::range::Range;
+    use crate::inputs::params::{keys_of, params};
+    use crate::inputs::range::Range::Any;
 
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
-    struct Study {
-        seed: u64,
-        #[serde(default)]
-        ratio: Vec<f64>,
-        skin: Skin,
+    params! {
+        /// Study.
+        pub struct Study {
+            /// Seed.
+            seed: u64;
+            /// Swept key.
+            ratio: Vec<f64> = Vec::new() => Any, Choice, Table;
+            /// Table.
+            skin: Skin;
+            /// Key that is no axis.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            report: Option<String> => Any, Note, Never;
+        }
     }
 
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
-    struct Skin {
-        stroke_mm: f64,
-        #[serde(default)]
-        words: String,
+    params! {
+        /// Skin.
+        pub struct Skin {
+            /// Key without default.
+            stroke_mm: f64;
+            /// Key with default.
+            words: String = String::new();
+        }
     }
-
-    const KEYS: &[KeyAbout] = keys! {
-        "ratio": Table, Choice, Range::Any;
-        "report": Never, Note, Range::Any;
-    };
 
     const TEXT: &str = "[axes]\n\"skin.stroke_mm\" = [5.0, 1]\nseed = [3, 1]\nratio = [1.0, 4.0]\n[skin]\nwords = \"a\"\n";
 
     fn said(text: &str) -> String {
-        let read = read::<Study>("s.toml", text, KEYS);
+        let read = read::<Study>("s.toml", text, keys_of::<Study>());
         let made = read.and_then(|(study, axes)| axes.variants("s.toml", &study));
         let error = made.unwrap_err();
         assert_eq!(error.exit_code(), 2);
@@ -231,7 +234,7 @@ mod tests {
 
     #[test]
     fn every_combination_is_a_study_and_the_first_axis_changes_slowest() {
-        let (study, axes) = read::<Study>("s.toml", TEXT, KEYS).unwrap();
+        let (study, axes) = read::<Study>("s.toml", TEXT, keys_of::<Study>()).unwrap();
         assert_eq!(study.ratio, [1.0, 4.0]);
         let variants = axes.variants("s.toml", &study).unwrap();
         let found = variants
@@ -249,9 +252,9 @@ mod tests {
 
     #[test]
     fn a_study_with_axes_reads_back_from_what_it_is_written_as() {
-        let (study, axes) = read::<Study>("s.toml", TEXT, KEYS).unwrap();
+        let (study, axes) = read::<Study>("s.toml", TEXT, keys_of::<Study>()).unwrap();
         let text = to_toml(&study, &axes);
-        let (again, same) = read::<Study>("s.toml", &text, KEYS).unwrap();
+        let (again, same) = read::<Study>("s.toml", &text, keys_of::<Study>()).unwrap();
         let keys = |axes: &StudyAxes| -> Vec<(String, Vec<toml::Value>)> {
             let axes = axes.axes.iter();
             axes.map(|axis| (axis.key.clone(), axis.values.clone()))

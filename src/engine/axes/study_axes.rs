@@ -3,22 +3,21 @@
 use super::study_axis::StudyAxis;
 use super::toml_path::with_value;
 use crate::error::{Error, Result};
+use crate::inputs::params::words;
 use crate::table::Column;
-use schemars::JsonSchema;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Rule that selects the combinations of axis values that become configurations.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CombineSpec {
-    /// All combinations of the values of the axes are computed.
-    #[default]
-    All,
-    /// A base configuration, and variants in which a single axis has another value than in the base configuration. The base has the first value of each axis;
-    /// for `[axes]`, it has the values of the study's own tables.
-    OneAtATime,
+words! {
+    /// Rule that selects the combinations of axis values that become configurations.
+    pub enum CombineSpec = All {
+        /// All combinations of the values of the axes are computed.
+        All = "all",
+        /// A base configuration, and variants in which a single axis has another value than in the base configuration. The base has the first value of each axis;
+        /// for `[axes]`, it has the values of the study's own tables.
+        OneAtATime = "one_at_a_time",
+    }
 }
 
 /// Axes of a study that its table `[axes]` declares; the last axis changes fastest.

@@ -212,24 +212,17 @@ fn scale(numbers: Option<Vec<f64>>) -> Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inputs::keys::keys;
-    use crate::inputs::range::Range;
+    use crate::studies::recognition::spec::keys::recognition_keys;
 
     #[test]
     fn a_column_has_the_description_of_its_key_and_a_taken_name_its_whole_path() {
-        const KEYS: &[KeyAbout] = keys! {
-            "skin.stiffness_n_per_m": Axes, Choice, Range::Positive;
-            "skin.friction": Axes, Condition, Range::NotNegative;
-            "touches.frames": Table, Choice, Range::AtLeastOne, title: "frames a touch", scale: Scale::Log;
-            "touches.depth_mm": Axes, Choice, Range::Positive;
-            "touches.offset_x_mm": Axes, Condition, Range::Any;
-            "touches.offset_y_mm": Axes, Condition, Range::Any;
-            "sensing.readings_per_s": Axes, Choice, Range::Positive;
-            "recognition.solver": Axes, Choice, Range::Any;
-        };
         let axis = |key: &str, values: &str| {
             let table: toml::Table = format!("v = {values}").parse().unwrap();
-            StudyAxis::new(key.to_owned(), table["v"].as_array().unwrap().clone(), KEYS)
+            StudyAxis::new(
+                key.to_owned(),
+                table["v"].as_array().unwrap().clone(),
+                recognition_keys(),
+            )
         };
         let column = |key: &str, values: &str| axis(key, values).column(|name| name == "frames");
         for (key, values, name, title, role, scale) in [

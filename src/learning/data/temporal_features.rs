@@ -22,10 +22,10 @@
 //! If all frames have one level, there is no contact, and numbers 2 to 10 are 0.
 
 use crate::error::{Error, Result};
+use crate::inputs::params::Described;
 use ndarray::{ArrayView2, ArrayViewMut1, Axis};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
+use serde_json::{Value, json};
 
 /// Temporal features that are computed from the frames of a touch, before scaling and training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -186,17 +186,9 @@ impl TryFrom<String> for TemporalFeatures {
     }
 }
 
-impl JsonSchema for TemporalFeatures {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "TemporalFeatures".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({
+impl Described for TemporalFeatures {
+    fn schema() -> Value {
+        json!({
             "anyOf": [
                 { "type": "string", "enum": ["deepest", "moments", "course", "summarised"] },
                 { "title": "`stacked_` and a number", "type": "string", "pattern": "^stacked_\\+?0*[1-9][0-9]*$" },

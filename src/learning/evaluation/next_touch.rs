@@ -16,22 +16,20 @@
 //!
 //! I(O; A | x) = H(A | x) − Σ_o P(o) H(A | o, x), P(a | x) = Σ_o P(o) P(a | o, x) (Lindley, 1956).
 
+use crate::inputs::params::words;
 use ndarray::{Array1, Array2, ArrayView1, Axis};
 use rayon::prelude::*;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// Rule that chooses the pose of each touch after the first touch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum NextTouch {
-    /// Pose that is drawn at random from all poses.
-    #[default]
-    Random,
-    /// Pose with the largest distance to the nearest previous touch.
-    Farthest,
-    /// Pose after which the expected entropy (uncertainty) of the probabilities of the objects is lowest.
-    MostInformative,
+words! {
+    /// Rule that chooses the pose of each touch after the first touch.
+    pub enum NextTouch = Random {
+        /// Pose that is drawn at random from all poses.
+        Random = "random",
+        /// Pose with the largest distance to the nearest previous touch.
+        Farthest = "farthest",
+        /// Pose after which the expected entropy (uncertainty) of the probabilities of the objects is lowest.
+        MostInformative = "most_informative",
+    }
 }
 
 /// Poses of touches in normalised coordinates.

@@ -2,14 +2,13 @@
 
 use crate::error::Result;
 use crate::inputs::check::Check;
-use crate::inputs::keys::{KeyAbout, keys};
-use crate::inputs::range::Range::{Any, Count};
-use crate::inputs::range::{SURFACE_ERROR, TOUCHES};
+use crate::inputs::keys::KeyAbout;
+use crate::inputs::params::keys_of;
 use crate::studies::object_detail::spec::{
     DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec,
 };
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::keys::shared_keys;
+use crate::studies::recognition::spec::keys::keys_without_axes;
 use crate::world::Placement;
 use std::path::PathBuf;
 
@@ -26,25 +25,9 @@ pub struct ObjectDetailPlan {
     pub placement: Placement,
 }
 
-/// Maximum number of mesh points at which distances are measured; all points are kept in memory.
-const MAX_POINTS: usize = 10_000_000;
-
-/// Descriptions of the keys of the table `[object_detail]` in a study file.
-const KEYS: &[KeyAbout] = keys! {
-    "object_detail.tolerances_mm": Table, Choice, SURFACE_ERROR;
-    "object_detail.methods": Table, Choice, Any;
-    "object_detail.surface_points": Never, Note, Count(1, MAX_POINTS);
-    "object_detail.recognition.training_touches": Never, Choice, TOUCHES;
-    "object_detail.recognition.test_touches": Never, Condition, TOUCHES;
-    "object_detail.recognition.ensemble": Never, Choice, Any;
-    "object_detail.recognition.measurements": Never, Choice, TOUCHES;
-    "object_detail.recognition.classifiers": Table, Choice, Any;
-};
-
 /// Returns the descriptions of all keys of an object-detail study.
 pub fn object_detail_keys() -> Vec<KeyAbout> {
-    let tables = ["question", "expected", "seed", "objects", "skin", "touches"];
-    [&shared_keys(&tables, &[]), KEYS].concat()
+    keys_without_axes(keys_of::<ObjectDetailStudySpec>(), &["object_detail"])
 }
 
 impl ObjectDetailPlan {
@@ -76,7 +59,7 @@ impl ObjectDetailPlan {
         let of_force = "no such key: the study compares deflections at rest";
         check.used_springs((&spec.skin, &spec.touches), false, of_force)?;
         let wanted = &spec.object_detail;
-        check.keys("object_detail", wanted, KEYS)?;
+        check.keys("object_detail", wanted, keys_of::<ObjectDetailStudySpec>())?;
         if wanted.methods.contains(&DetailMethod::Mesh) {
             let allowed = "packing, vertex_spheres, decimated_vertex_spheres, medial_spheres: the mesh is what they are compared with";
             return Err(check.error("object_detail.methods", "mesh", allowed));

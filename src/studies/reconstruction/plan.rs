@@ -4,16 +4,15 @@ use crate::engine::axes::CombineSpec;
 use crate::engine::work_items::shared::Shared;
 use crate::error::Result;
 use crate::inputs::check::Check;
-use crate::inputs::keys::{KeyAbout, keys};
-use crate::inputs::range::COUNT;
-use crate::inputs::range::Range::{Any, Count, Part, Positive};
+use crate::inputs::keys::KeyAbout;
+use crate::inputs::params::keys_of;
 use crate::inputs::sensor_errors::NOISES;
 use crate::inputs::units::MM;
 use crate::random::Seed;
 use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::keys::shared_keys;
+use crate::studies::recognition::spec::keys::keys_without_axes;
 use crate::studies::recognition::spec::signal::{SignalSpec, StepSpec};
 use crate::studies::recognition::sweep::configurations::nested;
 use crate::studies::reconstruction::rows::ReconstructionConfiguration;
@@ -39,39 +38,12 @@ pub struct ReconstructionPlan {
     pub dictionaries: Vec<Basis>,
 }
 
-/// Maximum value of the key `isometry_subsets`, the number of randomly drawn sets of atoms (supports) per size. All drawn supports are in memory together.
-const MAX_SUBSETS: usize = 1_000_000;
-
-/// Maximum value of the key `atoms` (number of atoms of a dictionary), more than any array has taxels. The minimum is two, because λ = √(2 ln k) vanishes for k
-/// = 1 atom.
-const MAX_ATOMS: usize = 100_000_000;
-
-/// Descriptions of the keys of the table `[reconstruction]` in a study file.
-const KEYS: &[KeyAbout] = keys! {
-    "reconstruction.solver": Table, Choice, Any;
-    "reconstruction.dictionary": Table, Choice, Any;
-    "reconstruction.atoms": Never, Choice, Count(2, MAX_ATOMS);
-    "reconstruction.most_atoms": Never, Choice, COUNT;
-    "reconstruction.lambda_scale": Never, Choice, Positive;
-    "reconstruction.tolerance": Never, Choice, Positive;
-    "reconstruction.most_steps": Never, Choice, COUNT;
-    "reconstruction.test_fraction": Never, Condition, Part;
-    "reconstruction.isometry_sparsity": Table, Condition, COUNT;
-    "reconstruction.isometry_subsets": Never, Note, Count(1, MAX_SUBSETS);
-};
-
 /// Returns the descriptions of all keys of a reconstruction study.
 pub fn reconstruction_keys() -> Vec<KeyAbout> {
-    let tables = [
-        "question", "expected", "seed", "objects", "skin", "touches", "signal", "sensing",
-    ];
     let noise = NOISES.map(|(key, _)| format!("signal.{key}"));
-    let axes: Vec<&str> = noise
-        .iter()
-        .map(String::as_str)
-        .chain(["sensing"])
-        .collect();
-    [&shared_keys(&tables, &axes), KEYS].concat()
+    let lists = noise.iter().map(String::as_str);
+    let lists: Vec<&str> = lists.chain(["sensing", "reconstruction"]).collect();
+    keys_without_axes(keys_of::<ReconstructionStudySpec>(), &lists)
 }
 
 impl ReconstructionPlan {
@@ -96,7 +68,11 @@ impl ReconstructionPlan {
         check.sensing(&spec.sensing, std::slice::from_ref(&array))?;
         check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
         let wanted = &spec.reconstruction;
-        check.keys("reconstruction", wanted, KEYS)?;
+        check.keys(
+            "reconstruction",
+            wanted,
+            keys_of::<ReconstructionStudySpec>(),
+        )?;
         check.efforts(wanted)?;
         let dictionaries = check.dictionaries(wanted, array.grid())?;
         let axes = [

@@ -2,9 +2,7 @@
 
 use crate::error::Result;
 use crate::inputs::check::Check;
-use crate::inputs::keys::{KeyAbout, keys};
-use crate::inputs::range::COUNT;
-use crate::inputs::range::Range::{Any, Positive, Unchecked};
+use crate::inputs::params::keys_of;
 use crate::inputs::units::MM;
 use crate::studies::recognition::sweep::configurations::nested;
 use crate::studies::stability::rows::StabilityConfiguration;
@@ -30,24 +28,6 @@ pub struct StabilityPlan {
 /// Maximum number of taxels along a side of the array. Larger arrays take long and give no new information about stability.
 const MAX_TAXELS: usize = 256;
 
-/// Descriptions of the keys of a stability study.
-pub const STABILITY_KEYS: &[KeyAbout] = keys! {
-    "question": Never, Note, Unchecked;
-    "expected": Never, Note, Unchecked;
-    "stability.pitch_mm": Never, Choice, Positive;
-    "stability.peers": Never, Note, Unchecked;
-    "stability.parts.scene": Never, Condition, Any;
-    "stability.parts.methods": Table, Choice, Any;
-    "stability.parts.taxels": Table, Choice, COUNT;
-    "stability.parts.stroke_mm": Never, Choice, Positive;
-    "stability.parts.stiffness_n_per_m": Table, Choice, Positive;
-    "stability.parts.taxel_mass_kg": Table, Choice, Positive;
-    "stability.parts.object_mass_kg": Table, Condition, Positive;
-    "stability.parts.object_mass_per_taxel_kg": Table, Condition, Positive;
-    "stability.parts.dt_s": Table, Choice, Positive;
-    "stability.parts.solver_iterations": Table, Choice, COUNT;
-};
-
 impl StabilityPlan {
     /// Creates the plan of a study whose file is in `folder`, and checks all keys.
     ///
@@ -56,7 +36,7 @@ impl StabilityPlan {
     pub fn new(place: &str, folder: &Path, spec: StabilityStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.stability;
-        check.keys("stability", wanted, STABILITY_KEYS)?;
+        check.keys("stability", wanted, keys_of::<StabilityStudySpec>())?;
         check.list("stability.parts", wanted.parts.clone())?;
         let mut all_methods = Vec::new();
         for (number, part) in wanted.parts.iter().enumerate() {
@@ -91,7 +71,7 @@ impl Check<'_> {
         let name = format!("stability.parts[{part}]");
         let error =
             |[key, given, allowed]: [&str; 3]| self.error(&format!("{name}.{key}"), given, allowed);
-        self.keys(&name, wanted, STABILITY_KEYS)?;
+        self.keys(&name, wanted, keys_of::<StabilityStudySpec>())?;
         if wanted.methods.iter().any(|method| method.is_peer()) {
             let allowed =
                 "methods of this program: other programs leave their rows in stability.peers";

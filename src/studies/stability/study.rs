@@ -5,12 +5,12 @@ use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::keys::KeyAbout;
+use crate::inputs::params::keys_of;
 use crate::inputs::units::millimetres;
 use crate::studies::source::Source;
 use crate::studies::stability::common::with_common;
 use crate::studies::stability::configuration::measure;
 use crate::studies::stability::peers::peer_rows;
-use crate::studies::stability::plan::STABILITY_KEYS;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{
     Joints, Outcome, StabilityConfiguration, StabilityRow, StabilityScore, StabilitySummary,
@@ -60,7 +60,7 @@ impl Study for StabilityPlan {
     type Rows = Vec<StabilityRow>;
 
     fn keys() -> Vec<KeyAbout> {
-        STABILITY_KEYS.to_vec()
+        keys_of::<StabilityStudySpec>().to_vec()
     }
 
     fn load(source: &Source) -> Result<Self> {

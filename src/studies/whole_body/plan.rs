@@ -3,13 +3,11 @@
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::inputs::check::Check;
-use crate::inputs::keys::{KeyAbout, keys};
-use crate::inputs::range::Range::{Any, Count, NotNegative, Positive, Unchecked};
-use crate::inputs::range::{COUNT, SURFACE_ERROR, TOUCHES};
+use crate::inputs::keys::KeyAbout;
+use crate::inputs::params::keys_of;
 use crate::inputs::units::MM;
 use crate::scene::{Movement, ObjectSpec, PlannedRobot, Reader};
 use crate::sensing::Ensemble;
-use crate::studies::recognition::spec::keys::shared_keys;
 use crate::studies::whole_body::spec::{
     BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodyStudySpec,
 };
@@ -85,52 +83,9 @@ pub struct Aim {
     pub motion: Oscillation,
 }
 
-/// Maximum number of measured steps of a scene; the times of all steps are kept in memory.
-const MAX_STEPS: usize = 10_000_000;
-/// Maximum number of spheres of an object in a scaling series.
-const MAX_SPHERES: usize = 10_000_000;
-
-/// Descriptions of the keys of the table `[whole_body]` in a study file.
-const KEYS: &[KeyAbout] = keys! {
-    "whole_body.robot": Never, Condition, Unchecked;
-    "whole_body.pitch_mm": Never, Choice, Positive;
-    "whole_body.patch_mm": Never, Choice, Positive;
-    "whole_body.flat_ends": Never, Choice, Any;
-    "whole_body.taxel_radius_mm": Never, Choice, Positive;
-    "whole_body.stroke_mm": Never, Choice, Positive;
-    "whole_body.stiffness_n_per_m": Never, Choice, Positive;
-    "whole_body.damping_n_s_per_m": Never, Choice, NotNegative;
-    "whole_body.step_ms": Never, Choice, Positive;
-    "whole_body.steps": Never, Note, Count(1, MAX_STEPS);
-    "whole_body.surface_error_mm": Never, Condition, SURFACE_ERROR;
-    "whole_body.scenes.name": Never, Subject, Unchecked;
-    "whole_body.scenes.joints": Never, Condition, Unchecked;
-    "whole_body.scenes.object": Never, Condition, Unchecked;
-    "whole_body.scenes.from": Never, Condition, Unchecked;
-    "whole_body.scenes.depth_mm": Never, Condition, Positive;
-    "whole_body.sensing.measurements": Never, Choice, COUNT;
-    "whole_body.sensing.ensembles": Table, Choice, Any;
-    "whole_body.sensing.sbhe_blocks": Table, Choice, Any;
-    "whole_body.recognition.objects": Never, Subject, Any;
-    "whole_body.recognition.link": Never, Condition, Unchecked;
-    "whole_body.recognition.at_mm": Never, Condition, Unchecked;
-    "whole_body.recognition.from": Never, Condition, Unchecked;
-    "whole_body.recognition.offset_mm": Never, Condition, NotNegative;
-    "whole_body.recognition.yaw_deg": Never, Condition, NotNegative;
-    "whole_body.recognition.depth_mm": Never, Condition, Unchecked;
-    "whole_body.recognition.training_touches": Never, Choice, TOUCHES;
-    "whole_body.recognition.test_touches": Never, Condition, TOUCHES;
-    "whole_body.ladders.taxels": Table, Condition, COUNT;
-    "whole_body.ladders.touched_at_taxels": Table, Condition, COUNT;
-    "whole_body.ladders.touched": Table, Condition, COUNT;
-    "whole_body.ladders.spheres": Table, Condition, Count(1, MAX_SPHERES);
-    "whole_body.ladders.touched_at_spheres": Never, Condition, COUNT;
-    "whole_body.ladders.taxels_at_touch": Never, Condition, COUNT;
-};
-
 /// Returns the descriptions of all keys of a whole-body study.
 pub fn whole_body_keys() -> Vec<KeyAbout> {
-    [&shared_keys(&["question", "expected", "seed"], &[]), KEYS].concat()
+    keys_of::<WholeBodyStudySpec>().to_vec()
 }
 
 impl WholeBodyPlan {
@@ -149,7 +104,7 @@ impl WholeBodyPlan {
             base: Motion::Fixed(Pose::IDENTITY),
             joints: None,
         };
-        check.keys("whole_body", wanted, KEYS)?;
+        check.keys("whole_body", wanted, keys_of::<WholeBodyStudySpec>())?;
         let reader = Reader {
             check: Check { place },
             folder,
@@ -214,7 +169,7 @@ fn scene_plan(
     let prefix = format!("whole_body.scenes[{number}]");
     let key = |name: &str| format!("{prefix}.{name}");
     let check = &reader.check;
-    check.keys(&prefix, scene, KEYS)?;
+    check.keys(&prefix, scene, keys_of::<WholeBodyStudySpec>())?;
     let object = &scene.object;
     let misplaced = [
         ("free", object.free.is_some()),

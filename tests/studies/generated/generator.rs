@@ -388,9 +388,7 @@ fn strength_values(key: &str) -> Vec<Value> {
         return Vec::new();
     };
     let all = [0.05, 0.1, 0.3, 0.5, 2.0, 6.0, 10.0];
-    let allowed = all.into_iter().filter(|&value| {
-        (strength.is_allowed)(value) && (!strength.is_whole || f64::fract(value) == 0.0)
-    });
+    let allowed = all.into_iter().filter(|&value| strength.is_allowed(value));
     // Fractions of one whole sum to at most 1, and large fractions leave no signal.
     let is_share = strength.unit == "%";
     let allowed = allowed.filter(|&value| !is_share || value < 0.4);

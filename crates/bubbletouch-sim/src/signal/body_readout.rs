@@ -273,7 +273,7 @@ fn taxel_effect(
 ) -> Result<Arc<dyn TaxelEffect>> {
     let about = error.about();
     for (strength, &value) in about.strengths.iter().zip(strengths) {
-        if !(strength.is_allowed)(value) {
+        if !strength.is_allowed(value) {
             return Err(Error::input(strength.key, value, strength.allowed));
         }
     }

@@ -75,7 +75,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     ..ErrorAbout::new(
         "hysteresis",
         &[Strength {
-            is_allowed: |width| (0.0..=MAX_WIDTH).contains(&width),
+            range: [0.0, MAX_WIDTH],
             allowed: "a fraction of the full scale, 0 to 0.25",
             names: &[],
             ..Strength::fraction("hysteresis_full_scale", "hysteresis")

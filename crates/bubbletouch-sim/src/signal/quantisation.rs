@@ -58,7 +58,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             words: "converter",
             unit: "bits",
             is_whole: true,
-            is_allowed: |bits| bits.fract() == 0.0 && (0.0..=MAX_BITS as f64).contains(&bits),
+            range: [0.0, MAX_BITS as f64],
             allowed: "a whole number of bits, 1 to 24, or 0 for no converter",
             names: &[("0", "none")],
         }],

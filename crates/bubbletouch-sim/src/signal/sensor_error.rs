@@ -17,8 +17,8 @@ pub struct Strength {
     pub unit: &'static str,
     /// Whether the strength must be an integer.
     pub is_whole: bool,
-    /// Function that returns whether a value of the strength is allowed.
-    pub is_allowed: fn(f64) -> bool,
+    /// Smallest and largest allowed value of the strength.
+    pub range: [f64; 2],
     /// Allowed values of the strength, in words.
     pub allowed: &'static str,
     /// Special values of the strength with their names, such as `0` and `none`.
@@ -135,6 +135,11 @@ impl ErrorAbout {
 }
 
 impl Strength {
+    /// Returns whether a value of the strength is allowed.
+    pub fn is_allowed(&self, value: f64) -> bool {
+        (self.range[0]..=self.range[1]).contains(&value) && !(self.is_whole && value.fract() != 0.0)
+    }
+
     /// Describes a strength that is a fraction from 0 to 1, with its key and its display name.
     pub(super) const fn fraction(key: &'static str, words: &'static str) -> Self {
         Self {
@@ -142,7 +147,7 @@ impl Strength {
             words,
             unit: "%",
             is_whole: false,
-            is_allowed: |share| (0.0..=1.0).contains(&share),
+            range: [0.0, 1.0],
             allowed: "a fraction, 0 to 1",
             names: &[],
         }
@@ -155,7 +160,7 @@ impl Strength {
         allowed: &'static str,
     ) -> Self {
         Self {
-            is_allowed: |share| share.is_finite() && share >= 0.0,
+            range: [0.0, f64::MAX],
             allowed,
             ..Self::fraction(key, words)
         }

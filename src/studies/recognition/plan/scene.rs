@@ -234,8 +234,8 @@ impl Check<'_> {
                 self.value(key, half_width, is_allowed, "within zero or more")?;
                 vec![-half_width, half_width]
             }
-            SpreadSpec::Range(RangeSpec::Uniform(low, high)) => vec![low, high],
-            SpreadSpec::Range(RangeSpec::Grid(first, last, count)) => {
+            SpreadSpec::Range(RangeSpec::Uniform((low, high))) => vec![low, high],
+            SpreadSpec::Range(RangeSpec::Grid((first, last, count))) => {
                 self.count(key, count, MAX_VALUES)?;
                 let step = (last - first) / (count - 1).max(1) as f64;
                 (0..count).map(|k| first + k as f64 * step).collect()
@@ -247,7 +247,7 @@ impl Check<'_> {
             self.number(key, value)?;
         }
         let ends = match *spread {
-            SpreadSpec::Range(RangeSpec::Uniform(low, high)) => Some((low, high)),
+            SpreadSpec::Range(RangeSpec::Uniform((low, high))) => Some((low, high)),
             SpreadSpec::Range(RangeSpec::Within(half_width)) if half_width > 0.0 => {
                 Some((-half_width, half_width))
             }

@@ -4,11 +4,10 @@ use crate::engine::axes::{CombineSpec, StudyAxes};
 use crate::engine::axis::Axis;
 use crate::error::Result;
 use crate::inputs::check::Check;
-use crate::inputs::defaults::number;
 use crate::inputs::toml_value::{is_at, value_at};
 use crate::studies::recognition::plan::learning::DEFAULT_TILT_DEG;
 use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::scene::{SensedSpec, SkinSpec, TouchesSpec};
+use crate::studies::recognition::spec::scene::{STIFFNESS, SensedSpec, SkinSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::world::{Spread, TouchAxis};
@@ -71,7 +70,7 @@ const USES: [KeyUse; 12] = [
         key: "skin.stiffness_n_per_m",
         given: |plan| {
             let given = plan.spec.skin.stiffness_n_per_m;
-            of_simulation(plan, Some(given)).filter(|&given| given != number::<100>())
+            of_simulation(plan, Some(given)).filter(|&given| given != STIFFNESS)
         },
         has_effect: |plan| reads_force(&plan.spec),
         beside: &["skin.sensed", "signal.steps"],
@@ -271,7 +270,7 @@ impl Check<'_> {
         let (stiffness, damping) = (skin.stiffness_n_per_m, skin.damping_n_s_per_m);
         let speed = touches.speed_mm_per_s;
         let keys = [
-            ("skin.stiffness_n_per_m", stiffness, number::<100>()),
+            ("skin.stiffness_n_per_m", stiffness, STIFFNESS),
             ("skin.damping_n_s_per_m", damping, 0.0),
             ("touches.speed_mm_per_s", speed, 0.0),
         ];

@@ -1,12 +1,14 @@
 //! Keys of `[recognition]` that are declared by classifiers, such as `n_trees`.
 
+use crate::inputs::keys::{AxisPlace, KeyAbout};
+use crate::inputs::params::{Described, sentence};
+use crate::inputs::range::Range;
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::classifiers::parameters::{DefaultValue, Parameter, declared};
-use schemars::Schema;
-use serde::de::value::{Error as TextError, StringDeserializer};
-use serde::de::{DeserializeSeed, Error as _, IntoDeserializer, MapAccess};
+use crate::learning::classifiers::parameters::{DefaultValue, declared};
+use crate::table::Role;
+use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
 /// Values of [declared] classifier parameters, by key: those given in the study, and defaults that are always written.
@@ -62,102 +64,72 @@ impl Serialize for ClassifierParameters {
     }
 }
 
-/// Adds the parameters that classifiers declare to the JSON Schema of the table `[recognition]`.
-pub(super) fn with_parameters(schema: &mut Schema) {
-    let keys = schema.ensure_object().get_mut("properties");
-    let Some(keys) = keys.and_then(Value::as_object_mut) else {
-        return;
-    };
-    for parameter in declared() {
-        let number = |value: f64| match parameter.is_integer {
-            true => json!(value as u64),
-            false => json!(value),
-        };
-        let mut words = parameter.words.chars();
-        let first = words.next().map(|first| first.to_uppercase().to_string());
-        let words = first.unwrap_or_default() + words.as_str();
-        let mut key = json!({
-            "type": if parameter.is_integer { "integer" } else { "number" },
-        });
-        let default = match parameter.default {
-            DefaultValue::Number(default) => {
-                key["default"] = number(default);
-                default.to_string()
-            }
-            DefaultValue::Rule(rule, meaning) => format!("'{rule}', {meaning}"),
-        };
-        key["description"] = format!("{words}. Default: {default}.").into();
-        keys.insert(parameter.key.to_owned(), key);
+/// The table around the parameters reads their keys.
+impl<'de> Deserialize<'de> for ClassifierParameters {
+    fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
+        Ok(Self::default())
     }
 }
 
-/// Reader of the table `[recognition]`: the parameters of classifiers are stored, and all other keys are passed on to the fields of the specification.
-pub(super) struct OtherKeys<'a, M> {
-    pub map: M,
-    pub parameters: &'a mut ClassifierParameters,
-}
-
-impl<'de, M: MapAccess<'de>> MapAccess<'de> for OtherKeys<'_, M> {
-    type Error = M::Error;
-
-    fn next_key_seed<K: DeserializeSeed<'de>>(
-        &mut self,
-        field: K,
-    ) -> Result<Option<K::Value>, M::Error> {
-        let mut field = Some(field);
-        loop {
-            match self.map.next_key_seed(KeySeed(&mut field))? {
-                None => return Ok(None),
-                Some(Key::Field(field)) => return Ok(Some(field)),
-                Some(Key::Parameter(parameter)) => {
-                    let value = self.map.next_value_seed(ValueSeed(parameter))?;
-                    self.parameters.0.insert(parameter.key, value);
+impl Described for ClassifierParameters {
+    fn schema() -> Value {
+        let keys = declared().map(|parameter| {
+            let number = |value: f64| match parameter.is_integer {
+                true => json!(value as u64),
+                false => json!(value),
+            };
+            let words = sentence(parameter.words);
+            let mut key = json!({
+                "type": if parameter.is_integer { "integer" } else { "number" },
+            });
+            let default = match parameter.default {
+                DefaultValue::Number(default) => {
+                    key["default"] = number(default);
+                    default.to_string()
                 }
-            }
-        }
+                DefaultValue::Rule(rule, meaning) => format!("'{rule}', {meaning}"),
+            };
+            key["description"] = format!("{words}. Default: {default}.").into();
+            let bounds = Range::Declared(parameter).keywords();
+            key.as_object_mut()
+                .into_iter()
+                .for_each(|key| key.extend(bounds.clone()));
+            (parameter.key.to_owned(), key)
+        });
+        json!({ "properties": Map::from_iter(keys) })
     }
 
-    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, M::Error> {
-        self.map.next_value_seed(seed)
+    fn absent() -> Option<Self> {
+        Some(Self::default())
     }
-}
 
-/// Key of the table `[recognition]`: a declared parameter of a classifier, or a field of the specification.
-enum Key<F> {
-    Parameter(&'static Parameter),
-    Field(F),
-}
-
-/// Reader of a key of the table `[recognition]`. The inner seed reads the key of a field, and is used only if the key is no parameter.
-struct KeySeed<'a, K>(&'a mut Option<K>);
-
-impl<'de, K: DeserializeSeed<'de>> DeserializeSeed<'de> for KeySeed<'_, K> {
-    type Value = Key<K::Value>;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
-        let key = String::deserialize(deserializer)?;
-        if let Some(parameter) = declared().find(|parameter| parameter.key == key) {
-            return Ok(Key::Parameter(parameter));
-        }
-        let field = self.0.take().expect("a key is read once");
-        let name: StringDeserializer<TextError> = key.into_deserializer();
-        field.deserialize(name).map(Key::Field).map_err(|unknown| {
-            let keys: Vec<String> = declared().map(|one| format!("`{}`", one.key)).collect();
-            D::Error::custom(format!("{unknown}, {}", keys.join(", ")))
-        })
+    fn describe_keys(_: &str, keys: &mut Vec<KeyAbout>) {
+        keys.extend(declared().map(|parameter| {
+            let path = format!("recognition.{}", parameter.key).leak();
+            KeyAbout::new(
+                path,
+                AxisPlace::Axes,
+                Role::Choice,
+                Range::Declared(parameter),
+            )
+        }));
     }
-}
 
-/// Reader of the value of a classifier's parameter: an integer or a floating-point number.
-struct ValueSeed(&'static Parameter);
+    fn inner_names() -> Vec<&'static str> {
+        declared().map(|parameter| parameter.key).collect()
+    }
 
-impl<'de> DeserializeSeed<'de> for ValueSeed {
-    type Value = f64;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<f64, D::Error> {
-        match self.0.is_integer {
-            true => usize::deserialize(deserializer).map(|value| value as f64),
-            false => f64::deserialize(deserializer),
-        }
+    fn read_inner<'de, M: MapAccess<'de>>(
+        slot: &mut Option<Self>,
+        name: &'static str,
+        map: &mut M,
+    ) -> Result<(), M::Error> {
+        let is_integer = declared().any(|one| one.key == name && one.is_integer);
+        let value = match is_integer {
+            true => map.next_value::<usize>()? as f64,
+            false => map.next_value()?,
+        };
+        slot.get_or_insert_default().0.insert(name, value);
+        Ok(())
     }
 }

@@ -3,15 +3,14 @@
 use crate::error::{Error, Result};
 use crate::files::FilePath;
 use crate::inputs::content_hash::short_hash;
-use crate::inputs::schema_types::{FeatureNames, Names};
+use crate::inputs::params::{Described, named, params};
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::foreign::Foreign;
-use bubbletouch_sim::features::{Features, foreign};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use bubbletouch_sim::features::{Features, ImageFeature, foreign};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
+use serde_json::{Value, json};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -39,23 +38,23 @@ pub struct CommandSpec {
     pub foreign: Foreign,
 }
 
-/// Keys of a classifier that is a command.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CommandKeys {
-    /// Program and its arguments. Paths of files are relative to the study file. The program gets three further arguments: the paths of `train.npz`
-    /// (`features`, `labels`, `seed`), of `test.npz` (`features`) and of `labels.npy`, which the program writes. A change of a file among the arguments is
-    /// another version.
-    pub command: Vec<String>,
-    /// Name of the classifier in tables and charts. Default: the name of the first file among the arguments, without its ending.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
-    /// Version of what the command runs beside its files, such as a library. Another version is computed again.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub version: Option<String>,
-    /// Maximum time of one call of the command, s. Default: no limit.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time_limit_s: Option<f64>,
+params! {
+    /// Keys of a classifier that is a command.
+    pub struct CommandKeys {
+        /// Program and its arguments. Paths of files are relative to the study file. The program gets three further arguments: the paths of `train.npz`
+        /// (`features`, `labels`, `seed`), of `test.npz` (`features`) and of `labels.npy`, which the program writes. A change of a file among the arguments is
+        /// another version.
+        command: Vec<String>;
+        /// Name of the classifier in tables and charts. Default: the name of the first file among the arguments, without its ending.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        name: Option<String>;
+        /// Version of what the command runs beside its files, such as a library. Another version is computed again.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        version: Option<String>;
+        /// Maximum time of one call of the command, s. Default: no limit.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        time_limit_s: Option<f64>;
+    }
 }
 
 impl TryFrom<CommandKeys> for CommandSpec {
@@ -174,22 +173,14 @@ impl<'de> Visitor<'de> for ChoiceVisitor {
     }
 }
 
-impl JsonSchema for ClassifierChoice {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "ClassifierChoice".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let names = Names::<ClassifierKind>::json_schema(generator);
-        let command = generator.subschema_for::<CommandKeys>();
-        let provided = json_schema!({ "title": "`name@version` of a classifier that the running program provides", "type": "string", "pattern": FOREIGN });
-        json_schema!({ "anyOf": [names, provided, command] })
+impl Described for ClassifierChoice {
+    fn schema() -> Value {
+        let provided = json!({ "title": "`name@version` of a classifier that the running program provides", "type": "string", "pattern": FOREIGN });
+        json!({ "anyOf": [ClassifierKind::schema(), provided, CommandKeys::schema()] })
     }
 }
+
+named!(ClassifierKind);
 
 /// Features in a study file: their name, or `name@version` of features that the running program provides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -212,18 +203,26 @@ impl<'de> Deserialize<'de> for FeatureChoice {
     }
 }
 
-impl JsonSchema for FeatureChoice {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "FeatureChoice".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let known = FeatureNames::json_schema(generator);
-        let provided = json_schema!({ "title": "`name@version` of features that the running program provides", "type": "string", "pattern": FOREIGN });
-        json_schema!({ "anyOf": [known, provided] })
+impl Described for FeatureChoice {
+    fn schema() -> Value {
+        let of_measurements = [
+            Features::Raw,
+            Features::Centred,
+            Features::UnitNorm,
+            Features::CentredUnitNorm,
+        ];
+        let of_images: Vec<&str> = ImageFeature::ALL.iter().map(|one| one.name()).collect();
+        let one = of_images.join("|");
+        let names = of_measurements.map(String::from).into_iter();
+        let names: Vec<String> = names
+            .chain(of_images.into_iter().map(str::to_owned))
+            .collect();
+        json!({ "anyOf": [
+            { "anyOf": [
+                { "type": "string", "enum": names },
+                { "title": "several image features joined by `+`", "type": "string", "pattern": format!(r"^\s*({one})\s*(\+\s*({one})\s*)+$") },
+            ] },
+            { "title": "`name@version` of features that the running program provides", "type": "string", "pattern": FOREIGN },
+        ] })
     }
 }

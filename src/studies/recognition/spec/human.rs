@@ -1,30 +1,24 @@
 //! Specification of human touches: the table `[human_touch]`, which replaces `[objects]` and `[touches]`.
 
-use crate::inputs::defaults::number;
-use crate::inputs::schema_types::Names;
+use crate::inputs::params::{named, params};
+use crate::inputs::range::Range::{Any, Positive};
+use crate::inputs::range::TOUCHES;
 use crate::world::TouchKind;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// Keys of `[human_touch]`: recognition of kinds of human touch on a forearm. The columns of the array are bent around the arm; its rows run along the arm.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct HumanTouchSpec {
-    /// Kinds of human touch that the classifier distinguishes. Default: all six.
-    #[serde(default = "all_kinds")]
-    #[schemars(with = "Vec<Names<TouchKind>>")]
-    pub kinds: Vec<TouchKind>,
-    /// Number of human touches of each kind, at least 1.
-    pub per_kind: usize,
-    /// Distance from the axis of the arm to the outside of its skin, mm, positive. Default: 43.
-    #[serde(default = "number::<43>")]
-    pub arm_radius_mm: f64,
-    /// Frame rate of the skin, Hz, positive.
-    pub frames_hz: f64,
-    /// Duration of the recording of each touch, s. The touch begins at a random time such that it ends within the recording.
-    pub duration_s: f64,
-}
+named!(TouchKind);
 
-fn all_kinds() -> Vec<TouchKind> {
-    crate::world::TOUCH_KINDS.to_vec()
+params! {
+    /// Keys of `[human_touch]`: recognition of kinds of human touch on a forearm. The columns of the array are bent around the arm; its rows run along the arm.
+    pub struct HumanTouchSpec {
+        /// Kinds of human touch that the classifier distinguishes. Default: all six.
+        kinds: Vec<TouchKind> = crate::world::TOUCH_KINDS.to_vec() => Any, Condition, Axes;
+        /// Number of human touches of each kind, at least 1.
+        per_kind: usize => TOUCHES, Choice, Axes;
+        /// Distance from the axis of the arm to the outside of its skin, mm, positive. Default: 43.
+        arm_radius_mm: f64 = 43.0 => Positive, Choice, Axes;
+        /// Frame rate of the skin, Hz, positive.
+        frames_hz: f64 => Positive, Choice, Axes;
+        /// Duration of the recording of each touch, s. The touch begins at a random time such that it ends within the recording.
+        duration_s: f64 => Positive, Choice, Axes;
+    }
 }

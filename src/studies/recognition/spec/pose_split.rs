@@ -15,29 +15,27 @@
 //! If the number of values is odd, the middle value belongs to the smaller half. `opposite_blocks` omits the touches that belong to neither block.
 
 use crate::error::{Error, Result};
+use crate::inputs::params::words;
 use crate::learning::data::split::Side;
 use crate::world::{Touch, TouchAxis};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Rule that selects the poses for testing and the poses for training.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PoseSplit {
-    /// Test touches are drawn at random. On a grid of poses, most test touches then have neighbours among the training touches.
-    #[default]
-    Random,
-    /// One yaw angle per trial is held out for testing; each trial holds out the next yaw angle.
-    LeaveOneYawOut,
-    /// The touches with the larger half of the yaw angles are test touches in one trial; those with the smaller half in the next trial.
-    HalfOfYaws,
-    /// Test touches are in one eighth of the ranges of offsets and yaws; training touches are in the opposite eighth.
-    OppositeBlocks,
-    /// One tilt per trial is held out for testing; each trial holds out the next tilt.
-    UnseenTilt,
-    /// One depth per trial is held out for testing; each trial holds out the next depth.
-    UnseenDepth,
+words! {
+    /// Rule that selects the poses for testing and the poses for training.
+    pub enum PoseSplit = Random {
+        /// Test touches are drawn at random. On a grid of poses, most test touches then have neighbours among the training touches.
+        Random = "random",
+        /// One yaw angle per trial is held out for testing; each trial holds out the next yaw angle.
+        LeaveOneYawOut = "leave_one_yaw_out",
+        /// The touches with the larger half of the yaw angles are test touches in one trial; those with the smaller half in the next trial.
+        HalfOfYaws = "half_of_yaws",
+        /// Test touches are in one eighth of the ranges of offsets and yaws; training touches are in the opposite eighth.
+        OppositeBlocks = "opposite_blocks",
+        /// One tilt per trial is held out for testing; each trial holds out the next tilt.
+        UnseenTilt = "unseen_tilt",
+        /// One depth per trial is held out for testing; each trial holds out the next depth.
+        UnseenDepth = "unseen_depth",
+    }
 }
 
 /// Pose parameters whose values are divided into two halves to form blocks of poses.
@@ -194,20 +192,20 @@ impl PartialOrd for Value {
     }
 }
 
-/// Property of touches that defines groups; all touches of a group are on one side of a split.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GroupSpec {
-    /// Touches with equal resting pose, offset, yaw and tilt form a group: the whole pose except the depth.
-    Pose,
-    /// Touches with equal offsets along x and y form a group.
-    Offset,
-    /// Touches with equal yaw of the object form a group.
-    Yaw,
-    /// Touches with equal tilts about x and y form a group.
-    Tilt,
-    /// Touches whose objects lie in equal stable resting poses form a group.
-    Rest,
-    /// Touches with equal press depth form a group.
-    Depth,
+words! {
+    /// Property of touches that defines groups; all touches of a group are on one side of a split.
+    pub enum GroupSpec {
+        /// Touches with equal resting pose, offset, yaw and tilt form a group: the whole pose except the depth.
+        Pose = "pose",
+        /// Touches with equal offsets along x and y form a group.
+        Offset = "offset",
+        /// Touches with equal yaw of the object form a group.
+        Yaw = "yaw",
+        /// Touches with equal tilts about x and y form a group.
+        Tilt = "tilt",
+        /// Touches whose objects lie in equal stable resting poses form a group.
+        Rest = "rest",
+        /// Touches with equal press depth form a group.
+        Depth = "depth",
+    }
 }

@@ -1,18 +1,18 @@
 //! Specification of recorded frames: the table `[recorded]`, which replaces `[objects]` and `[touches]`.
 
 use crate::error::{Error, Result};
-use crate::files::{file_path, optional_file_path};
 use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::{TableContent, is_member};
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
+use crate::inputs::params::words;
+use crate::inputs::range::Range::{Any, Count, NotNegative, Positive, Unchecked};
+use crate::inputs::units::MAX_FRAMES;
 use crate::studies::recognition::spec::recorded_sensor::{
     RecordedSensorSpec, SensorPlace, sensor_spec, sensor_table,
 };
 use crate::studies::recognition::spec::used_sensors::SensorChoice;
 use crate::studies::recognition::spec::zero::ZeroSpec;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 sensor_spec! {
@@ -21,105 +21,71 @@ sensor_spec! {
     pub struct RecordedSpec {
         /// File with the frames. Its shape is (n, rows, columns), (n, F, rows, columns) for F frames per touch, or (n, taxels) without rows and columns.
         /// Any numeric type of up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
-        #[serde(
-            default,
-            skip_serializing_if = "is_empty",
-            deserialize_with = "file_path"
-        )]
-        pub frames: PathBuf,
+        #[serde(skip_serializing_if = "is_empty")]
+        frames: PathBuf = PathBuf::new() => Unchecked, Condition, Axes;
         /// File with the tangential forces of a skin that reads shear, newtons: two forces across the axis of each taxel. The array has the axes of `frames` plus
         /// an axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
-        #[serde(
-            default,
-            skip_serializing_if = "Option::is_none",
-            deserialize_with = "optional_file_path"
-        )]
-        pub shear: Option<PathBuf>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        shear: Option<PathBuf> => Unchecked, Condition, Axes;
         /// File of the class of every touch: integers or texts, shape (n,), or entries 0 and 1, shape (n, classes).
-        #[serde(
-            default,
-            skip_serializing_if = "is_empty",
-            deserialize_with = "file_path"
-        )]
-        pub labels: PathBuf,
+        #[serde(skip_serializing_if = "is_empty")]
+        labels: PathBuf = PathBuf::new() => Unchecked, Condition, Axes;
         /// File with the group of every touch, such as its grasp or day, shape (n,). A split never divides a group.
-        #[serde(default, deserialize_with = "optional_file_path")]
-        pub groups: Option<PathBuf>,
+        groups: Option<PathBuf> => Unchecked, Condition, Axes;
         /// Archive `.npz` with the split of each trial t: arrays `train_t` and `test_t` of touch numbers from 0, or of a bool for each touch. Touches in neither
         /// array are not used. Replaces `test_fraction` and `folds`.
-        #[serde(
-            default,
-            skip_serializing_if = "Option::is_none",
-            deserialize_with = "optional_file_path"
-        )]
-        pub splits: Option<PathBuf>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        splits: Option<PathBuf> => Unchecked, Condition, Axes;
         /// Number F of frames to which each touch is resampled, at least 1. Frames are interpolated linearly at F instants, evenly spaced from the first to
         /// the last frame. If F is 1, the last frame is used. Default: all frames.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub resampled_frames: Option<usize>,
+        resampled_frames: Option<usize> => Count(1, MAX_FRAMES), Choice, Axes;
         /// Sensors that recorded the same touches, instead of `frames`. Their readings are joined to one frame, each with its own zero and full scale.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        pub sensors: Vec<RecordedSensorSpec>,
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        sensors: Vec<RecordedSensorSpec> = Vec::new() => Unchecked, Condition, Axes;
         /// Sensors whose readings the study uses: `all` (default), a name of `sensors`, several names joined by `+`, or a list of names.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub sensor: Option<SensorChoice>,
+        sensor: Option<SensorChoice> => Any, Choice, Axes;
         /// File with the tangential forces of the separate test set, newtons, in the format of `shear`.
-        #[serde(
-            default,
-            skip_serializing_if = "Option::is_none",
-            deserialize_with = "optional_file_path"
-        )]
-        pub shear_test: Option<PathBuf>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        shear_test: Option<PathBuf> => Unchecked, Condition, Axes;
         /// File with the classes of the separate test set, in the format of `labels`.
-        #[serde(
-            default,
-            skip_serializing_if = "Option::is_none",
-            deserialize_with = "optional_file_path"
-        )]
-        pub labels_test: Option<PathBuf>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        labels_test: Option<PathBuf> => Unchecked, Condition, Axes;
         /// File with the groups of the separate test set, in the format of `groups`. The interval of the accuracy is computed over these groups.
-        #[serde(
-            default,
-            skip_serializing_if = "Option::is_none",
-            deserialize_with = "optional_file_path"
-        )]
-        pub groups_test: Option<PathBuf>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        groups_test: Option<PathBuf> => Unchecked, Condition, Axes;
         /// Names of the classes, in the order of their numbers from 0.
-        pub names: Option<Vec<String>>,
+        names: Option<Vec<String>> => Unchecked, Condition, Axes;
         /// File with the press depth of each touch, metres, shape (n,). Together with `speed_mm_per_s`, it determines the time between the frames of a touch.
-        #[serde(
-            default,
-            skip_serializing_if = "Option::is_none",
-            deserialize_with = "optional_file_path"
-        )]
-        pub depths: Option<PathBuf>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        depths: Option<PathBuf> => Unchecked, Condition, Axes;
         /// Speed of the skin towards the object when it was read, mm/s, at least 0; the speed affects the damper force. Default: 0.
-        #[serde(default, skip_serializing_if = "is_zero")]
-        pub speed_mm_per_s: f64,
+        #[serde(skip_serializing_if = "is_zero")]
+        speed_mm_per_s: f64 = 0.0 => NotNegative, Condition, Axes;
         /// Time between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub frame_interval_s: Option<f64>,
+        frame_interval_s: Option<f64> => Positive, Condition, Axes;
         /// Rule that determines the preceding touch of each touch, for sensor errors with memory. Values: `random` (default) or `none`.
-        #[serde(default, skip_serializing_if = "is_usual")]
-        pub previous_touch: PreviousTouch,
+        #[serde(skip_serializing_if = "is_usual")]
+        previous_touch: PreviousTouch = PreviousTouch::default() => Any, Condition, Axes;
+    }
+    unread {
         /// Number of values per taxel in the frames. The plan sets it, not the study file; 0 counts as 1.
-        #[serde(skip)]
-        pub n_values: usize,
+        n_values: usize;
         /// Properties of the sensor if the specification describes one of several sensors. The plan sets them, not the study file.
-        #[serde(skip)]
-        pub place: SensorPlace,
+        place: SensorPlace;
     }
 }
 
-/// Rule that determines the touch before each touch, for sensor errors with memory, such as hysteresis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PreviousTouch {
-    /// The preceding touch is another touch of the study, drawn at random in each trial.
-    #[default]
-    Random,
-    /// No touch precedes any touch of the recording.
-    None,
+words! {
+    /// Rule that determines the touch before each touch, for sensor errors with memory, such as hysteresis.
+    pub enum PreviousTouch = Random {
+        /// The preceding touch is another touch of the study, drawn at random in each trial.
+        Random = "random",
+        /// No touch precedes any touch of the recording.
+        None = "none",
+    }
 }
 
 #[expect(clippy::ptr_arg, reason = "serde hands over the field")]

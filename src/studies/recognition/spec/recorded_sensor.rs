@@ -1,71 +1,53 @@
 //! Keys of one sensor of a recording: those of `[recorded]`, and those of each of `[[recorded.sensors]]`.
 
-use crate::files::{file_path, optional_file_path};
 use crate::studies::recognition::spec::zero::ZeroSpec;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// Defines the specification of a sensor: the given keys, followed by the keys that `[recorded]` and `[[recorded.sensors]]` share. The method
 /// `change_sensor_files` changes the paths among the shared keys.
 macro_rules! sensor_spec {
-    ($(#[$about:meta])* pub struct $name:ident { $($keys:tt)* }) => {
-        $(#[$about])*
-        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields)]
-        pub struct $name {
-            $($keys)*
-            /// File with the frames of a separate test set, with the array axes of `frames`; all touches of `frames` are then training touches. In an archive, the
-            /// array `frames_test`, or the array with the sensor's name and `_test`, is read if it exists.
-            #[serde(
-                default,
-                skip_serializing_if = "Option::is_none",
-                deserialize_with = "optional_file_path"
-            )]
-            pub frames_test: Option<PathBuf>,
-            /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels.
-            /// If the frames have rows and columns, the axis `c` contains the values of a taxel, and each value has an image. Otherwise `c` contains the
-            /// taxels. Default: `n y x`, `n t y x` or `n c`.
-            #[serde(skip_serializing_if = "Option::is_none")]
-            pub order: Option<String>,
-            /// Numbers of rows and columns of the sensor, if the axis `c` of the frames lists its taxels row by row.
-            #[serde(skip_serializing_if = "Option::is_none")]
-            pub grid: Option<[usize; 2]>,
-            /// Columns of a table (`.csv`, `.tsv`, `.txt`) that are readings: names or patterns, separated by commas, such as `taxel_*`. In a pattern, `*` stands
-            /// for any text and `#` for a number. The taxels have the order of the columns in the file. Default: all columns, whose names may differ in numbers
-            /// alone.
-            #[serde(skip_serializing_if = "Option::is_none")]
-            pub columns: Option<String>,
-            /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames. Formats: `.csv`, `.npz`, `.txt` or
-            /// `.ini` (iCub), `.json` (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid. If one of several axes `c` counts the
-            /// positions, the other axes count values at each position, such as events of two signs.
-            #[serde(
-                default,
-                skip_serializing_if = "Option::is_none",
-                deserialize_with = "optional_file_path"
-            )]
-            pub layout: Option<PathBuf>,
-            /// File with the number of frames of each touch, shape (n,), from 1 to the number of frames in the array. Without this key, frames at the end of a touch
-            /// in which all readings are NaN are missing. Touches of unequal length need `resampled_frames`.
-            #[serde(
-                default,
-                skip_serializing_if = "Option::is_none",
-                deserialize_with = "optional_file_path"
-            )]
-            pub lengths: Option<PathBuf>,
-            /// File with the number of frames of each touch of the separate test set, in the format of `lengths`.
-            #[serde(
-                default,
-                skip_serializing_if = "Option::is_none",
-                deserialize_with = "optional_file_path"
-            )]
-            pub lengths_test: Option<PathBuf>,
-            /// Reading of an untouched taxel: one number, or a file with one number per taxel. Default: 0.
-            #[serde(default)]
-            pub zero: ZeroSpec,
-            /// Reading of a taxel at full scale, where the deflection equals the stroke. Default: the largest reading of the sensor.
-            #[serde(skip_serializing_if = "Option::is_none")]
-            pub full_scale: Option<f64>,
+    ($(#[doc = $about:literal])* pub struct $name:ident { $($keys:tt)* } $(unread { $($unread:tt)* })?) => {
+        $crate::inputs::params::params! {
+            $(#[doc = $about])*
+            #[derive(Default)]
+            pub struct $name {
+                $($keys)*
+                /// File with the frames of a separate test set, with the array axes of `frames`; all touches of `frames` are then training touches. In an archive, the
+                /// array `frames_test`, or the array with the sensor's name and `_test`, is read if it exists.
+                #[serde(skip_serializing_if = "Option::is_none")]
+                frames_test: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels.
+                /// If the frames have rows and columns, the axis `c` contains the values of a taxel, and each value has an image. Otherwise `c` contains the
+                /// taxels. Default: `n y x`, `n t y x` or `n c`.
+                #[serde(skip_serializing_if = "Option::is_none")]
+                order: Option<String> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                /// Numbers of rows and columns of the sensor, if the axis `c` of the frames lists its taxels row by row.
+                #[serde(skip_serializing_if = "Option::is_none")]
+                grid: Option<[usize; 2]> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                /// Columns of a table (`.csv`, `.tsv`, `.txt`) that are readings: names or patterns, separated by commas, such as `taxel_*`. In a pattern, `*` stands
+                /// for any text and `#` for a number. The taxels have the order of the columns in the file. Default: all columns, whose names may differ in numbers
+                /// alone.
+                #[serde(skip_serializing_if = "Option::is_none")]
+                columns: Option<String> => $crate::inputs::range::Range::Unchecked, Choice, Axes;
+                /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames. Formats: `.csv`, `.npz`, `.txt` or
+                /// `.ini` (iCub), `.json` (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid. If one of several axes `c` counts the
+                /// positions, the other axes count values at each position, such as events of two signs.
+                #[serde(skip_serializing_if = "Option::is_none")]
+                layout: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                /// File with the number of frames of each touch, shape (n,), from 1 to the number of frames in the array. Without this key, frames at the end of a touch
+                /// in which all readings are NaN are missing. Touches of unequal length need `resampled_frames`.
+                #[serde(skip_serializing_if = "Option::is_none")]
+                lengths: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                /// File with the number of frames of each touch of the separate test set, in the format of `lengths`.
+                #[serde(skip_serializing_if = "Option::is_none")]
+                lengths_test: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                /// Reading of an untouched taxel: one number, or a file with one number per taxel. Default: 0.
+                zero: ZeroSpec = ZeroSpec::default() => $crate::inputs::range::Range::Finite, Condition, Axes;
+                /// Reading of a taxel at full scale, where the deflection equals the stroke. Default: the largest reading of the sensor.
+                #[serde(skip_serializing_if = "Option::is_none")]
+                full_scale: Option<f64> => $crate::inputs::range::Range::Finite, Condition, Axes;
+            }
+            $(unread { $($unread)* })?
         }
 
         impl $name {
@@ -97,16 +79,15 @@ pub(super) use sensor_spec;
 
 sensor_spec! {
     /// Keys of `[[recorded.sensors]]`: one of several sensors that recorded the same touches, such as the fingertips of a hand.
-    pub struct RecordedSensorSpec {
+        pub struct RecordedSensorSpec {
         /// Name of the sensor; each name once, not `all`.
-        pub name: String,
+        name: String;
         /// File with the frames of the sensor, in the format of `recorded.frames`. All sensors have the same touches in the same order. In an archive, the array
         /// with the name of the sensor is read if it exists.
-        #[serde(deserialize_with = "file_path")]
-        pub frames: PathBuf,
+        frames: PathBuf;
         /// Side of the square area per taxel of the sensor, mm, positive. Default: `skin.pitch_mm`.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub pitch_mm: Option<f64>,
+        pitch_mm: Option<f64>;
     }
 }
 

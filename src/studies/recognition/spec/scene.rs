@@ -1,78 +1,81 @@
 //! Specification of the touched scene: the tables `[objects]`, `[skin]` and `[touches]`.
 
-use crate::engine::axis::{Axis, one_value};
-use crate::inputs::defaults::number;
-use crate::inputs::schema_types::Names;
+use crate::engine::axis::Axis;
+use crate::inputs::params::{empty_table, named, params, variants, words};
+use crate::inputs::range::Range::{Any, Count, Finite, NotNegative, Positive};
+use crate::inputs::range::{SIDE, TOUCHES};
+use crate::inputs::units::MAX_FRAMES;
+use crate::studies::recognition::spec::keys::SLIDE;
+use crate::table::Scale::{Linear, Log};
 use crate::world::{ArrayLayout, RestPoses};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// Keys of `[skin]`: the arrays of taxels.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SkinSpec {
-    /// Axis: side of the square area per taxel, mm, positive. In a grid, the side is the distance between neighbours. In a hexagonal lattice (`hexagonal`,
-    /// `disc`) the distance between neighbours is 1.0746 times as large.
-    pub pitch_mm: Axis<f64>,
-    /// Axis: side length of the square array, mm, positive, a multiple of the pitch.
-    pub size_mm: Option<Axis<f64>>,
-    /// Axis: number of taxels along a side of the square array, at least 1. Replaces `size_mm`.
-    pub taxels: Option<Axis<usize>>,
-    /// Layout of the taxels: `grid` (default), `foveated` (closer in the middle, farther apart at the edge), `hexagonal`, `disc`, `cylinder` or `cap`. All
-    /// layouts have the same area and about the same number of taxels.
-    #[schemars(with = "Option<Names<ArrayLayout>>")]
-    pub layout: Option<ArrayLayout>,
-    /// Radius of curvature of the layouts `cylinder` and `cap`, from the axis or centre to the rest centres of the taxels, mm, positive.
-    pub curvature_radius_mm: Option<f64>,
-    /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and two forces across it).
-    pub sensed: Option<SensedSpec>,
-    /// Friction coefficient μ ≥ 0 between taxels and object, with `sensed = "shear"`. Friction acts only if taxels move along the object, in a slide or on a
-    /// curved layout. The taxels of a flat array that is pressed straight on do not slip. Default: 0.
-    pub friction: Option<f64>,
-    /// Tangential stiffness k_t of a taxel, N/m, positive; used with `friction`. Default: the stiffness along the axis.
-    pub shear_stiffness_n_per_m: Option<f64>,
-    /// Radius ρ of a taxel, mm, ρ > 0. Default: half the pitch.
-    pub taxel_radius_mm: Option<f64>,
-    /// Stroke s of a taxel, mm, positive: its maximum deflection.
-    pub stroke_mm: f64,
-    /// Stiffness k of a taxel along its axis, N/m, positive. Default: 100.
-    #[serde(default = "number::<100>")]
-    pub stiffness_n_per_m: f64,
-    /// Damping coefficient c of a taxel along its axis, N·s/m, c ≥ 0. Default: 0.
-    #[serde(default)]
-    pub damping_n_s_per_m: f64,
+named!(ArrayLayout, RestPoses);
+
+/// Default stiffness of a taxel, N/m.
+pub(crate) const STIFFNESS: f64 = 100.0;
+
+params! {
+    /// Keys of `[skin]`: the arrays of taxels.
+    pub struct SkinSpec {
+        /// Axis: side of the square area per taxel, mm, positive. In a grid, the side is the distance between neighbours. In a hexagonal lattice (`hexagonal`,
+        /// `disc`) the distance between neighbours is 1.0746 times as large.
+        pitch_mm: Axis<f64> => Positive, Choice, Table, scale: Linear, gives_way: 3;
+        /// Axis: side length of the square array, mm, positive, a multiple of the pitch.
+        size_mm: Option<Axis<f64>> => Positive, Choice, Table, title: "array size", scale: Linear, gives_way: 2;
+        /// Axis: number of taxels along a side of the square array, at least 1. Replaces `size_mm`.
+        taxels: Option<Axis<usize>> => SIDE, Choice, Table, scale: Linear;
+        /// Layout of the taxels: `grid` (default), `foveated` (closer in the middle, farther apart at the edge), `hexagonal`, `disc`, `cylinder` or `cap`. All
+        /// layouts have the same area and about the same number of taxels.
+        layout: Option<ArrayLayout> => Any, Choice, Axes;
+        /// Radius of curvature of the layouts `cylinder` and `cap`, from the axis or centre to the rest centres of the taxels, mm, positive.
+        curvature_radius_mm: Option<f64> => Positive, Choice, Axes;
+        /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and two forces across it).
+        sensed: Option<SensedSpec> => Any, Choice, Axes, title: "sensed quantity";
+        /// Friction coefficient μ ≥ 0 between taxels and object, with `sensed = "shear"`. Friction acts only if taxels move along the object, in a slide or on a
+        /// curved layout. The taxels of a flat array that is pressed straight on do not slip. Default: 0.
+        friction: Option<f64> => NotNegative, Condition, Axes;
+        /// Tangential stiffness k_t of a taxel, N/m, positive; used with `friction`. Default: the stiffness along the axis.
+        shear_stiffness_n_per_m: Option<f64> => Positive, Choice, Axes;
+        /// Radius ρ of a taxel, mm, ρ > 0. Default: half the pitch.
+        taxel_radius_mm: Option<f64> => Positive, Choice, Axes;
+        /// Stroke s of a taxel, mm, positive: its maximum deflection.
+        stroke_mm: f64 => Positive, Choice, Axes;
+        /// Stiffness k of a taxel along its axis, N/m, positive. Default: 100.
+        stiffness_n_per_m: f64 = STIFFNESS => Positive, Choice, Axes;
+        /// Damping coefficient c of a taxel along its axis, N·s/m, c ≥ 0. Default: 0.
+        damping_n_s_per_m: f64 = 0.0 => NotNegative, Choice, Axes;
+    }
 }
 
-/// Keys of `[touches]`: poses and depths at which the array touches objects.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct TouchesSpec {
-    /// Poses in which the object lies on the table: `as_modelled` (default), or `stable` (all stable resting poses).
-    #[schemars(with = "Names<RestPoses>")]
-    pub rest: RestPoses,
-    /// Number of touches per object, at least 1. Default: one touch per combination of the listed values.
-    pub per_object: Option<usize>,
-    /// Offset of the patch's centre from the object's centre along the table's x axis, mm. Default: 0.
-    pub offset_x_mm: SpreadSpec,
-    /// Offset of the patch's centre from the object's centre along the table's y axis, mm. Default: 0.
-    pub offset_y_mm: SpreadSpec,
-    /// Rotation of the object about the vertical axis, degrees. Default: 0.
-    pub yaw_deg: SpreadSpec,
-    /// Tilt of the patch about its x axis, degrees. Default: 0.
-    pub tilt_x_deg: SpreadSpec,
-    /// Tilt of the patch about its y axis, degrees. Default: 0.
-    pub tilt_y_deg: SpreadSpec,
-    /// Travel of the patch past first contact, mm, positive. Beyond the stroke, taxels stay saturated.
-    pub depth_mm: SpreadSpec,
-    /// Distance that the pressed patch slides along the object, mm, at least 0. Default: no slide.
-    pub slide_mm: Option<f64>,
-    /// Direction of the slide, degrees from the patch's x axis towards its y axis; used with `slide_mm`. Default: 0.
-    pub slide_deg: Option<f64>,
-    /// Axis: number F of frames per touch, at least 1. Default: 1. The frames are read at the depths d/F, 2d/F, …, d, where d is the depth of the touch; each
-    /// has its own noise. The measurements of all frames are the features of the touch.
-    pub frames: Axis<usize>,
-    /// Speed of the patch towards the object when it is read, mm/s, at least 0; the speed affects the damper force. Default: 0.
-    pub speed_mm_per_s: f64,
+params! {
+    /// Keys of `[touches]`: poses and depths at which the array touches objects.
+    pub struct TouchesSpec {
+        /// Poses in which the object lies on the table: `as_modelled` (default), or `stable` (all stable resting poses).
+        rest: RestPoses = RestPoses::default() => Any, Condition, Axes;
+        /// Number of touches per object, at least 1. Default: one touch per combination of the listed values.
+        per_object: Option<usize> => TOUCHES, Choice, Axes;
+        /// Offset of the patch's centre from the object's centre along the table's x axis, mm. Default: 0.
+        offset_x_mm: SpreadSpec = SpreadSpec::One(0.0) => Finite, Condition, Axes;
+        /// Offset of the patch's centre from the object's centre along the table's y axis, mm. Default: 0.
+        offset_y_mm: SpreadSpec = SpreadSpec::One(0.0) => Finite, Condition, Axes;
+        /// Rotation of the object about the vertical axis, degrees. Default: 0.
+        yaw_deg: SpreadSpec = SpreadSpec::One(0.0) => Finite, Condition, Axes;
+        /// Tilt of the patch about its x axis, degrees. Default: 0.
+        tilt_x_deg: SpreadSpec = SpreadSpec::One(0.0) => Finite, Condition, Axes;
+        /// Tilt of the patch about its y axis, degrees. Default: 0.
+        tilt_y_deg: SpreadSpec = SpreadSpec::One(0.0) => Finite, Condition, Axes;
+        /// Travel of the patch past first contact, mm, positive. Beyond the stroke, taxels stay saturated.
+        depth_mm: SpreadSpec = SpreadSpec::List(Vec::new()) => Positive, Choice, Axes;
+        /// Distance that the pressed patch slides along the object, mm, at least 0. Default: no slide.
+        slide_mm: Option<f64> => SLIDE, Choice, Axes;
+        /// Direction of the slide, degrees from the patch's x axis towards its y axis; used with `slide_mm`. Default: 0.
+        slide_deg: Option<f64> => Finite, Choice, Axes;
+        /// Axis: number F of frames per touch, at least 1. Default: 1. The frames are read at the depths d/F, 2d/F, …, d, where d is the depth of the touch; each
+        /// has its own noise. The measurements of all frames are the features of the touch.
+        frames: Axis<usize> = Axis::One(1) => Count(1, MAX_FRAMES), Choice, Table, title: "frames a touch", scale: Log, gives_way: 11;
+        /// Speed of the patch towards the object when it is read, mm/s, at least 0; the speed affects the damper force. Default: 0.
+        speed_mm_per_s: f64 = 0.0 => NotNegative, Choice, Axes;
+    }
 }
 
 impl TouchesSpec {
@@ -99,66 +102,43 @@ impl TouchesSpec {
 /// Creates a specification without touches, for studies that do not press objects.
 impl Default for TouchesSpec {
     fn default() -> Self {
-        Self {
-            rest: RestPoses::default(),
-            per_object: None,
-            offset_x_mm: zero(),
-            offset_y_mm: zero(),
-            yaw_deg: zero(),
-            tilt_x_deg: zero(),
-            tilt_y_deg: zero(),
-            depth_mm: SpreadSpec::List(Vec::new()),
-            slide_mm: None,
-            slide_deg: None,
-            frames: one_value(),
-            speed_mm_per_s: 0.0,
-        }
+        empty_table()
     }
 }
 
-/// Quantity that each taxel reads.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SensedSpec {
-    /// Deflection, metres.
-    #[default]
-    Deflection,
-    /// Force along the taxel's axis, newtons.
-    Force,
-    /// Forces along and across the taxel's axis, newtons.
-    Shear,
+words! {
+    /// Quantity that each taxel reads.
+    pub enum SensedSpec = Deflection {
+        /// Deflection, metres.
+        Deflection = "deflection",
+        /// Force along the taxel's axis, newtons.
+        Force = "force",
+        /// Forces along and across the taxel's axis, newtons.
+        Shear = "shear",
+    }
 }
 
-/// Distribution of a pose parameter over the touches of an object.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(
-    untagged,
-    expecting = "expected a number, a list, { grid = [first, last, count] }, { uniform = [low, high] } or { within = half_width }"
-)]
-#[schemars(
-    title = "number, list, `{ grid = [first, last, count] }`, `{ uniform = [low, high] }` or `{ within = half_width }`"
-)]
-pub enum SpreadSpec {
-    /// Single value of the pose parameter for all touches, such as `yaw_deg = 30.0`.
-    One(f64),
-    /// List of values of the pose parameter, such as `yaw_deg = [0.0, 10.0, 20.0]`. Every configuration contains all values, so the list is not an axis.
-    List(Vec<f64>),
-    /// Grid or interval of values of the pose parameter, such as `{ grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`.
-    Range(RangeSpec),
+variants! {
+    /// Distribution of a pose parameter over the touches of an object.
+    #[serde(expecting = "expected a number, a list, { grid = [first, last, count] }, { uniform = [low, high] } or { within = half_width }")]
+    pub untagged enum SpreadSpec titled "number, list, `{ grid = [first, last, count] }`, `{ uniform = [low, high] }` or `{ within = half_width }`", Deserialize {
+        /// Single value of the pose parameter for all touches, such as `yaw_deg = 30.0`.
+        One(f64),
+        /// List of values of the pose parameter, such as `yaw_deg = [0.0, 10.0, 20.0]`. Every configuration contains all values, so the list is not an axis.
+        List(Vec<f64>),
+        /// Grid or interval of values of the pose parameter, such as `{ grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`.
+        Range(RangeSpec),
+    }
 }
 
-/// Values of a pose parameter, given as a grid or an interval.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum RangeSpec {
-    /// Evenly spaced values, given by the first value, the last value and the number of values.
-    Grid(f64, f64, usize),
-    /// Values drawn uniformly between a lower and an upper bound.
-    Uniform(f64, f64),
-    /// Values drawn uniformly between −w and w, for a given half width w ≥ 0.
-    Within(f64),
-}
-
-fn zero() -> SpreadSpec {
-    SpreadSpec::One(0.0)
+variants! {
+    /// Values of a pose parameter, given as a grid or an interval.
+    pub enum RangeSpec {
+        /// Evenly spaced values, given by the first value, the last value and the number of values.
+        Grid = "grid"((f64, f64, usize)),
+        /// Values drawn uniformly between a lower and an upper bound.
+        Uniform = "uniform"((f64, f64)),
+        /// Values drawn uniformly between −w and w, for a given half width w ≥ 0.
+        Within = "within"(f64),
+    }
 }

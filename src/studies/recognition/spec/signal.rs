@@ -3,32 +3,34 @@
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
 use crate::inputs::defaults::is_default;
+use crate::inputs::keys::{AxisPlace, KeyAbout};
+use crate::inputs::params::{Described, empty_table, key_schema, params, unknown};
+use crate::inputs::range::Range::{self, Any, Unchecked};
 use crate::inputs::sensor_errors::{
-    NOISES, TestSensor, all_strengths, noise_words, strength_words,
+    NOISES, TestSensor, all_strengths, noise_words, strength_keys, strength_words,
 };
-use crate::signal::{SENSOR_ERRORS, SensorError};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error as _, MapAccess, Visitor};
+use crate::signal::{NoiseUnit, SENSOR_ERRORS, SensorError};
+use crate::table::{Role, Scale};
+use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
-use std::fmt;
-use std::sync::LazyLock;
 
-/// Keys of `[signal]`: noise, sensor errors and processing of the readings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SignalSpec {
-    /// Steps of the signal chain, applied to the frames in this order; each step at most once. Default: `noise`, `smoothing`.
-    pub steps: Vec<StepSpec>,
-    /// Numeric keys of the steps, such as the standard deviation of the noise and the strengths of sensor errors. Each key is an axis.
-    #[serde(flatten)]
-    pub axes: SignalAxes,
-    /// Axis: skin on which test touches are simulated, `same_skin` (default, the training skin) or `another_skin`.
-    pub test_sensor: Option<Axis<TestSensor>>,
-    /// Rule that combines the axes of `[signal]`: `all` (default) or `one_at_a_time`. The axes of `[signal]` are always combined with all other axes of the
-    /// study.
-    #[serde(skip_serializing_if = "is_default")]
-    pub combine: CombineSpec,
+params! {
+    /// Keys of `[signal]`: noise, sensor errors and processing of the readings.
+    pub struct SignalSpec {
+        /// Steps of the signal chain, applied to the frames in this order; each step at most once. Default: `noise`, `smoothing`.
+        steps: Vec<StepSpec> = vec![StepSpec::Noise, StepSpec::Smoothing] => Unchecked, Choice, Axes;
+        /// Numeric keys of the steps, such as the standard deviation of the noise and the strengths of sensor errors. Each key is an axis.
+        #[serde(flatten)]
+        axes: SignalAxes;
+        /// Axis: skin on which test touches are simulated, `same_skin` (default, the training skin) or `another_skin`.
+        test_sensor: Option<Axis<TestSensor>> => Any, Condition, Table, scale: Scale::Words;
+        /// Rule that combines the axes of `[signal]`: `all` (default) or `one_at_a_time`. The axes of `[signal]` are always combined with all other axes of the
+        /// study.
+        #[serde(skip_serializing_if = "is_default")]
+        combine: CombineSpec = CombineSpec::All => Any, Condition, Axes;
+    }
 }
 
 /// Numeric axes of `[signal]`, each with its step of the signal chain.
@@ -121,7 +123,10 @@ impl TryFrom<String> for StepSpec {
 
     fn try_from(word: String) -> Result<Self, String> {
         let found = Self::all().find(|step| step.word() == word);
-        found.ok_or_else(|| unknown("variant", &word, Self::all().map(Self::word)))
+        found.ok_or_else(|| {
+            let known: Vec<&str> = Self::all().map(Self::word).collect();
+            unknown("variant", &word, &known)
+        })
     }
 }
 
@@ -131,126 +136,110 @@ impl From<StepSpec> for String {
     }
 }
 
-fn unknown(what: &str, given: &str, known: impl Iterator<Item = &'static str>) -> String {
-    let known: Vec<String> = known.map(|word| format!("`{word}`")).collect();
-    format!(
-        "unknown {what} `{given}`, expected one of {}",
-        known.join(", ")
-    )
-}
-
-/// Names of all keys that `[signal]` may contain.
-static KEYS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let axes = all_axes().map(|(key, _)| key);
-    ["steps", "test_sensor", "combine"]
-        .into_iter()
-        .chain(axes)
-        .collect()
-});
-
-struct Key(String);
-
-impl<'de> Deserialize<'de> for Key {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let key = String::deserialize(deserializer)?;
-        match KEYS.contains(&&key[..]) {
-            true => Ok(Self(key)),
-            false => Err(D::Error::unknown_field(&key, &KEYS)),
-        }
+/// The table around the axes reads their keys.
+impl<'de> Deserialize<'de> for SignalAxes {
+    fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
+        Ok(Self::default())
     }
 }
 
-/// Deserialises the table `[signal]`; the code is not derived, because each sensor error defines its own keys.
-impl<'de> Deserialize<'de> for SignalSpec {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(SpecVisitor)
-    }
-}
-
-/// Schema of `[signal]`, built from the list of sensor errors that also defines the accepted keys.
-impl JsonSchema for SignalSpec {
-    fn schema_name() -> Cow<'static, str> {
-        "SignalSpec".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let number = generator.subschema_for::<Axis<f64>>();
-        let integer = generator.subschema_for::<Axis<u64>>();
-        let words: Vec<&str> = StepSpec::all().map(StepSpec::word).collect();
-        let steps = SignalSpec::default().steps;
-        let mut keys = serde_json::Map::new();
-        let mut add = |key: &str, mut schema: Schema, description: &str| {
-            schema.insert("description".to_owned(), description.into());
-            keys.insert(key.to_owned(), schema.into());
-        };
-        let list = json_schema!({
-            "type": "array",
-            "items": { "type": "string", "enum": words },
-            "uniqueItems": true,
-            "default": steps,
-        });
-        let order = "Steps of the signal chain, applied to a frame of deflections in this order; each step at most once.";
-        add("steps", list, order);
-        for (key, unit) in NOISES {
-            add(key, number.clone(), &noise_words(unit));
-        }
-        add("smoothing_mm", number.clone(), SMOOTHING);
-        for (error, strength) in all_strengths() {
-            let schema = match strength.is_whole {
-                true => &integer,
-                false => &number,
+impl Described for SignalAxes {
+    fn schema() -> Value {
+        let keys = all_about().map(|(about, words, is_whole)| {
+            let number = match is_whole {
+                true => Axis::<u64>::schema(),
+                false => Axis::<f64>::schema(),
             };
-            add(
-                strength.key,
-                schema.clone(),
-                &strength_words(error, strength),
-            );
-        }
-        let sensor = generator.subschema_for::<Axis<TestSensor>>();
-        add("test_sensor", sensor, TEST_SENSOR);
-        let mut combine = generator.subschema_for::<CombineSpec>();
-        combine.insert("default".to_owned(), "all".into());
-        add("combine", combine, COMBINE);
-        json_schema!({ "type": "object", "properties": keys, "additionalProperties": false })
+            (
+                about.name().to_owned(),
+                key_schema(number, Some(about.range), &[&words]),
+            )
+        });
+        json!({ "properties": Map::from_iter(keys) })
     }
+
+    fn absent() -> Option<Self> {
+        Some(Self::default())
+    }
+
+    fn describe_keys(_: &str, keys: &mut Vec<KeyAbout>) {
+        keys.extend(all_about().map(|(about, ..)| about));
+    }
+
+    fn inner_names() -> Vec<&'static str> {
+        all_axes().map(|(key, _)| key).collect()
+    }
+
+    fn read_inner<'de, M: MapAccess<'de>>(
+        slot: &mut Option<Self>,
+        name: &'static str,
+        map: &mut M,
+    ) -> Result<(), M::Error> {
+        let axis = map.next_value()?;
+        slot.get_or_insert_default().set(name, axis);
+        Ok(())
+    }
+}
+
+/// Returns the description and the meaning of each numeric key of `[signal]`, and whether its numbers are whole.
+fn all_about() -> impl Iterator<Item = (KeyAbout, String, bool)> {
+    let key = |name: &str, role, range, scale| {
+        let path: &'static str = format!("signal.{name}").leak();
+        let about = KeyAbout::new(path, AxisPlace::Table, role, range);
+        KeyAbout {
+            scale: Some(scale),
+            ..about
+        }
+    };
+    let noises = NOISES.iter().map(move |(name, unit)| {
+        let about = match unit {
+            NoiseUnit::FullScale => KeyAbout {
+                unit: Some("%"),
+                gives_way: Some(10),
+                ..key(name, Role::Condition, NOISE, Scale::Share)
+            },
+            _ => key(name, Role::Condition, Range::NotNegative, Scale::Linear),
+        };
+        let about = KeyAbout {
+            title: Some("noise"),
+            ..about
+        };
+        (about, noise_words(*unit), false)
+    });
+    let smoothing = KeyAbout {
+        gives_way: Some(9),
+        ..key(
+            "smoothing_mm",
+            Role::Choice,
+            Range::NotNegative,
+            Scale::Linear,
+        )
+    };
+    let strengths = strength_keys().iter().zip(all_strengths());
+    let strengths = strengths.map(|(about, (error, strength))| {
+        (*about, strength_words(error, strength), strength.is_whole)
+    });
+    noises
+        .chain([(smoothing, SMOOTHING.to_owned(), false)])
+        .chain(strengths)
 }
 
 const SMOOTHING: &str =
     "Standard deviation of the Gaussian smoothing over the array, mm. Default: no smoothing.";
-const TEST_SENSOR: &str =
-    "Sensor of the test touches. Default: the sensor of the training touches.";
-const COMBINE: &str = "How the axes of `[signal]` are combined with each other. All combinations with other axes are run.";
 
-struct SpecVisitor;
+/// Allowed noise standard deviations, as fractions of full scale. At the upper bound, nothing of the signal remains, and squares of features still fit into
+/// f32.
+const NOISE: Range = Range::ZeroOrBetween(1e-12, 1000.0, "0, or 1e-12 to 1000");
 
-impl<'de> Visitor<'de> for SpecVisitor {
-    type Value = SignalSpec;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a table of what happens to a frame")
-    }
-
-    fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<SignalSpec, M::Error> {
-        let mut spec = SignalSpec::default();
-        while let Some(Key(key)) = map.next_key()? {
-            match &key[..] {
-                "steps" => spec.steps = map.next_value()?,
-                "test_sensor" => spec.test_sensor = Some(map.next_value()?),
-                "combine" => spec.combine = map.next_value()?,
-                axis => spec.axes.set(axis, map.next_value()?),
-            }
-        }
-        Ok(spec)
+impl Described for StepSpec {
+    fn schema() -> Value {
+        let words: Vec<&str> = Self::all().map(Self::word).collect();
+        json!({ "type": "string", "enum": words })
     }
 }
 
 impl Default for SignalSpec {
     fn default() -> Self {
-        Self {
-            steps: vec![StepSpec::Noise, StepSpec::Smoothing],
-            axes: SignalAxes::default(),
-            test_sensor: None,
-            combine: CombineSpec::default(),
-        }
+        empty_table()
     }
 }

@@ -5,24 +5,28 @@
 
 use crate::engine::axes;
 use crate::engine::axes::StudyAxes;
-use crate::engine::axis::{Axis, one_value};
+use crate::engine::axis::Axis;
 use crate::error::Result;
-use crate::inputs::defaults::{count, is_default};
+use crate::inputs::defaults::is_default;
 use crate::inputs::keys::AxisPlace;
 use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::schema_types::Names;
+use crate::inputs::params::{Described, ORDER, named, params, words};
+use crate::inputs::range::COUNT;
+use crate::inputs::range::MAX_COUNTED;
+use crate::inputs::range::Range::{Any, AtLeastOne, Count, Fraction, Part, Positive, Unchecked};
 use crate::inputs::toml_value::value_at;
+use crate::learning::classifiers::ClassifierKind;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::{Ensemble, Selection};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::TrialScore;
-use crate::studies::recognition::spec::classifier_parameters::{
-    ClassifierParameters, OtherKeys, with_parameters,
-};
+use crate::studies::recognition::spec::classifier_parameters::ClassifierParameters;
 pub use crate::studies::recognition::spec::foreign::*;
 pub use crate::studies::recognition::spec::human::*;
-use crate::studies::recognition::spec::keys::recognition_keys;
+use crate::studies::recognition::spec::keys::{
+    CHOSEN, GAMMA, MAX_COPIES, MAX_READINGS, MAX_TRIALS, OVER_TIME, PENALTY, TILT, recognition_keys,
+};
 use crate::studies::recognition::spec::pose_split::GroupSpec;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;
 pub use crate::studies::recognition::spec::recorded::*;
@@ -30,86 +34,78 @@ pub use crate::studies::recognition::spec::recorded_sensor::RecordedSensorSpec;
 pub use crate::studies::recognition::spec::scene::*;
 pub use crate::studies::recognition::spec::signal::*;
 pub use crate::studies::recognition::spec::zero::ZeroSpec;
+use crate::table::Scale::{Linear, Log, Share, Words};
 use crate::table::{Column, Columns};
 use bubbletouch_sim::features::Features;
 use bubbletouch_svm::class_weight::ClassWeight;
 use bubbletouch_svm::scaling::Scaling;
 use bubbletouch_svm::{Multiclass, Solver};
-use schemars::JsonSchema;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::fmt;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
-/// Contents of a recognition study file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StudySpec {
-    /// Question that the study answers, in one sentence.
-    pub question: String,
-    /// Answer that the author expected before the first run. Default: empty.
-    #[serde(default)]
-    pub expected: String,
-    /// Seed of all random numbers. Default: 2018.
-    #[serde(default = "default_seed")]
-    pub seed: u64,
-    /// Number of trials per configuration, at least 1, each with a new split, projection and noise. Default: `recognition.folds`, or 1 without folds.
-    #[serde(default = "count::<1>")]
-    pub trials: usize,
-    /// Number P of projections (measurement matrices) per split; the study has `trials` / P splits, each combined with P projections. Default: one projection
-    /// per trial. With several projections, `variance.csv` separates the effect of the projection on the accuracy from the effect of the split.
-    pub projections_per_split: Option<usize>,
-    /// Table `[objects]`: the touched objects.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub objects: ObjectsSpec,
-    /// Table `[skin]`: the arrays of taxels.
-    pub skin: SkinSpec,
-    /// Table `[touches]`: poses and depths of the touches.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub touches: TouchesSpec,
-    /// Table `[human_touch]`: recognition of kinds of human touch, such as a stroke. Replaces `[objects]` and `[touches]`.
-    pub human_touch: Option<HumanTouchSpec>,
-    /// Table `[recorded]`: frames that a real skin recorded. Replaces `[objects]` and `[touches]`.
-    pub recorded: Option<RecordedSpec>,
-    /// Table `[signal]`: noise, sensor errors and processing of frames before compression.
-    #[serde(default)]
-    pub signal: SignalSpec,
-    /// Table `[sensing]`: compression of frames into measurements. Default: `ensemble = "identity"`, which measures all taxels without compression.
-    #[serde(default)]
-    pub sensing: SensingSpec,
-    /// Table `[recognition]`: features, classifiers, and the split into training and test touches.
-    pub recognition: RecognitionSpec,
-    /// Table `[test]`: keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` whose values differ for test touches, such as `test.touches.depth_mm`.
-    #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
-    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
-    pub test: toml::Table,
-    /// Table `[report]`: contents of the page and of some tables.
-    #[serde(default)]
-    pub report: ReportSpec,
-    /// Table `[axes]`: further axes, each consisting of a key and a list of its values.
-    #[serde(skip)]
-    pub axes: StudyAxes,
+/// Default random seed of all kinds of studies.
+pub(crate) const DEFAULT_SEED: u64 = 2018;
+
+params! {
+    /// Contents of a recognition study file.
+    pub struct StudySpec {
+        /// Question that the study answers, in one sentence.
+        question: String => Unchecked, Note, Never;
+        /// Answer that the author expected before the first run. Default: empty.
+        expected: String = String::new() => Unchecked, Note, Never;
+        /// Seed of all random numbers. Default: 2018.
+        seed: u64 = DEFAULT_SEED => Unchecked, Subject, Never;
+        /// Number of trials per configuration, at least 1, each with a new split, projection and noise. Default: `recognition.folds`, or 1 without folds.
+        trials: usize = 1 => Count(1, MAX_TRIALS), Subject, Never;
+        /// Number P of projections (measurement matrices) per split; the study has `trials` / P splits, each combined with P projections. Default: one projection
+        /// per trial. With several projections, `variance.csv` separates the effect of the projection on the accuracy from the effect of the split.
+        projections_per_split: Option<usize> => Count(2, MAX_TRIALS), Note, Never;
+        /// Table `[objects]`: the touched objects.
+        #[serde(skip_serializing_if = "is_default")]
+        objects: ObjectsSpec = ObjectsSpec::default();
+        /// Table `[skin]`: the arrays of taxels.
+        skin: SkinSpec;
+        /// Table `[touches]`: poses and depths of the touches.
+        #[serde(skip_serializing_if = "is_default")]
+        touches: TouchesSpec = TouchesSpec::default();
+        /// Table `[human_touch]`: recognition of kinds of human touch, such as a stroke. Replaces `[objects]` and `[touches]`.
+        human_touch: Option<HumanTouchSpec>;
+        /// Table `[recorded]`: frames that a real skin recorded. Replaces `[objects]` and `[touches]`.
+        recorded: Option<RecordedSpec>;
+        /// Table `[signal]`: noise, sensor errors and processing of frames before compression.
+        signal: SignalSpec = SignalSpec::default();
+        /// Table `[sensing]`: compression of frames into measurements. Default: `ensemble = "identity"`, which measures all taxels without compression.
+        sensing: SensingSpec = SensingSpec::default();
+        /// Table `[recognition]`: features, classifiers, and the split into training and test touches.
+        recognition: RecognitionSpec;
+        /// Table `[test]`: keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` whose values differ for test touches, such as `test.touches.depth_mm`.
+        #[serde(skip_serializing_if = "toml::Table::is_empty")]
+        test: toml::Table = toml::Table::default() => Unchecked, Condition, Axes;
+        /// Table `[report]`: contents of the page and of some tables.
+        report: ReportSpec = ReportSpec::default();
+    }
+    unread {
+        /// Table `[axes]`: further axes, each consisting of a key and a list of its values.
+        axes: StudyAxes;
+    }
 }
 
-/// Keys of `[sensing]`: compression of frames into measurements.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SensingSpec {
-    /// Axis: ensemble from which the measurement matrix is drawn. Default: `gaussian`.
-    #[serde(default = "default_ensemble")]
-    #[schemars(with = "Axis<Names<Ensemble>>")]
-    pub ensemble: Axis<Ensemble>,
-    /// Axis: compression ratio n / m, at least 1: number n of taxels divided by the number m of measurements.
-    pub ratio: Option<Axis<f64>>,
-    /// Axis: number m of measurements per frame, at least 1. Replaces `ratio`.
-    pub measurements: Option<Axis<usize>>,
-    /// Axis: method by which the ensemble `selected` selects the m taxels to read, from training touches only. Values: `greedy` (default; highest
-    /// validation accuracy of a nearest-neighbour classifier), `pivoted_qr` (pivots of m principal components; m is below the number of training frames)
-    /// or `random` (a control). At most 4,096 frames of the training touches are used.
-    #[schemars(with = "Option<Axis<Names<Selection>>>")]
-    pub selection: Option<Axis<Selection>>,
-    /// Number of measurements that the skin reads out per second. Adds the column `readout_ms`, the time to read a frame. Default: no such column.
-    pub readings_per_s: Option<f64>,
+params! {
+    /// Keys of `[sensing]`: compression of frames into measurements.
+    pub struct SensingSpec {
+        /// Axis: ensemble from which the measurement matrix is drawn. Default: `gaussian`.
+        ensemble: Axis<Ensemble> = Axis::One(Ensemble::Gaussian) => Any, Choice, Table, scale: Words, names: Ensemble::NAMES;
+        /// Axis: compression ratio n / m, at least 1: number n of taxels divided by the number m of measurements.
+        ratio: Option<Axis<f64>> => AtLeastOne, Choice, Table, title: "compression", unit: ":1", scale: Log, gives_way: 1;
+        /// Axis: number m of measurements per frame, at least 1. Replaces `ratio`.
+        measurements: Option<Axis<usize>> => COUNT, Choice, Table, title: "m", scale: Log, gives_way: 1;
+        /// Axis: method by which the ensemble `selected` selects the m taxels to read, from training touches only. Values: `greedy` (default; highest
+        /// validation accuracy of a nearest-neighbour classifier), `pivoted_qr` (pivots of m principal components; m is below the number of training frames)
+        /// or `random` (a control). At most 4,096 frames of the training touches are used.
+        selection: Option<Axis<Selection>> => Any, Choice, Table, title: "taxels selected by", scale: Words, names: Selection::NAMES;
+        /// Number of measurements that the skin reads out per second. Adds the column `readout_ms`, the time to read a frame. Default: no such column.
+        readings_per_s: Option<f64> => Positive, Choice, Axes;
+    }
 }
 
 impl Default for SensingSpec {
@@ -125,150 +121,139 @@ impl Default for SensingSpec {
     }
 }
 
-/// Keys of `[recognition]`: features, classifiers, and the split into training and test touches.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, remote = "Self")]
-#[schemars(transform = with_parameters)]
-pub struct RecognitionSpec {
-    /// Axis: features of a touch, before scaling. Default: `raw`. Transformations of the measurements: `raw`, `centred`, `unit_norm`, `centred_unit_norm`.
-    /// Features of images: `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. For features
-    /// of force, add `"force"` to `signal.steps`.
-    #[serde(default = "default_features")]
-    pub features: Axis<FeatureChoice>,
-    /// Axis: depth window of the image features, as a fraction of the full scale. Image features use only deflections within this window below the largest
-    /// deflection of a frame. They therefore do not depend on the press depth. Default: the whole image.
-    pub depth_window_full_scale: Option<Axis<f64>>,
-    /// Axis: number of additional copies of each training touch, whose images are randomly tilted. The copies make recognition robust to tilts that do not
-    /// occur in training. Copies require image features. Default: 0.
-    pub tilt_augmentation: Option<Axis<usize>>,
-    /// Maximum tilt of a copy about the array's x and y axes, degrees; the tilts are uniformly distributed. Default: 5.
-    pub tilt_augmentation_deg: Option<f64>,
-    /// Axis: method that combines the frames of a touch into features. Values: `deepest` (deepest frame), `stacked_8` (8 or another number of evenly spaced
-    /// frames), `moments` (of each measurement), `course` (of the touch) or `summarised` (moments and course). Default: all frames are concatenated.
-    pub temporal_features: Option<Axis<TemporalFeatures>>,
-    /// Axis: kind of classifier, such as `linear_svm`, or a command that trains a classifier, such as `{ command = ["python", "mine.py"] }`.
-    pub classifier: Axis<ClassifierChoice>,
-    /// Strategy that combines binary SVMs into a multi-class classifier: `one_vs_one` (default) or `one_vs_rest`.
-    #[serde(default)]
-    #[schemars(with = "Names<Multiclass>")]
-    pub multiclass: Multiclass,
-    /// Weights of the objects in the training of SVMs, logistic regressions and random forests: `uniform` (default), or `balanced`, as in scikit-learn: the
-    /// weight of an object is inverse to its number of training rows.
-    #[serde(default, skip_serializing_if = "is_default")]
-    #[schemars(with = "Names<ClassWeight>")]
-    pub class_weight: ClassWeight,
-    /// Solver that trains SVMs: `smo` (default) or `coordinate_descent`.
-    #[serde(default)]
-    #[schemars(with = "Names<Solver>")]
-    pub solver: Solver,
-    /// Scaling of the features, fitted to training rows: `standard` (default), `overall` or `none`.
-    #[serde(default)]
-    #[schemars(with = "Names<Scaling>")]
-    pub scaling: Scaling,
-    /// Axis: penalty C (positive) of classifiers with a penalty. Default: 1.
-    pub c: Option<Axis<f64>>,
-    /// Candidate values of the penalty C; replaces `c`. Each fit chooses one candidate by cross-validation within its training rows.
-    pub c_grid: Option<Vec<f64>>,
-    /// Candidate values of the kernel parameter γ, as multiples of its default; replaces `gamma`. The default is 1 / (F · m · variance), where F · m is the
-    /// number of features of a touch. For the Laplacian kernel, the standard deviation replaces the variance. Each fit chooses one candidate together with C.
-    pub gamma_grid: Option<Vec<f64>>,
-    /// Number of folds of the inner cross-validation, which selects C and γ and estimates decisions on unseen touches for `most_informative`. Default: 5. Folds
-    /// do not divide groups that the split does not divide.
-    pub cv_folds: Option<usize>,
-    /// Maximum number of training touches per object that are used to choose C and γ. Default: all. The default γ is computed from all training touches.
-    pub cv_touches: Option<usize>,
-    /// Number of readings of each training touch; each reading has its own noise. Default: 1. Without noise, drift or pink noise, all readings of a touch are
-    /// equal, and one is used. C and γ are chosen on the first readings.
-    pub readings_per_touch: Option<usize>,
-    /// Keys that [classifiers declare](crate::learning::classifiers::parameters): `degree`, `n_trees` and others.
-    #[serde(flatten, skip_deserializing)]
-    #[schemars(skip)]
-    pub parameters: ClassifierParameters,
-    /// Maximum size of the kernel values that an SVM solver keeps in memory, GiB. Default: 2. Above the limit, values are recomputed; this takes longer and may
-    /// change the last digits.
-    pub solver_memory_gib: Option<f64>,
-    /// Axis: maximum number of training touches per object, at least 1. Default: all touches of the training split.
-    pub train_touches: Option<Axis<usize>>,
-    /// Axis: fraction of each object's training touches that are labelled as a randomly drawn other object, 0 to 1. Default: 0.
-    pub mislabelled_fraction: Option<Axis<f64>>,
-    /// Axis: number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The numbers of all objects
-    /// form a geometric sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
-    pub class_imbalance: Option<Axis<f64>>,
-    /// Axis: number k of test touches of an object that are combined into one decision, at least 1. The scores of the combined touches are added. An object's
-    /// test touches are grouped at random; a remainder of fewer than k touches is omitted. Default: 1.
-    #[serde(default = "one_value")]
-    pub touches_per_decision: Axis<usize>,
-    /// Axis: rule that chooses the touches of a decision after the first touch. Values: `random` (default), `farthest` (the pose farthest from the previous
-    /// ones), or `most_informative` (the pose with the lowest expected entropy of the belief over objects). All test touches of the object are candidates, each
-    /// at most once per decision.
-    pub next_touch: Option<Axis<NextTouch>>,
-    /// Rule that selects the test touches: `random` (default), or a rule by pose.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub split: PoseSplit,
-    /// Fraction of the touches that a random split holds out for testing, between 0 and 1. Default: 0.25.
-    pub test_fraction: Option<f64>,
-    /// Number k of folds if the split into training and test touches is a k-fold split, at least 2; replaces `test_fraction`.
-    pub folds: Option<usize>,
-    /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If the
-    /// values are drawn (`{ uniform = … }`), touches of an object that are connected by a chain of neighbours form a group. Neighbours differ by less than
-    /// `group_by_mm` and `group_by_deg` on each drawn axis. Default: no groups.
-    pub group_by: Option<GroupSpec>,
-    /// Distance below which two drawn offsets or depths are neighbours, mm, positive; used with `group_by`.
-    pub group_by_mm: Option<f64>,
-    /// Angle below which two drawn yaws or tilts are neighbours, degrees, positive; used with `group_by`.
-    pub group_by_deg: Option<f64>,
+params! {
+    /// Keys of `[recognition]`: features, classifiers, and the split into training and test touches.
+    pub struct RecognitionSpec {
+        /// Axis: features of a touch, before scaling. Default: `raw`. Transformations of the measurements: `raw`, `centred`, `unit_norm`, `centred_unit_norm`.
+        /// Features of images: `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. For features
+        /// of force, add `"force"` to `signal.steps`.
+        features: Axis<FeatureChoice> = Axis::One(FeatureChoice(Features::Raw)) => Any, Choice, Table, scale: Words, names: Features::NAMES, gives_way: 13;
+        /// Axis: depth window of the image features, as a fraction of the full scale. Image features use only deflections within this window below the largest
+        /// deflection of a frame. They therefore do not depend on the press depth. Default: the whole image.
+        depth_window_full_scale: Option<Axis<f64>> => Positive, Choice, Table, title: "depth window", unit: "%", scale: Share;
+        /// Axis: number of additional copies of each training touch, whose images are randomly tilted. The copies make recognition robust to tilts that do not
+        /// occur in training. Copies require image features. Default: 0.
+        tilt_augmentation: Option<Axis<usize>> => Count(0, MAX_COPIES), Choice, Table, scale: Linear;
+        /// Maximum tilt of a copy about the array's x and y axes, degrees; the tilts are uniformly distributed. Default: 5.
+        tilt_augmentation_deg: Option<f64> => TILT, Choice, Axes;
+        /// Axis: method that combines the frames of a touch into features. Values: `deepest` (deepest frame), `stacked_8` (8 or another number of evenly spaced
+        /// frames), `moments` (of each measurement), `course` (of the touch) or `summarised` (moments and course). Default: all frames are concatenated.
+        temporal_features: Option<Axis<TemporalFeatures>> => Any, Choice, Table, scale: Words, names: OVER_TIME, gives_way: 12;
+        /// Axis: kind of classifier, such as `linear_svm`, or a command that trains a classifier, such as `{ command = ["python", "mine.py"] }`.
+        classifier: Axis<ClassifierChoice> => Any, Choice, Table, scale: Words, names: ClassifierKind::NAMES;
+        /// Strategy that combines binary SVMs into a multi-class classifier: `one_vs_one` (default) or `one_vs_rest`.
+        multiclass: Multiclass = Multiclass::default() => Any, Choice, Axes;
+        /// Weights of the objects in the training of SVMs, logistic regressions and random forests: `uniform` (default), or `balanced`, as in scikit-learn: the
+        /// weight of an object is inverse to its number of training rows.
+        #[serde(skip_serializing_if = "is_default")]
+        class_weight: ClassWeight = ClassWeight::default() => Any, Choice, Axes;
+        /// Solver that trains SVMs: `smo` (default) or `coordinate_descent`.
+        solver: Solver = Solver::default() => Any, Choice, Axes;
+        /// Scaling of the features, fitted to training rows: `standard` (default), `overall` or `none`.
+        scaling: Scaling = Scaling::default() => Any, Choice, Axes;
+        /// Axis: penalty C (positive) of classifiers with a penalty. Default: 1.
+        c: Option<Axis<f64>> => PENALTY, Choice, Table, title: "C", scale: Log, names: CHOSEN, gives_way: 4;
+        /// Candidate values of the penalty C; replaces `c`. Each fit chooses one candidate by cross-validation within its training rows.
+        c_grid: Option<Vec<f64>> => PENALTY, Choice, Axes;
+        /// Candidate values of the kernel parameter γ, as multiples of its default; replaces `gamma`. The default is 1 / (F · m · variance), where F · m is the
+        /// number of features of a touch. For the Laplacian kernel, the standard deviation replaces the variance. Each fit chooses one candidate together with C.
+        gamma_grid: Option<Vec<f64>> => GAMMA, Choice, Axes;
+        /// Number of folds of the inner cross-validation, which selects C and γ and estimates decisions on unseen touches for `most_informative`. Default: 5. Folds
+        /// do not divide groups that the split does not divide.
+        cv_folds: Option<usize> => Count(2, MAX_COUNTED), Choice, Axes;
+        /// Maximum number of training touches per object that are used to choose C and γ. Default: all. The default γ is computed from all training touches.
+        cv_touches: Option<usize> => COUNT, Choice, Axes;
+        /// Number of readings of each training touch; each reading has its own noise. Default: 1. Without noise, drift or pink noise, all readings of a touch are
+        /// equal, and one is used. C and γ are chosen on the first readings.
+        readings_per_touch: Option<usize> => Count(1, MAX_READINGS), Choice, Axes;
+        /// Keys that [classifiers declare](crate::learning::classifiers::parameters): `degree`, `n_trees` and others.
+        #[serde(flatten)]
+        parameters: ClassifierParameters;
+        /// Maximum size of the kernel values that an SVM solver keeps in memory, GiB. Default: 2. Above the limit, values are recomputed; this takes longer and may
+        /// change the last digits.
+        solver_memory_gib: Option<f64> => Positive, Choice, Axes;
+        /// Axis: maximum number of training touches per object, at least 1. Default: all touches of the training split.
+        train_touches: Option<Axis<usize>> => COUNT, Choice, Table, title: "training touches", scale: Log, gives_way: 5;
+        /// Axis: fraction of each object's training touches that are labelled as a randomly drawn other object, 0 to 1. Default: 0.
+        mislabelled_fraction: Option<Axis<f64>> => Fraction, Condition, Table, title: "mislabelled", unit: "%", scale: Share, gives_way: 6;
+        /// Axis: number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The numbers of all objects
+        /// form a geometric sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
+        class_imbalance: Option<Axis<f64>> => AtLeastOne, Condition, Table, unit: ":1", scale: Log, gives_way: 7;
+        /// Axis: number k of test touches of an object that are combined into one decision, at least 1. The scores of the combined touches are added. An object's
+        /// test touches are grouped at random; a remainder of fewer than k touches is omitted. Default: 1.
+        touches_per_decision: Axis<usize> = Axis::One(1) => COUNT, Choice, Table, scale: Log, gives_way: 8;
+        /// Axis: rule that chooses the touches of a decision after the first touch. Values: `random` (default), `farthest` (the pose farthest from the previous
+        /// ones), or `most_informative` (the pose with the lowest expected entropy of the belief over objects). All test touches of the object are candidates, each
+        /// at most once per decision.
+        next_touch: Option<Axis<NextTouch>> => Any, Choice, Table, scale: Words;
+        /// Rule that selects the test touches: `random` (default), or a rule by pose.
+        #[serde(skip_serializing_if = "is_default")]
+        split: PoseSplit = PoseSplit::default() => Any, Condition, Axes, title: "poses held out";
+        /// Fraction of the touches that a random split holds out for testing, between 0 and 1. Default: 0.25.
+        test_fraction: Option<f64> => Part, Condition, Axes;
+        /// Number k of folds if the split into training and test touches is a k-fold split, at least 2; replaces `test_fraction`.
+        folds: Option<usize> => Count(2, MAX_COUNTED), Condition, Axes;
+        /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If the
+        /// values are drawn (`{ uniform = … }`), touches of an object that are connected by a chain of neighbours form a group. Neighbours differ by less than
+        /// `group_by_mm` and `group_by_deg` on each drawn axis. Default: no groups.
+        group_by: Option<GroupSpec> => Any, Condition, Axes, title: "group held out";
+        /// Distance below which two drawn offsets or depths are neighbours, mm, positive; used with `group_by`.
+        group_by_mm: Option<f64> => Positive, Condition, Axes;
+        /// Angle below which two drawn yaws or tilts are neighbours, degrees, positive; used with `group_by`.
+        group_by_deg: Option<f64> => Positive, Condition, Axes;
+    }
 }
 
-/// Keys of `[report]`: contents of the page and of some tables.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ReportSpec {
-    /// Names of the objects whose touches the sample picture shows. Default: four, spread over the list of objects.
-    pub samples: Option<Vec<String>>,
-    /// Whether the report contains charts of accuracy against time with the Pareto front. Default: true if the study has at least three classifiers.
-    pub pareto: Option<bool>,
-    /// Configurations whose confusion matrix is written to `confusion.csv`: `all` (default) or `best`.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub confusion: ConfusionMatrices,
-    /// Whether `predictions.csv` lists every decision of every configuration and trial, with a score for each class. Default: false.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub predictions: bool,
-    /// Further measures of recognition: columns `balanced_accuracy` and `log_loss` of `accuracy.csv` and `summary.csv`, and the table `recall.csv`. Default:
-    /// none.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub metrics: Vec<Metric>,
-    /// Published accuracies with which the study is compared. Each published accuracy is compared with the most accurate configuration to which its claim
-    /// applies.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub published: Vec<PublishedSpec>,
+params! {
+    /// Keys of `[report]`: contents of the page and of some tables.
+    #[derive(Default)]
+    pub struct ReportSpec {
+        /// Names of the objects whose touches the sample picture shows. Default: four, spread over the list of objects.
+        samples: Option<Vec<String>> => Any, Note, Never;
+        /// Whether the report contains charts of accuracy against time with the Pareto front. Default: true if the study has at least three classifiers.
+        pareto: Option<bool> => Any, Note, Never;
+        /// Configurations whose confusion matrix is written to `confusion.csv`: `all` (default) or `best`.
+        #[serde(skip_serializing_if = "is_default")]
+        confusion: ConfusionMatrices = ConfusionMatrices::default() => Any, Note, Never;
+        /// Whether `predictions.csv` lists every decision of every configuration and trial, with a score for each class. Default: false.
+        #[serde(skip_serializing_if = "is_default")]
+        predictions: bool = false => Any, Note, Never;
+        /// Further measures of recognition: columns `balanced_accuracy` and `log_loss` of `accuracy.csv` and `summary.csv`, and the table `recall.csv`. Default:
+        /// none.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        metrics: Vec<Metric> = Vec::new() => Any, Note, Never;
+        /// Published accuracies with which the study is compared. Each published accuracy is compared with the most accurate configuration to which its claim
+        /// applies.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        published: Vec<PublishedSpec> = Vec::new() => Unchecked, Note, Never;
+    }
 }
 
-/// Measure of recognition beside accuracy and macro-F1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Metric {
-    /// Mean over objects of the fraction of the object's decisions that are correct.
-    BalancedAccuracy,
-    /// Mean negative natural logarithm of the probability of the touched object; only for classifiers with probabilities.
-    LogLoss,
-    /// Fraction of the decisions on each object that are correct.
-    Recall,
+words! {
+    /// Measure of recognition beside accuracy and macro-F1.
+    pub enum Metric {
+        /// Mean over objects of the fraction of the object's decisions that are correct.
+        BalancedAccuracy = "balanced_accuracy",
+        /// Mean negative natural logarithm of the probability of the touched object; only for classifiers with probabilities.
+        LogLoss = "log_loss",
+        /// Fraction of the decisions on each object that are correct.
+        Recall = "recall",
+    }
 }
 
-/// Selection of the configurations whose confusion matrices are written to `confusion.csv`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ConfusionMatrices {
-    /// Confusion matrices of all configurations of the study.
-    #[default]
-    All,
-    /// Confusion matrices of the most accurate configuration and of the configurations in `confused.csv`. With many objects, confusion matrices take most of
-    /// the space of a result folder.
-    Best,
+words! {
+    /// Selection of the configurations whose confusion matrices are written to `confusion.csv`.
+    pub enum ConfusionMatrices = All {
+        /// Confusion matrices of all configurations of the study.
+        All = "all",
+        /// Confusion matrices of the most accurate configuration and of the configurations in `confused.csv`. With many objects, confusion matrices take most of
+        /// the space of a result folder.
+        Best = "best",
+    }
 }
 
 /// Published accuracy, such as `{ claim = "98 % at 64:1", accuracy = 0.98, source = "[CL]", ratio = 64.0, ensemble = "sbhe" }`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PublishedSpec {
     /// Published claim as text, such as `98 % at 64:1`.
     pub claim: String,
@@ -279,46 +264,35 @@ pub struct PublishedSpec {
     /// Further keys that select the configurations to compare with the claim. Each key is the name of a column of [`Configuration`] with its value (`noise` is
     /// short for `noise_std`).
     #[serde(flatten)]
-    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     pub at: toml::Table,
 }
 
-impl Serialize for RecognitionSpec {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        // The derived function of the same name, which `remote = "Self"` makes.
-        Self::serialize(self, serializer)
+impl Described for PublishedSpec {
+    fn schema() -> Value {
+        json!({
+            "type": "object",
+            "description": "Published accuracy, such as `{ claim = \"98 % at 64:1\", accuracy = 0.98, source = \"[CL]\", ratio = 64.0, ensemble = \"sbhe\" }`. \
+                            Further keys are columns with their values, which select the configurations to compare with the claim.",
+            "properties": {
+                "claim": { "type": "string", "description": "Published claim as text, such as `98 % at 64:1`." },
+                "accuracy": { "type": "number", "description": "Published fraction of correctly recognised test touches, 0 to 1." },
+                "source": { "type": "string", "description": "Publication that contains the claim." },
+            },
+            "required": ["claim", "accuracy", "source"],
+            ORDER: ["claim", "accuracy", "source"],
+            "additionalProperties": true,
+        })
     }
 }
 
-/// Deserialises the fields by the derived function, and the parameters of classifiers by their declarations.
-impl<'de> Deserialize<'de> for RecognitionSpec {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        deserializer.deserialize_map(RecognitionVisitor)
-    }
-}
-
-struct RecognitionVisitor;
-
-impl<'de> Visitor<'de> for RecognitionVisitor {
-    type Value = RecognitionSpec;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("struct RecognitionSpec")
-    }
-
-    fn visit_map<M: MapAccess<'de>>(
-        self,
-        map: M,
-    ) -> std::result::Result<RecognitionSpec, M::Error> {
-        let mut parameters = ClassifierParameters::default();
-        let others = OtherKeys {
-            map,
-            parameters: &mut parameters,
-        };
-        let spec = RecognitionSpec::deserialize(MapAccessDeserializer::new(others))?;
-        Ok(RecognitionSpec { parameters, ..spec })
-    }
-}
+named!(
+    Ensemble,
+    Selection,
+    Multiclass,
+    ClassWeight,
+    Solver,
+    Scaling
+);
 
 impl StudySpec {
     /// Parses a study from the text of its file.
@@ -377,17 +351,4 @@ impl StudySpec {
     pub fn to_toml(&self) -> String {
         axes::to_toml(self, &self.axes)
     }
-}
-
-/// Returns the default random seed of all kinds of studies.
-pub(crate) fn default_seed() -> u64 {
-    2018
-}
-
-fn default_features() -> Axis<FeatureChoice> {
-    Axis::One(FeatureChoice(Features::Raw))
-}
-
-fn default_ensemble() -> Axis<Ensemble> {
-    Axis::One(Ensemble::Gaussian)
 }

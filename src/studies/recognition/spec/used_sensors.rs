@@ -1,30 +1,27 @@
 //! Sensors of a recording that a study uses.
 
 use crate::error::{Error, Result};
+use crate::inputs::params::variants;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::studies::recognition::spec::recorded_sensor::{
     RecordedSensorSpec, SensorPlace, sensor_table,
 };
 use crate::studies::recognition::spec::zero::ZeroSpec;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 /// Value of `recorded.sensor` that selects all sensors.
 const ALL: &str = "all";
 /// Character between the names of several sensors in a text.
 const AND: char = '+';
 
-/// Sensors whose readings a study uses, such as `"all"`, `"palm"`, `"palm+thumb"` or `["palm", "thumb"]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(
-    untagged,
-    expecting = "expected the name of a sensor, names joined by `+`, a list of names, or `all`"
-)]
-pub enum SensorChoice {
-    /// `all`, a name, or names joined by `+`.
-    Text(String),
-    /// List of names.
-    Names(Vec<String>),
+variants! {
+    /// Sensors whose readings a study uses, such as `"all"`, `"palm"`, `"palm+thumb"` or `["palm", "thumb"]`.
+    #[serde(expecting = "expected the name of a sensor, names joined by `+`, a list of names, or `all`")]
+    pub untagged enum SensorChoice, Deserialize {
+        /// `all`, a name, or names joined by `+`.
+        Text(String),
+        /// List of names.
+        Names(Vec<String>),
+    }
 }
 
 impl SensorChoice {

@@ -1,20 +1,20 @@
 //! Specification of the readings of untouched taxels.
 
 use crate::files::file_path;
-use schemars::JsonSchema;
+use crate::inputs::params::variants;
 use serde::de::{IntoDeserializer, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Deserializer};
 use std::fmt;
 use std::path::PathBuf;
 
-/// Readings of untouched taxels, written as `zero = 100.0` or `zero = "zero.npy"`.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum ZeroSpec {
-    /// Common reading of all untouched taxels.
-    One(f64),
-    /// File with one reading for each taxel: an array with the taxel axes of `frames`, or a list in row-major order.
-    Each(PathBuf),
+variants! {
+    /// Readings of untouched taxels, written as `zero = 100.0` or `zero = "zero.npy"`.
+    pub untagged enum ZeroSpec {
+        /// Common reading of all untouched taxels.
+        One(f64),
+        /// File with one reading for each taxel: an array with the taxel axes of `frames`, or a list in row-major order.
+        Each(PathBuf),
+    }
 }
 
 impl ZeroSpec {
