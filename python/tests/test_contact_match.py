@@ -313,6 +313,14 @@ def test_what_a_model_hides_is_said() -> None:
     thin = mujoco.MjModel.from_xml_string(text.replace("0.1 0.1 0.02", "0.1 0.1 0.0025").replace("0 0 -0.02", "0 0 -0.0025"))
     with pytest.warns(UserWarning, match="'skin': stroke plus taxel diameter, 6 mm, exceed the pad's thickness, 5 mm, .* at most 3 mm fits"):
         Skin(thin, {"skin": bt.Patch.grid(4, 4, 2e-3, **SOFT)})
+    # Pads that are meshes and height fields are as thick as boxes.
+    slab = " ".join(map(str, bt.Mesh.box([0.2, 0.2, 0.005]).vertices.ravel().tolist()))
+    assets = f'<asset><mesh name="slab" vertex="{slab}"/><hfield name="field" nrow="2" ncol="2" size="0.1 0.1 0.001 0.004" elevation="1 1 1 1"/></asset>'
+    for shape in ('type="mesh" mesh="slab" pos="0 0 -0.0025"', 'type="hfield" hfield="field" pos="0 0 -0.001"'):
+        table = f'<body><geom name="table" {shape}/><site name="skin"/></body>'
+        other = mujoco.MjModel.from_xml_string(PLATE.format(table=table, more="").replace("<worldbody>", assets + "<worldbody>"))
+        with pytest.warns(UserWarning, match="exceed the pad's thickness, 5 mm, .* at most 3 mm fits"):
+            Skin(other, {"skin": bt.Patch.grid(4, 4, 2e-3, **SOFT)})
     flex = """<flexcomp name="cloth" type="grid" count="4 4 1" spacing="0.01 0.01 0.01" pos="0 0 1" dim="2" mass="0.1"><edge equality="true"/></flexcomp>"""
     with_flex = mujoco.MjModel.from_xml_string(text.replace("</worldbody>", flex + "</worldbody>"))
     with pytest.warns(UserWarning, match="does not feel the 1 flexes"):

@@ -84,12 +84,12 @@ SURFACE = 1e-3
 
 def _ray(model: mujoco.MjModel, data: mujoco.MjData, geom: int, point: NDArray[np.float64], direction: NDArray[np.float64]) -> float:
     """Returns the distance along a ray to the surface of a geom, metres; negative if the ray misses it."""
-    kind = model.geom_type[geom]
+    kind = mujoco.mjtGeom(model.geom_type[geom])
     if kind in (mujoco.mjtGeom.mjGEOM_MESH, mujoco.mjtGeom.mjGEOM_SDF):
         return float(mujoco.mj_rayMesh(model, data, geom, point, direction))
     if kind == mujoco.mjtGeom.mjGEOM_HFIELD:
         return float(mujoco.mj_rayHfield(model, data, geom, point, direction))
-    return float(mujoco.mju_rayGeom(data.geom_xpos[geom], data.geom_xmat[geom], model.geom_size[geom], point, direction, kind))
+    return float(mujoco.mju_rayGeom(data.geom_xpos[geom], data.geom_xmat[geom], model.geom_size[geom], point, direction, int(kind)))
 
 
 def _is_closed(triangles: NDArray[np.int32]) -> bool:
