@@ -43,8 +43,8 @@ pub trait Described: DeserializeOwned + 'static {
     fn describe_keys(_path: &str, _keys: &mut Vec<KeyAbout>) {}
 
     /// Returns the keys that the value takes from the table around it; empty for the value of a key.
-    fn inner_names() -> Vec<&'static str> {
-        Vec::new()
+    fn inner_names() -> &'static [&'static str] {
+        &[]
     }
 
     /// Reads one of the keys that the value takes from the table around it.
@@ -111,8 +111,7 @@ macro_rules! params {
                     }
                     fn visit_map<M: serde::de::MapAccess<'de>>(self, mut map: M) -> std::result::Result<$name, M::Error> {
                         $(let mut $key: Option<$type> = None;)*
-                        let names = $name::names();
-                        while let Some(name) = map.next_key_seed(KeyName(&names))? {
+                        while let Some(name) = map.next_key_seed(KeyName($name::names()))? {
                             $(
                                 if <$type as $crate::inputs::params::Described>::inner_names().contains(&name) {
                                     <$type as $crate::inputs::params::Described>::read_inner(&mut $key, name, &mut map)?;
@@ -139,9 +138,12 @@ macro_rules! params {
 
         impl $name {
             /// Returns the names of all keys of the table, in the order of their declaration.
-            fn names() -> Vec<&'static str> {
+            fn names() -> &'static [&'static str] {
                 use $crate::inputs::params::own_or_inner;
-                [$(own_or_inner(stringify!($key), <$type as $crate::inputs::params::Described>::inner_names())),*].concat()
+                static NAMES: std::sync::LazyLock<Vec<&str>> = std::sync::LazyLock::new(|| {
+                    [$(own_or_inner(stringify!($key), <$type as $crate::inputs::params::Described>::inner_names())),*].concat()
+                });
+                &NAMES
             }
         }
 
@@ -295,10 +297,13 @@ pub(crate) fn joined(path: &str, name: &str) -> String {
 }
 
 /// Returns the names that a key adds to its table: those that its value takes from the table, or its own.
-pub(crate) fn own_or_inner(name: &'static str, inner: Vec<&'static str>) -> Vec<&'static str> {
+pub(crate) fn own_or_inner(
+    name: &'static str,
+    inner: &'static [&'static str],
+) -> Vec<&'static str> {
     match inner.is_empty() {
         true => vec![name],
-        false => inner,
+        false => inner.to_vec(),
     }
 }
 

@@ -10,6 +10,7 @@ use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 /// Values of [declared] classifier parameters, by key: those given in the study, and defaults that are always written.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,8 +116,10 @@ impl Described for ClassifierParameters {
         }));
     }
 
-    fn inner_names() -> Vec<&'static str> {
-        declared().map(|parameter| parameter.key).collect()
+    fn inner_names() -> &'static [&'static str] {
+        static NAMES: LazyLock<Vec<&str>> =
+            LazyLock::new(|| declared().map(|one| one.key).collect());
+        &NAMES
     }
 
     fn read_inner<'de, M: MapAccess<'de>>(

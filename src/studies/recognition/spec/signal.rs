@@ -15,6 +15,7 @@ use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 params! {
     /// Keys of `[signal]`: noise, sensor errors and processing of the readings.
@@ -166,8 +167,10 @@ impl Described for SignalAxes {
         keys.extend(all_about().map(|(about, ..)| about));
     }
 
-    fn inner_names() -> Vec<&'static str> {
-        all_axes().map(|(key, _)| key).collect()
+    fn inner_names() -> &'static [&'static str] {
+        static NAMES: LazyLock<Vec<&str>> =
+            LazyLock::new(|| all_axes().map(|(key, _)| key).collect());
+        &NAMES
     }
 
     fn read_inner<'de, M: MapAccess<'de>>(
