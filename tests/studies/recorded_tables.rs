@@ -5,7 +5,7 @@ use crate::study::laid_out;
 use bubbletouch::audit::{AuditData, AuditFiles};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::TrialScore;
-use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames, write_integers};
+use bubbletouch::study::{RecordedSkinFiles, RecordedSpec, UntouchedFrames, write_integers};
 use ndarray::{Array1, Array2, Array3};
 use std::path::Path;
 
@@ -45,7 +45,10 @@ fn table(header: &str, line: impl Fn(usize, &str) -> String) -> String {
 fn audited(case: &Case, name: &str, columns: Option<&str>) -> bubbletouch::Result<AuditData> {
     let files = AuditFiles {
         data: case.path(name),
-        columns: columns.map(str::to_owned),
+        given: RecordedSpec {
+            columns: columns.map(str::to_owned),
+            ..RecordedSpec::default()
+        },
         ..AuditFiles::default()
     };
     files.read()
