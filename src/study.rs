@@ -41,6 +41,7 @@ pub use crate::studies::recognition::plan::signal::Condition;
 pub use crate::studies::recognition::plan::study_plan::Plan;
 pub use crate::studies::recognition::plan::taxel_array;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;
+pub use crate::studies::recognition::spec::recorded::RecordedSpec;
 pub use crate::studies::recognition::spec::signal::*;
 pub use crate::studies::recognition::spec::study::*;
 pub use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};

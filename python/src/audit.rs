@@ -5,6 +5,7 @@ use crate::study::{ColumnsOfTable, columns};
 use crate::threads::aside;
 use bubbletouch::audit::{AuditData, AuditFiles, AuditOptions, Finding, audit, audit_files};
 use bubbletouch::report::folder::write_files;
+use bubbletouch::study::RecordedSpec;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -24,13 +25,14 @@ type SaidFinding = (
 );
 
 fn said(finding: &Finding) -> SaidFinding {
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
     (
-        finding.check.to_owned(),
+        finding.check.clone(),
         finding.subject.clone(),
-        finding.verdict.word().to_owned(),
-        finding.value,
-        finding.interval,
-        finding.baseline,
+        finding.verdict.word(),
+        number(finding.value),
+        [finding.value_low, finding.value_high].map(number),
+        number(finding.baseline),
         finding.p_value,
         finding.p_holm,
         finding.sentence.clone(),
@@ -66,20 +68,22 @@ pub fn run_audit<'py>(
         let mut file = |name: &str| files.remove(name);
         let files = AuditFiles {
             data: file("data").unwrap_or_default(),
-            labels: file("labels"),
-            groups: file("groups"),
             sessions: file("sessions"),
             times: file("times"),
-            lengths: file("lengths"),
-            lengths_test: file("lengths_test"),
-            frames_test: file("frames_test"),
-            labels_test: file("labels_test"),
-            groups_test: file("groups_test"),
-            order,
-            columns,
-            grid,
-            full_scale,
-            ..AuditFiles::default()
+            given: RecordedSpec {
+                labels: file("labels").unwrap_or_default(),
+                groups: file("groups"),
+                lengths: file("lengths"),
+                lengths_test: file("lengths_test"),
+                frames_test: file("frames_test"),
+                labels_test: file("labels_test"),
+                groups_test: file("groups_test"),
+                order,
+                columns,
+                grid,
+                full_scale,
+                ..RecordedSpec::default()
+            },
         };
         let data = aside(py, move |_| files.read())?.map_err(exception)?;
         let options = AuditOptions {

@@ -56,7 +56,7 @@ def test_each_order_is_audited_as_by_path(tmp_path: Path) -> None:
 
 def test_wrong_arguments_are_named() -> None:
     frames, labels = data()
-    with pytest.raises(ValueError, match="^labels: 119 values; 120, one for each touch of frames$"):
+    with pytest.raises(ValueError, match="^labels: 119 values; 120, one a touch of frames$"):
         bt.audit(frames, labels[1:])
     with pytest.raises(ValueError, match='^order: "n t y"; a letter for each axis'):
         bt.audit(frames, labels, order="n t y")
@@ -79,7 +79,7 @@ def test_a_given_test_set_is_one_more_split(tmp_path: Path) -> None:
     found = bt.audit(frames[:110], labels[:110], test=(frames[110:], labels[110:]), out=tmp_path / "audit", permutations=399)
     split = next(finding for finding in found.findings if (finding.check, finding.subject) == ("split", "given"))
     assert split.verdict == "fault" and split.value + 0.2 < split.baseline
-    assert "With the given test set" in split.sentence
+    assert "with the given test set" in split.sentence
     table = found.tables["accuracy_by_split"]
     assert {n for held_out, n in zip(table["split"], table["n_tested"], strict=True) if held_out == "given"} == {50}
     groups = np.arange(160) % 8
@@ -93,11 +93,11 @@ def test_a_given_test_set_is_one_more_split(tmp_path: Path) -> None:
 
 def test_wrong_test_sets_are_named() -> None:
     frames, labels = data()
-    with pytest.raises(ValueError, match="^test: 1 frames of 60 taxels a touch; 1 of 144, as frames$"):
+    with pytest.raises(ValueError, match="^test: 1 frames of 60 taxels a touch; 1 frames of 144 taxels a touch, as frames$"):
         bt.audit(frames, labels, test=(frames[:, :5], labels))
     with pytest.raises(ValueError, match="^test: a test set; labels_test and groups_test, if frames has labels and groups$"):
         bt.audit(frames, labels, test=(frames, None))
-    with pytest.raises(ValueError, match="^test, labels: 29 values; 30, one for each touch of test$"):
+    with pytest.raises(ValueError, match="^test, labels: 29 values; 30, one a touch of test$"):
         bt.audit(frames, labels, test=(frames[:30], labels[:29]))
     with pytest.raises(ValueError, match="^test: not a test set"):
         bt.audit(frames, labels, test=frames)
@@ -131,7 +131,7 @@ def test_paths_are_read_as_by_the_command(tmp_path: Path) -> None:
         bt.audit(tmp_path / "absent.npz")
     with pytest.raises(FileNotFoundError, match="^labels: object: no such file; an array, or the path of a file$"):
         bt.audit(frames, "object")
-    with pytest.raises(ValueError, match=r"^labels: 119 values; 120, one for each touch of .*touches\.npy$"):
+    with pytest.raises(ValueError, match=r"^labels: 119 values; 120, one a touch of .*touches\.npy$"):
         bt.audit(tmp_path / "touches.npy", labels[1:])
     with pytest.raises(ValueError, match="^frames: dict; an array, or the path of a file$"):
         bt.audit({"thumb": frames}, labels)  # type: ignore[arg-type]

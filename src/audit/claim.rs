@@ -1,14 +1,13 @@
 //! First question: what does the split of the claim measure?
 //!
-//! Accuracy of fast classifiers at random and with whole units held out, at equal training size; what training and test share; copies; and the number of
-//! independent touches.
+//! Accuracy of fast classifiers at random and with whole units held out, at equal training size; the number of independent touches; what training and test share;
+//! and copies.
 
 use crate::audit::context::Context;
 use crate::audit::finding::{ALPHA, Finding, Verdict, percent};
-use crate::audit::scores::nearest;
 use crate::audit::splits::{AuditSplit, touches_of_classes};
 use crate::error::Result;
-use bubbletouch_sim::audit::copies::{CopySet, N_NEAREST, copy_sets};
+use bubbletouch_sim::audit::copies::{CopySet, copy_sets};
 use bubbletouch_sim::audit::dependence::{effective_by_groups, effective_by_order};
 use bubbletouch_sim::audit::taxels::{sizes, smallest_step};
 use bubbletouch_svm::audit::{Permuted, held_out_loss, readability};
@@ -24,9 +23,6 @@ const LEAST_LOSS: f64 = 0.5;
 const N_DOUBTING: usize = 5;
 /// Number of nearest touches to which a touch of a cluster is connected.
 const N_CONNECTED: usize = 3;
-/// Smallest class, and smallest ratio of the largest to the smallest class, that are reported.
-const FEW_TOUCHES: usize = 10;
-const UNBALANCED: f64 = 1.5;
 
 /// Touch with a doubtful label.
 pub struct Doubtful {
@@ -62,9 +58,10 @@ pub fn answer(context: &Context) -> Result<Claim> {
     if context.has_classes {
         findings.extend(clusters(context));
         findings.push(labels(context, &doubtful));
-        findings.push(class_balance(context));
     }
-    findings.push(sample_size(context));
+    if context.data.groups.is_none() {
+        findings.push(sample_size(context));
+    }
     let missing = not_given(context);
     let mut sentences = vec![accuracy_sentence(context)];
     if !missing.is_empty() {
@@ -93,25 +90,30 @@ fn units_of(split: &AuditSplit) -> &'static str {
     }
 }
 
-/// Returns the sentence that compares the arms of the first split.
+/// Returns the sentence that compares the arms of a split; `None` without classes.
+fn arms_sentence(context: &Context, number: usize) -> Option<String> {
+    Some(format!(
+        "At random, {} of the touches; with {}, {}; chance is {}, and both train on equally many touches.",
+        context.best(number, false)?.words(),
+        units_of(&context.splits[number]),
+        context.best(number, true)?.words(),
+        percent(context.chance())
+    ))
+}
+
+/// Returns the first sentence of the page.
 fn accuracy_sentence(context: &Context) -> String {
-    let arms = (context.best(0, false), context.best(0, true));
-    let (Some(random), Some(held)) = arms else {
+    let Some((mut sentence, random)) = arms_sentence(context, 0).zip(context.best(0, false)) else {
         return "Without labels of two classes, only the readings were checked.".to_owned();
     };
-    let (split, chance) = (&context.splits[0], context.chance());
-    let is_blind = random.interval(split).is_ok_and(|own| own.low <= chance);
-    let mut sentence = format!(
-        "At random, {} of the touches; with {}, {}; chance is {}, and both train on equally many touches.",
-        random.words(),
-        units_of(split),
-        held.words(),
-        percent(chance)
-    );
+    let split = &context.splits[0];
     if split.has_few_units() {
         sentence += &format!(" There are only {} {}s.", split.n_units, split.name);
     }
-    if is_blind {
+    if random
+        .interval(split)
+        .is_ok_and(|own| own.low <= context.chance())
+    {
         sentence += " No fast classifier recognises more than chance: this audit is blind to leaks of the split.";
     }
     sentence
@@ -161,36 +163,38 @@ fn split_findings(context: &Context) -> Result<Vec<Finding>> {
         let (high, low, chance) = (random.accuracy(), held.accuracy(), context.chance());
         let interval = held.interval(split)?;
         let is_relevant = high - low >= LEAST_LOSS * (high - chance) && high > chance;
-        let verdict = match is_relevant && named != Some(split.name) {
+        let is_tested = !split.has_few_units();
+        let verdict = match is_relevant && is_tested && named != Some(split.name) {
             true => Verdict::Fault,
             false => Verdict::Note,
         };
-        let mut sentence = format!(
-            "With {}, {}; at random, with equally many touches in training, {}. Chance is {}.",
-            units_of(split),
-            held.words(),
-            random.words(),
-            percent(chance)
-        );
+        let mut sentence = arms_sentence(context, number).unwrap_or_default();
         let mut arm = context.arm(number, true);
         let same = arm.find(|tested| tested.method == random.method);
         if let Some(same) = same.filter(|same| same.method != held.method) {
             sentence += &format!(" In this split, {}.", same.words());
         }
-        let advice = "Report the accuracy with whole units held out; where touches are alike, give their groups (--groups).";
+        if let ("group", Some(groups)) = (split.name, &context.data.groups) {
+            let (n, residuals) = (groups.len(), context.residuals());
+            let effective = effective_by_groups(residuals.view(), &context.labels, groups);
+            sentence += &format!(
+                " By their groups, {n} touches are worth {effective:.0} independent ones."
+            );
+        }
+        let advice = match split.name {
+            name if !is_tested => format!("Record more {name}s: so few cannot show how the accuracy varies between them."),
+            "time" => "Report the accuracy with blocks of time held out. Give touches of one grasp, object or person as groups (--groups).".to_owned(),
+            _ => format!("Report the accuracy with {}.", units_of(split)),
+        };
         let mut finding = Finding::new("split", verdict, sentence).about(split.name);
-        finding = finding
+        (finding.value_low, finding.value_high) = (Some(interval.low), Some(interval.high));
+        let finding = finding
             .value(low, high)
             .advice(advice)
             .shown_in("accuracy_by_split");
-        finding.interval = [interval.low, interval.high];
-        findings.push(match test.filter(|_| !split.has_few_units()) {
+        findings.push(match test.filter(|_| is_tested) {
             Some(test) => finding.tested(&test),
-            None => Finding {
-                verdict: Verdict::Note,
-                advice: "So few units cannot show how the accuracy varies between them.".to_owned(),
-                ..finding
-            },
+            None => finding,
         });
     }
     Ok(findings)
@@ -222,15 +226,14 @@ fn shared(context: &Context, findings: &[Finding]) -> Vec<Finding> {
     ];
     let found = lists.into_iter().filter_map(|(name, units)| {
         let units = units.as_ref()?;
-        let of = |side: bool| -> BTreeSet<usize> {
-            let own = units.iter().zip(is_test).filter(|(_, is_test)| **is_test == side);
-            own.map(|(&unit, _)| unit).collect()
+        let of = |side: bool| {
+            let pairs = units.iter().zip(is_test);
+            pairs.filter(move |pair| *pair.1 == side).map(|pair| *pair.0)
         };
-        let (train, test) = (of(false), of(true));
+        let [train, test] = [false, true].map(|side| of(side).collect::<BTreeSet<usize>>());
         let n_shared = train.intersection(&test).count();
-        let touches = units.iter().zip(is_test).filter(|(_, is_test)| **is_test);
-        let n_touches = touches.clone().count();
-        let n_in_shared = touches.filter(|(unit, _)| train.contains(unit)).count();
+        let n_in_shared = of(true).filter(|unit| train.contains(unit)).count();
+        let n_touches = of(true).count();
         let share = n_in_shared as f64 / n_touches.max(1) as f64;
         let sentence = format!(
             "{n_shared} of the {} {name}s of the given test set have touches in training: {} of its touches.",
@@ -255,11 +258,7 @@ fn shared(context: &Context, findings: &[Finding]) -> Vec<Finding> {
 
 /// Finds copies and counts those that a split separates.
 fn copies(context: &Context) -> (Vec<CopySet>, Finding) {
-    let name = "copies";
-    let near = match context.near.neighbours.is_empty() {
-        true => nearest(context.representations[0].view(), N_NEAREST, &[]),
-        false => context.near.clone(),
-    };
+    let near = &context.near;
     let sizes = sizes(context.representations[0].view());
     let step = smallest_step(context.frames.view());
     let mut sets = copy_sets(&near.neighbours, &near.distances, &sizes, step);
@@ -270,10 +269,10 @@ fn copies(context: &Context) -> (Vec<CopySet>, Finding) {
     let least = sets.iter().map(|set| set.p_value).fold(1.0, f64::min);
     sets.retain(|set| set.p_value <= ALPHA);
     // By chance, ALPHA sets are as isolated as these; their number has about a Poisson distribution.
-    let by_number = match sets.len() {
-        0 => 1.0,
-        n => Poisson::new(ALPHA).map_or(1.0, |poisson| poisson.sf(n as u64 - 1)),
-    };
+    let number = Poisson::new(ALPHA)
+        .ok()
+        .zip((sets.len() as u64).checked_sub(1));
+    let by_number = number.map_or(1.0, |(poisson, n)| poisson.sf(n));
     let mut taken = BTreeSet::new();
     sets.retain(|set| {
         let is_new = set.rows.iter().all(|row| !taken.contains(row));
@@ -291,17 +290,18 @@ fn copies(context: &Context) -> (Vec<CopySet>, Finding) {
     if sets.is_empty() {
         let sentence =
             "No two or three touches are far nearer to each other than to the next ones.";
-        let finding = Finding::counted(name, false, sentence).value(0.0, 0.0);
+        let finding = Finding::counted("copies", false, sentence).value(0.0, 0.0);
         return (sets, finding.tested(&test));
     }
     let side = |touch: usize| match (&context.data.is_test, context.splits.first()) {
         (Some(is_test), _) => Some(usize::from(is_test[touch])),
-        (None, Some(split)) => split.random[touch],
-        (None, None) => None,
+        (None, split) => split.and_then(|split| split.random[touch]),
     };
-    let crossing = sets
-        .iter()
-        .filter(|set| set.rows.iter().any(|&row| side(row) != side(set.rows[0])));
+    // Whether all touches of a set have one value of a list.
+    let is_one = |set: &&CopySet, of: &dyn Fn(usize) -> Option<usize>| {
+        set.rows.iter().all(|&row| of(row) == of(set.rows[0]))
+    };
+    let crossing = sets.iter().filter(|set| !is_one(set, &side));
     let n_crossing: usize = crossing.map(|set| set.rows.len()).sum();
     let of_split = match context.data.is_test {
         Some(_) => "the given split",
@@ -315,17 +315,15 @@ fn copies(context: &Context) -> (Vec<CopySet>, Finding) {
     if share > 0.5 {
         sentence += " Most touches are copied, as after augmentation.";
     }
-    let is_within = context.data.groups.as_ref().is_some_and(|groups| {
-        let mut pairs = sets
-            .iter()
-            .flat_map(|set| set.rows.iter().map(|&row| (row, set.rows[0])));
-        pairs.all(|(row, first)| groups[row] == groups[first])
-    });
-    let verdict = match is_within {
+    let is_within = |groups: &Vec<usize>| {
+        sets.iter()
+            .all(|set| is_one(&set, &|row| Some(groups[row])))
+    };
+    let verdict = match context.data.groups.as_ref().is_some_and(is_within) {
         true => Verdict::Note,
         false => Verdict::Fault,
     };
-    let finding = Finding::new(name, verdict, sentence)
+    let finding = Finding::new("copies", verdict, sentence)
         .value(share, 0.0)
         .tested(&test)
         .advice("Remove the copies that rows.csv lists, or give copies a common group and hold out whole groups.")
@@ -405,34 +403,13 @@ fn labels(context: &Context, doubtful: &[Doubtful]) -> Finding {
         .shown_in("doubtful_labels")
 }
 
-fn class_balance(context: &Context) -> Finding {
-    let classes = touches_of_classes(&context.labels);
-    let counts = || classes.values().map(Vec::len);
-    let (least, largest) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
-    let ratio = largest as f64 / least.max(1) as f64;
-    let is_found = ratio >= UNBALANCED || least < FEW_TOUCHES;
-    let sentence = format!(
-        "{} classes have {least} to {largest} touches.",
-        classes.len()
-    );
-    Finding::counted("class_balance", is_found, sentence)
-        .value(ratio, 1.0)
-        .advice("Report the mean accuracy of the classes beside the accuracy of the touches.")
-}
-
+/// Without groups: the number of independent touches that the touches are worth in their order.
 fn sample_size(context: &Context) -> Finding {
-    let (residuals, n) = (context.residuals(), context.labels.len());
-    let (effective, subject) = match &context.data.groups {
-        Some(groups) => (
-            effective_by_groups(residuals.view(), &context.labels, groups),
-            "groups",
-        ),
-        None => (effective_by_order(residuals.view()), "order"),
-    };
+    let n = context.labels.len() as f64;
+    let effective = effective_by_order(context.residuals().view());
     let sentence =
-        format!("By their {subject}, {n} touches are worth {effective:.0} independent ones.");
-    Finding::counted("sample_size", 2.0 * effective < n as f64, sentence)
-        .about(format!("by {subject}"))
-        .value(effective, n as f64)
-        .advice("Compute intervals over groups, not over touches.")
+        format!("By their order, {n} touches are worth {effective:.0} independent ones.");
+    Finding::counted("sample_size", 2.0 * effective < n, sentence)
+        .value(effective, n)
+        .advice("Give the groups of touches that are alike (--groups), and compute intervals over groups.")
 }

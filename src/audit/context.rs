@@ -22,12 +22,10 @@ use std::ops::{Range, RangeInclusive};
 const MAX_SAMPLE: usize = 800;
 /// Maximum number of frames in statistics of taxels.
 const MAX_FRAMES: usize = 2000;
-/// Maximum numbers of block means of a touch: for touches of a single frame, and for touches of several frames.
-const MAX_BLOCKS: [usize; 2] = [256, 512];
+/// Maximum number of block means of a touch. More means show smaller contacts and take time in proportion.
+pub const MAX_BLOCKS: usize = 256;
 /// Maximum number of blocks of taxels whose spectra are computed.
 const MAX_CHANNELS: usize = 16;
-/// Names of the splits that a user can choose.
-pub const SPLIT_NAMES: [&str; 4] = ["group", "session", "time", "given"];
 
 /// Options of an audit.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,13 +66,13 @@ impl AuditOptions {
     pub fn check(&self, data: &AuditData, place: impl Fn(&str) -> String) -> Result<()> {
         let (n_frames, n_taxels) = (data.n_frames, data.frames.ncols());
         let names = SOURCES.map(|source| source.name);
-        let has = [
-            data.groups.is_some(),
-            data.sessions.is_some(),
-            true,
-            data.is_test.is_some(),
+        let splits = [
+            ("group", data.groups.is_some()),
+            ("session", data.sessions.is_some()),
+            ("time", true),
+            ("given", data.is_test.is_some()),
         ];
-        let splits = SPLIT_NAMES.into_iter().zip(has).filter(|(_, has)| *has);
+        let splits = splits.into_iter().filter(|(_, has)| *has);
         let splits: Vec<&str> = splits.map(|(name, _)| name).collect();
         let is_wrong = |range: &&Range<usize>| range.is_empty() || range.end > n_frames;
         let range = self.before_contact.as_ref().filter(is_wrong);
@@ -179,18 +177,16 @@ impl Context {
         let chosen = drawn(data.frames.nrows(), MAX_FRAMES, &seed.named("frames"));
         let frames = data.frames.select(Axis(0), &chosen);
         let frame_touches = chosen.iter().map(|frame| frame / data.n_frames).collect();
-        let max_blocks = MAX_BLOCKS[usize::from(data.n_frames > 1)];
         let view = data.frames.view();
-        let mut representations = vec![pooled(view, data.n_frames, data.grid, max_blocks)];
+        let mut representations = vec![pooled(view, data.n_frames, data.grid, MAX_BLOCKS)];
         let channels = pooled(view, 1, data.grid, MAX_CHANNELS);
         representations.extend(log_spectra(channels.view(), data.n_frames));
         let splits = match has_classes {
             true => splits(&data, &labels, options.split.as_deref(), &seed),
             false => Vec::new(),
         };
-        let n_classes = data.classes.len().max(1);
         let nearest = (N_NEAREST, &seed);
-        let (tested, near) = scores(&representations, (&labels, n_classes), &splits, nearest)?;
+        let (tested, near) = scores(&representations, &labels, &splits, nearest)?;
         Ok(Self {
             units: data.groups.clone().or_else(|| data.sessions.clone()),
             n_padded,

@@ -115,9 +115,6 @@ impl AuditData {
     }
 }
 
-/// Numbers of bits at which the counters of clocks wrap around, and factors by which recordings convert their counts to other units.
-const CLOCK_BITS: [i32; 4] = [16, 24, 31, 32];
-const CLOCK_FACTORS: [f64; 3] = [1.0, 1e-3, 1e-6];
 /// Longest step over the end of a clock's range, in multiples of the longest other step, and shortest range, in the same unit. With a larger step or a shorter
 /// range, times of touches that are sorted by class may count as wrapped; with a smaller step, a pause at the end of the range hides it.
 const MAX_STEP: f64 = 3.0;
@@ -132,15 +129,15 @@ fn unwrapped(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     if n_back == 0 || longest == 0.0 {
         return None;
     }
-    let periods = CLOCK_FACTORS
-        .into_iter()
-        .flat_map(|factor| CLOCK_BITS.map(|bits| factor * 2.0_f64.powi(bits)));
+    // Numbers of bits of the counters of clocks, and factors by which recordings convert their counts to other units.
+    let periods = [1.0, 1e-3, 1e-6].into_iter();
+    let mut periods =
+        periods.flat_map(|factor| [16, 24, 31, 32].map(|bits| factor * 2.0_f64.powi(bits)));
     let is_explained = |period: &f64| {
         let mut back = steps().filter(|&step| step < 0.0);
         back.all(|step| (0.0..=MAX_STEP * longest).contains(&(step + period)))
     };
     let period = periods
-        .into_iter()
         .find(is_explained)
         .filter(|period| MIN_STEPS * longest < *period)?;
     let mut n_wraps = 0.0;

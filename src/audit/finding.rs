@@ -1,14 +1,18 @@
 //! Findings of an audit: a number, its evidence, and the recommended action.
 
+use crate::row;
 use crate::statistics::many_tests::holm_of_some;
 use crate::table::short_number;
 use bubbletouch_svm::audit::Permuted;
+use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// Significance level of all tests of an audit together, after Holm's correction.
 pub const ALPHA: f64 = 0.05;
 
 /// Result of a finding, in the order of the page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The data have this fault.
     Fault,
@@ -21,14 +25,19 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Returns the word for the verdict in tables.
-    pub const fn word(self) -> &'static str {
+    /// Returns the verdict in words.
+    pub const fn words(self) -> &'static str {
         match self {
-            Self::Fault => "fault",
-            Self::NotChecked => "not_checked",
-            Self::Note => "note",
-            Self::Passed => "passed",
+            Self::Fault => "Fault",
+            Self::NotChecked => "Not checked",
+            Self::Note => "Note",
+            Self::Passed => "Passed",
         }
+    }
+
+    /// Returns the word for the verdict in tables.
+    pub fn word(self) -> String {
+        self.words().to_lowercase().replace(' ', "_")
     }
 }
 
@@ -40,7 +49,6 @@ pub const TITLES: &[(&str, &str)] = &[
     ("clusters", "Clusters of touches"),
     ("sample_size", "Effective sample size"),
     ("labels", "Labels to look at"),
-    ("class_balance", "Class balance"),
     ("order", "Order of the touches"),
     ("session", "Sessions"),
     ("padding", "Length and padding"),
@@ -59,56 +67,59 @@ pub const TITLES: &[(&str, &str)] = &[
     ("not_given", "What was not given"),
 ];
 
+row! {
 /// Finding of one check about one subject.
-#[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// Name of the check, such as `copies`.
-    pub check: &'static str,
-    /// Part of the data that the finding is about, such as `group`; may be empty.
-    pub subject: String,
-    /// Verdict; for tests it follows from the corrected p-value.
-    pub verdict: Verdict,
-    /// Measured number; NaN if there is none.
-    pub value: f64,
-    /// Lower and upper end of the value's 95 % interval; NaN if there is none.
-    pub interval: [f64; 2],
-    /// Number that the value would have without the fault, such as the accuracy by chance; NaN if there is none.
-    pub baseline: f64,
-    /// p-value of the test; `None` for counts and facts.
-    pub p_value: Option<f64>,
+    check: String => Choice;
+    /// Part of the data that the finding is about, such as `group`; empty if it is about all data.
+    subject: String => Choice;
+    /// Verdict: fault, not_checked, note or passed; for tests it follows from the corrected p-value.
+    verdict: Verdict => Outcome;
+    /// Measured number; its meaning is in the sentence.
+    value: Option<f64> => Value(Neither): Linear between [value_low, value_high];
+    /// Lower end of the 95 % interval of the value.
+    value_low: Option<f64> => Note: Linear;
+    /// Upper end of the 95 % interval of the value.
+    value_high: Option<f64> => Note: Linear;
+    /// Value without the fault, such as the accuracy by chance.
+    baseline: Option<f64> => Note: Linear;
+    /// p-value of the test; empty for counts and facts.
+    p_value: Option<f64> => Note "p": Log;
     /// p-value after Holm's correction over all tests of the audit.
-    pub p_holm: Option<f64>,
-    /// Whether the p-value is the smallest one that the permutations resolve.
-    pub is_end: bool,
+    p_holm: Option<f64> => Note "p, Holm": Log;
+    /// Whether no permutation reaches the statistic, so that the p-value is an upper bound.
+    is_end: bool => Note "p is a bound";
     /// Result of the check in one or two sentences.
-    pub sentence: String,
+    sentence: String => Note;
     /// Recommended action; empty if no action is needed.
-    pub advice: String,
+    advice: String => Note;
     /// Name of the chart or picture that shows the finding; empty if there is none.
-    pub picture: &'static str,
-}
+    picture: String => Note;
+} }
 
 impl Finding {
-    /// Creates a finding without a test. The value, its interval and its baseline are NaN unless they are set.
-    pub fn new(check: &'static str, verdict: Verdict, sentence: impl Into<String>) -> Self {
+    /// Creates a finding without a value and a test.
+    pub fn new(check: &str, verdict: Verdict, sentence: impl Into<String>) -> Self {
         Self {
-            check,
+            check: check.to_owned(),
             subject: String::new(),
             verdict,
-            value: f64::NAN,
-            interval: [f64::NAN; 2],
-            baseline: f64::NAN,
+            value: None,
+            value_low: None,
+            value_high: None,
+            baseline: None,
             p_value: None,
             p_holm: None,
             is_end: false,
             sentence: sentence.into(),
             advice: String::new(),
-            picture: "",
+            picture: String::new(),
         }
     }
 
     /// Creates a finding from a count: a note if `is_found`, otherwise passed.
-    pub fn counted(check: &'static str, is_found: bool, sentence: impl Into<String>) -> Self {
+    pub fn counted(check: &str, is_found: bool, sentence: impl Into<String>) -> Self {
         let verdict = match is_found {
             true => Verdict::Note,
             false => Verdict::Passed,
@@ -130,7 +141,7 @@ impl Finding {
 
     /// Sets the value, and the value without the fault.
     pub fn value(mut self, value: f64, baseline: f64) -> Self {
-        (self.value, self.baseline) = (value, baseline);
+        (self.value, self.baseline) = (Some(value), Some(baseline));
         self
     }
 
@@ -141,15 +152,21 @@ impl Finding {
     }
 
     /// Sets the name of the chart or picture that shows the finding.
-    pub fn shown_in(mut self, picture: &'static str) -> Self {
-        self.picture = picture;
+    pub fn shown_in(mut self, picture: &str) -> Self {
+        self.picture = picture.to_owned();
         self
+    }
+
+    /// Returns the distance of the value from the value without the fault; 1 for facts without a value.
+    fn effect(&self) -> f64 {
+        let ends = self.value.zip(self.baseline);
+        ends.map_or(1.0, |(value, baseline)| (value - baseline).abs())
     }
 
     /// Returns the title of the finding: the title of its check, and its subject.
     pub fn title(&self) -> String {
         let check = TITLES.iter().find(|check| check.0 == self.check);
-        let title = check.map_or(self.check, |check| check.1);
+        let title = check.map_or(&self.check[..], |check| check.1);
         match &self.subject[..] {
             "" => title.to_owned(),
             subject => format!("{title}: {subject}"),
@@ -180,47 +197,38 @@ pub fn decide(findings: &mut [Finding]) {
             finding.advice.clear();
         }
     }
-    merge_splits(findings);
-}
-
-/// If several splits have a fault, the cause is reported once: the largest loss remains a fault.
-fn merge_splits(findings: &mut [Finding]) {
-    let is_fault = |finding: &Finding| {
-        matches!(finding.check, "split" | "shared") && finding.verdict == Verdict::Fault
-    };
-    let loss = |finding: &Finding| finding.baseline - finding.value;
-    let faults = (0..findings.len()).filter(|&number| is_fault(&findings[number]));
-    let worst = faults
-        .clone()
-        .max_by(|&a, &b| loss(&findings[a]).total_cmp(&loss(&findings[b])));
-    for number in faults.collect::<Vec<_>>() {
-        if Some(number) != worst {
-            findings[number].verdict = Verdict::Note;
-        }
+    // If several splits have a fault, the cause is reported once: the largest loss remains a fault, and of equal ones the last, most specific one.
+    let is_split = |finding: &Finding| matches!(&finding.check[..], "split" | "shared");
+    let splits = findings.iter_mut().rev();
+    let splits = splits.filter(|finding| is_split(finding));
+    let mut faults: Vec<_> = splits
+        .filter(|finding| finding.verdict == Verdict::Fault)
+        .collect();
+    faults.sort_by(|a, b| b.effect().total_cmp(&a.effect()));
+    for finding in faults.into_iter().skip(1) {
+        finding.verdict = Verdict::Note;
     }
 }
 
 /// Returns the findings in the order of the page: faults by the size of their effect, what could not be checked, notes, and what passed.
 pub fn by_verdict(findings: &[Finding]) -> Vec<&Finding> {
-    let effect = |finding: &Finding| match finding.verdict {
-        Verdict::Fault => -(finding.value - finding.baseline).abs(),
-        _ => 0.0,
-    };
     let place = |finding: &Finding| TITLES.iter().position(|title| title.0 == finding.check);
     let mut findings: Vec<&Finding> = findings.iter().collect();
     findings.sort_by(|a, b| {
         let order = a.verdict.cmp(&b.verdict);
-        let order = order.then(effect(a).total_cmp(&effect(b)));
-        order.then(place(a).cmp(&place(b)))
+        let by_effect = match a.verdict {
+            Verdict::Fault => b.effect().total_cmp(&a.effect()),
+            _ => Ordering::Equal,
+        };
+        order.then(by_effect).then(place(a).cmp(&place(b)))
     });
     findings
 }
 
 /// Returns whether one of the findings is a fault.
 pub fn has_fault(findings: &[Finding]) -> bool {
-    findings
-        .iter()
-        .any(|finding| finding.verdict == Verdict::Fault)
+    let mut verdicts = findings.iter().map(|finding| finding.verdict);
+    verdicts.any(|verdict| verdict == Verdict::Fault)
 }
 
 /// Formats a fraction as a percentage with few digits.

@@ -34,20 +34,9 @@ pub fn pictures(
         .unwrap_or((n_taxels.div_ceil(columns), columns));
     let mut pictures = vec![taxel_picture(context, states, shape)?];
     let copies = claim.copies.iter().map(|set| [set.rows[0], set.rows[1]]);
-    let typical = |class: usize| {
-        let is_typical = |&touch: &usize| {
-            let best = context.best(0, false);
-            context.labels[touch] == class
-                && best.is_some_and(|best| best.is_correct[touch] == Some(true))
-        };
-        (0..context.labels.len()).find(is_typical)
-    };
-    let doubtful = claim.doubtful.iter().map(|doubtful| {
-        [
-            doubtful.touch,
-            typical(doubtful.class).unwrap_or(doubtful.touch),
-        ]
-    });
+    let nearest = |touch: usize| context.near.neighbours[touch][0];
+    let doubtful = claim.doubtful.iter().map(|doubtful| doubtful.touch);
+    let doubtful = doubtful.map(|touch| [touch, nearest(touch)]);
     let rows: [(&str, &str, Vec<[usize; 2]>); 2] = [
         (
             "copies",
@@ -56,7 +45,7 @@ pub fn pictures(
         ),
         (
             "doubtful_labels",
-            "Labels to look at: each pair shows a touch and one of the class of its nearest touches",
+            "Labels to look at: each pair shows a touch and its nearest touch, of another class",
             doubtful.take(MAX_PAIRS).collect(),
         ),
     ];

@@ -1,56 +1,29 @@
-//! Files of an audit: frames with labels, groups and sessions in the formats that studies with recorded frames read.
+//! Files of an audit: recorded frames with labels and groups as studies read them, and their sessions and times.
 
 use crate::audit::data::AuditData;
 use crate::error::{Error, Result};
-use crate::inputs::arrays::file_array::FileArray;
+use crate::inputs::arrays::axis_order::FrameShape;
 use crate::inputs::arrays::{
-    ClassLabels, KeyValue, TableContent, group_keys, is_member, read_class_values,
-    read_group_values,
+    ClassLabels, KeyValue, group_keys, is_member, read_class_values, read_group_values,
 };
-use crate::studies::recognition::frames::touch_lengths::lengths_of_file;
+use crate::studies::recognition::frames::recorded_skin::numbers_of;
+use crate::studies::recognition::frames::touch_lengths::{lengths_of_file, one_each};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use ndarray::{Array2, Axis, concatenate, s};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-
-/// Endings of files with arrays.
-const ENDINGS: [&str; 5] = ["npy", "npz", "csv", "tsv", "txt"];
-/// Name of a folder's file that lists the files of a recording.
-const RECORDED: &str = "recorded.toml";
 
 /// Paths and options of the data of an audit.
 #[derive(Clone, Debug, Default)]
 pub struct AuditFiles {
     /// File with the frames; or a folder with `recorded.toml`, with a file `frames`, or with one archive for each session.
     pub data: PathBuf,
-    /// File with the class of each touch; `None` for an array or file `labels` beside the frames.
-    pub labels: Option<PathBuf>,
-    /// File with the group of each touch; `None` for an array or file `groups` beside the frames, if there is one.
-    pub groups: Option<PathBuf>,
-    /// File with the session of each touch; `None` for an array or file `sessions` beside the frames, if there is one.
+    /// Given keys of `[recorded]`, except `frames`. Each replaces the key of `recorded.toml`, and the array or file of its name beside the frames.
+    pub given: RecordedSpec,
+    /// File with the session of each touch; `None` for an array or file `sessions` beside the frames, if there is one. The test set comes last.
     pub sessions: Option<PathBuf>,
-    /// File with the time of each touch, a number; `None` for an array or file `times` beside the frames, if there is one.
+    /// File with the time of each touch, a number; `None` for an array or file `times` beside the frames, if there is one. The test set comes last.
     pub times: Option<PathBuf>,
-    /// File with the number of frames of each touch; `None` for an array or file `lengths` beside the frames, if there is one.
-    pub lengths: Option<PathBuf>,
-    /// File with the number of frames of each touch of the test set; `None` for an array or file `lengths_test` beside the frames, if there is one.
-    pub lengths_test: Option<PathBuf>,
-    /// File with the frames of a given test set; `None` for an array or file `frames_test` beside the frames, if there is one.
-    pub frames_test: Option<PathBuf>,
-    /// File with the class of each touch of the test set; `None` for an array or file `labels_test` beside the frames.
-    pub labels_test: Option<PathBuf>,
-    /// File with the group of each touch of the test set; `None` for an array or file `groups_test` beside the frames, if there is one.
-    pub groups_test: Option<PathBuf>,
-    /// Order of the axes of the frames, one letter per axis, as in `recorded.order`; `None` for the default order.
-    pub order: Option<String>,
-    /// Columns of a table of frames that are readings, as in `recorded.columns`; `None` for all columns.
-    pub columns: Option<String>,
-    /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
-    pub grid: Option<[usize; 2]>,
-    /// Reading at full scale; `None` if unknown.
-    pub full_scale: Option<f64>,
-    /// Name of the sensor whose array is read from an archive of several sensors; `None` for the array `frames`.
-    pub sensor: Option<String>,
 }
 
 /// Table `[recorded]` of a study; other tables are ignored.
@@ -59,15 +32,20 @@ struct RecordedToml {
     recorded: RecordedSpec,
 }
 
-/// Arrays of one file or session.
+/// Arrays of one recording: all touches, or the training touches followed by the test set.
 struct Part {
-    frames: Array2<f64>,
-    n_frames: usize,
-    grid: Option<(usize, usize)>,
+    spec: RecordedSpec,
+    shape: FrameShape,
+    frames: Vec<Array2<f64>>,
+    /// Whether each touch belongs to the test set.
+    is_test: Vec<bool>,
     /// Class, group and session of each touch.
     lists: [Option<Vec<KeyValue>>; 3],
     times: Option<Vec<f64>>,
 }
+
+/// Function that reads one value for each of some touches from an array of a file.
+type ReadValues = fn(&Path, &str, usize) -> Result<Vec<KeyValue>>;
 
 impl AuditFiles {
     /// Reads the data. Touches with times are sorted by time.
@@ -75,25 +53,23 @@ impl AuditFiles {
     /// # Errors
     /// If a file cannot be read or does not fit the others; the error names it.
     pub fn read(&self) -> Result<AuditData> {
-        if let Some(full_scale) = self.full_scale.filter(|full| !full.is_finite()) {
-            return Err(Error::input("full scale", full_scale, "a finite number"));
-        }
-        if !self.data.is_dir() {
-            return self.with_test_set(&self.data, None);
-        }
-        let recorded = self.data.join(RECORDED);
+        let recorded = self.data.join("recorded.toml");
+        let of_frames = |frames: &Path| RecordedSpec::of_frames(frames, [&None, &None], None);
         if recorded.is_file() {
-            return self.with_recorded(&recorded);
+            return assembled(vec![self.part(&self.spec_of(&recorded)?)?]);
         }
-        let frames = ENDINGS.map(|ending| self.data.join(format!("frames.{ending}")));
-        if let Some(frames) = frames.iter().find(|path| path.is_file()) {
-            return self.with_test_set(frames, Some(&self.data));
+        let frames = match self.data.is_dir() {
+            true => file_in(&self.data, "frames"),
+            false => Some(self.data.clone()),
+        };
+        match frames {
+            Some(frames) => assembled(vec![self.part(&of_frames(&frames))?]),
+            None => self.of_sessions(of_frames),
         }
-        self.of_sessions()
     }
 
-    /// Reads the recording that `recorded.toml` of the folder describes.
-    fn with_recorded(&self, path: &Path) -> Result<AuditData> {
+    /// Reads the table `[recorded]` of a file, which describes one sensor.
+    fn spec_of(&self, path: &Path) -> Result<RecordedSpec> {
         let allowed = "a study with a table [recorded]";
         let text = crate::files::read_to_string(path)
             .map_err(|error| Error::unreadable(path, allowed, error))?;
@@ -105,91 +81,44 @@ impl AuditFiles {
         let mut spec = spec.recorded;
         spec.change_files(|_, file| *file = self.data.join(&*file));
         // Checks compare the readings of taxels, so each sensor has an audit of its own.
-        let sensors = spec.used_sensors();
-        let [(_, spec)] = &sensors[..] else {
-            let place = format!("{}, key recorded.sensors", path.display());
-            let given = format!("{} sensors", sensors.len());
-            let allowed = "one sensor: its name in recorded.sensor, or the file of its frames";
-            return Err(Error::input(place, given, allowed));
-        };
-        let given = |name: &str| spec.file_of(name).map(Path::to_owned);
-        let files = Self {
-            data: spec.frames.clone(),
-            labels: self.labels.clone().or_else(|| given("labels")),
-            groups: self.groups.clone().or_else(|| given("groups")),
-            lengths: given("lengths"),
-            lengths_test: given("lengths_test"),
-            frames_test: given("frames_test"),
-            labels_test: given("labels_test"),
-            groups_test: given("groups_test"),
-            order: self.order.clone().or_else(|| spec.order.clone()),
-            columns: self.columns.clone().or_else(|| spec.columns.clone()),
-            grid: self.grid.or(spec.grid),
-            full_scale: self.full_scale.or(spec.full_scale),
-            sensor: spec.place.name.clone(),
-            ..self.clone()
-        };
-        files.with_test_set(&files.data, Some(&self.data))
-    }
-
-    /// Reads the frames of a file, followed by those of the given test set if there is one.
-    fn with_test_set(&self, frames: &Path, folder: Option<&Path>) -> Result<AuditData> {
-        let mut parts = vec![self.part(frames, folder, "")?];
-        if let Some(path) = beside((frames, folder), &self.frames_test, "frames_test") {
-            let of_test = Self {
-                labels: self.labels_test.clone(),
-                groups: self.groups_test.clone(),
-                lengths: self.lengths_test.clone(),
-                sessions: None,
-                times: None,
-                ..self.clone()
-            };
-            parts.push(of_test.part(&path, folder, "_test")?);
-            check_shape((&parts[1], &path), (&parts[0], frames))?;
-            let has = |part: &Part| [0, 1].map(|list| part.lists[list].is_some());
-            if has(&parts[0]) != has(&parts[1]) {
-                let allowed = format!(
-                    "labels_test and groups_test, if {} has labels and groups",
-                    frames.display()
-                );
-                return Err(Error::input(path.display(), "a test set", allowed));
+        let mut sensors = spec.used_sensors();
+        match (sensors.len(), sensors.pop()) {
+            (1, Some((_, sensor))) => Ok(sensor),
+            (n, _) => {
+                let place = format!("{}, key recorded.sensors", path.display());
+                let allowed = "one sensor: its name in recorded.sensor, or the file of its frames";
+                Err(Error::input(place, format!("{n} sensors"), allowed))
             }
         }
-        let n_train = parts[0].frames.nrows() / parts[0].n_frames;
-        let has_test = parts.len() > 1;
-        let mut data = assembled(parts, self.full_scale)?;
-        if has_test {
-            let n = data.n_touches();
-            data.is_test = Some((0..n).map(|touch| touch >= n_train).collect());
-        }
-        Ok(data)
     }
 
     /// Reads all archives of the folder, each as a session.
-    fn of_sessions(&self) -> Result<AuditData> {
+    fn of_sessions(&self, of_frames: impl Fn(&Path) -> RecordedSpec) -> Result<AuditData> {
         let entries = std::fs::read_dir(&self.data);
         let entries = entries.map_err(|error| Error::io(&self.data, "read", error))?;
-        let mut archives: Vec<PathBuf> = entries
-            .filter_map(|entry| Some(entry.ok()?.path()))
-            .filter(|path| path.extension().is_some_and(|ending| ending == "npz"))
-            .filter(|path| !is_hidden(path))
-            .collect();
+        let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        // Hidden files, such as `._NAME`, which macOS writes beside others, are no archives.
+        let is_archive = |path: &PathBuf| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            path.extension().is_some_and(|ending| ending == "npz") && !name.starts_with('.')
+        };
+        let mut archives: Vec<PathBuf> = paths.filter(is_archive).collect();
         archives.sort();
         if archives.is_empty() {
             let allowed = "recorded.toml, a file frames.npy (.npz, .csv), or one .npz archive for each session";
-            return Err(Error::input(
-                self.data.display(),
-                "a folder without frames",
-                allowed,
-            ));
+            let given = "a folder without frames";
+            return Err(Error::input(self.data.display(), given, allowed));
         }
         let given = [
-            ("labels", &self.labels),
-            ("groups", &self.groups),
-            ("sessions", &self.sessions),
-            ("times", &self.times),
+            ("labels", self.given.file_of("labels")),
+            ("groups", self.given.file_of("groups")),
+            ("sessions", self.sessions.as_deref()),
+            ("times", self.times.as_deref()),
         ];
-        if let Some((name, Some(path))) = given.into_iter().find(|(_, path)| path.is_some()) {
+        if let Some((name, path)) = given
+            .into_iter()
+            .find_map(|(name, path)| Some((name, path?)))
+        {
             let allowed = format!(
                 "an array `{name}` in each archive of {}",
                 self.data.display()
@@ -201,137 +130,139 @@ impl AuditFiles {
             ));
         }
         let parts = archives.iter().map(|path| {
-            let mut part = self.part(path, None, "")?;
+            let mut part = self.part(&of_frames(path))?;
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            let n = part.frames.nrows() / part.n_frames;
-            let session = vec![KeyValue::Text(name.into_owned()); n];
+            let session = vec![KeyValue::Text(name.into_owned()); part.is_test.len()];
             part.lists[2].get_or_insert(session);
             Ok(part)
         });
-        let parts = parts.collect::<Result<Vec<Part>>>()?;
-        for (part, path) in parts.iter().zip(&archives).skip(1) {
-            check_shape((part, path), (&parts[0], &archives[0]))?;
-        }
-        assembled(parts, self.full_scale)
+        assembled(parts.collect::<Result<_>>()?)
     }
 
-    /// Reads the frames of a file, and the arrays that belong to them. If `folder` is given, files beside the frames are found by their names, which have the
-    /// ending `end`.
-    fn part(&self, frames: &Path, folder: Option<&Path>, end: &str) -> Result<Part> {
-        let key_of_frames = format!("frames{end}");
-        let mut spec = RecordedSpec::of_frames(frames, [&self.order, &self.columns], self.grid);
-        spec.place.name.clone_from(&self.sensor);
-        spec.frames_test = (!end.is_empty()).then(|| frames.to_owned());
-        let shape = spec.shape_of(&key_of_frames)?;
-        let mut readings = shape.arrange(spec.read_array(&key_of_frames)?.into_numbers()?);
-        let n = shape.n_touches;
-        let file = |given: &Option<PathBuf>, name: &str| {
-            beside((frames, folder), given, &format!("{name}{end}"))
+    /// Reads the arrays of a recording.
+    fn part(&self, spec: &RecordedSpec) -> Result<Part> {
+        let given = &self.given;
+        // A given file, or else a file or array of the recording, or else a file of this name in the folder.
+        let file = |key: &str| {
+            let keys = [given, spec].into_iter().find_map(|spec| spec.file_of(key));
+            keys.map(Path::to_owned)
+                .or_else(|| file_in(&self.data, key))
         };
-        if let Some(path) = file(&self.lengths, "lengths") {
-            let lengths = lengths_of_file((&path, &format!("lengths{end}")), &shape, frames)?;
-            // Frames after the end of a touch are padding.
-            for (touch, length) in lengths.into_iter().enumerate() {
-                let first = touch * shape.n_frames;
-                let padding = first + length..first + shape.n_frames;
-                readings.slice_mut(s![padding, ..]).fill(f64::NAN);
+        let mut spec = RecordedSpec {
+            labels: file("labels").unwrap_or_default(),
+            groups: file("groups"),
+            lengths: file("lengths"),
+            frames_test: file("frames_test"),
+            labels_test: file("labels_test"),
+            groups_test: file("groups_test"),
+            lengths_test: file("lengths_test"),
+            order: given.order.clone().or_else(|| spec.order.clone()),
+            columns: given.columns.clone().or_else(|| spec.columns.clone()),
+            grid: given.grid.or(spec.grid),
+            full_scale: given.full_scale.or(spec.full_scale),
+            ..spec.clone()
+        };
+        let is_given = given.order.is_some() || given.columns.is_some() || given.grid.is_some();
+        spec.place.is_of_command |= is_given;
+        let shape = spec.shape_of("frames")?;
+        let (mut frames, mut is_test, mut lists) = (Vec::new(), Vec::new(), [None, None, None]);
+        for end in ["", "_test"] {
+            let is_set = !end.is_empty();
+            if is_set && spec.frames_test.is_none() {
+                continue;
+            }
+            let key = |name: &str| format!("{name}{end}");
+            let place = spec.file_of(&key("frames")).unwrap_or(&spec.frames);
+            let own = spec.shape_of(&key("frames"))?;
+            check_shape((&own, place), (&shape, &spec.frames))?;
+            let mut readings = own.arrange(spec.read_array(&key("frames"))?.into_numbers()?);
+            if let Some(path) = spec.file_of(&key("lengths")) {
+                let lengths = lengths_of_file((path, &key("lengths")), &own, place)?;
+                // Frames after the end of a touch are padding.
+                for (touch, length) in lengths.into_iter().enumerate() {
+                    let padding = touch * own.n_frames + length..(touch + 1) * own.n_frames;
+                    readings.slice_mut(s![padding, ..]).fill(f64::NAN);
+                }
+            }
+            frames.push(readings);
+            is_test.extend(vec![is_set; own.n_touches]);
+            let reads: [(&str, ReadValues); 2] =
+                [("labels", read_class_values), ("groups", read_group_values)];
+            for (list, (name, read)) in lists.iter_mut().zip(reads) {
+                let path = spec.file_of(&key(name));
+                if is_set && list.is_some() != path.is_some() {
+                    let frames = spec.frames.display();
+                    let allowed =
+                        format!("labels_test and groups_test, if {frames} has labels and groups");
+                    return Err(Error::input(place.display(), "a test set", allowed));
+                }
+                if let Some(path) = path {
+                    let values = read(path, &key(name), own.n_touches)?;
+                    one_each((path, &key(name)), (values.len(), own.n_touches), place)?;
+                    list.get_or_insert_with(Vec::new).extend(values);
+                }
             }
         }
-        let one_each = |path: &Path, n_values: usize, what: &str| match n_values == n {
-            true => Ok(()),
-            false => {
-                let allowed = format!("{n}, one for each touch of {}", frames.display());
-                Err(Error::input(
-                    path.display(),
-                    format!("{n_values} {what}"),
-                    allowed,
-                ))
-            }
+        let n = is_test.len();
+        let beside = |given: &Option<PathBuf>, name: &str| {
+            let within = || is_member(&spec.frames, name).then(|| spec.frames.clone());
+            let given = given.clone().or_else(within);
+            given.or_else(|| file_in(&self.data, name))
         };
-        let list = |given: &Option<PathBuf>, name: &str, read: ReadValues| -> Result<_> {
-            let Some(path) = file(given, name) else {
-                return Ok(None);
-            };
-            let values = read(&path, &format!("{name}{end}"), n)?;
-            one_each(&path, values.len(), "values")?;
-            Ok(Some(values))
-        };
-        let mut times = None;
-        if let Some(path) = file(&self.times, "times") {
-            let name = format!("times{end}");
-            let read = FileArray::read_content(&path, &name, TableContent::Rows(n))?;
-            let read = read.into_numbers()?;
-            one_each(&path, read.len(), "times")?;
-            if let Some(time) = read.iter().find(|time| !time.is_finite()) {
-                return Err(Error::input(path.display(), time, "finite numbers"));
-            }
-            times = Some(read.into_iter().collect());
+        if let Some(path) = beside(&self.sessions, "sessions") {
+            let sessions = read_group_values(&path, "sessions", n)?;
+            one_each((&path, "sessions"), (sessions.len(), n), &spec.frames)?;
+            lists[2] = Some(sessions);
         }
+        let times = beside(&self.times, "times");
+        let times = times.map(|path| numbers_of(&path, "times", (n, "touch")));
         Ok(Part {
-            n_frames: shape.n_frames,
-            grid: shape.has_grid.then_some((shape.rows, shape.columns)),
-            frames: readings,
-            lists: [
-                list(&self.labels, "labels", read_class_values)?,
-                list(&self.groups, "groups", read_group_values)?,
-                list(&self.sessions, "sessions", read_group_values)?,
-            ],
-            times,
+            times: times.transpose()?.map(|times| times.to_vec()),
+            spec,
+            shape,
+            frames,
+            is_test,
+            lists,
         })
     }
 }
 
-/// Function that reads one value for each of some touches from an array of a file.
-type ReadValues = fn(&Path, &str, usize) -> Result<Vec<KeyValue>>;
-
-/// Returns whether a file is hidden, such as the files `._NAME` that macOS writes beside others.
-fn is_hidden(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default();
-    name.to_string_lossy().starts_with('.')
+/// Returns the file of an array in a folder, if there is one.
+fn file_in(folder: &Path, name: &str) -> Option<PathBuf> {
+    let endings = ["npy", "npz", "csv", "tsv", "txt"].into_iter();
+    let mut paths = endings.map(|ending| folder.join(format!("{name}.{ending}")));
+    paths.find(|path| path.is_file())
 }
 
-/// Returns the file of an array: `given`, or else the file of the frames if it contains an array `name`, or else a file of this name in the folder.
-fn beside(
-    (frames, folder): (&Path, Option<&Path>),
-    given: &Option<PathBuf>,
-    name: &str,
-) -> Option<PathBuf> {
-    let in_folder = || {
-        let folder = folder?;
-        let paths = ENDINGS.map(|ending| folder.join(format!("{name}.{ending}")));
-        paths.into_iter().find(|path| path.is_file())
-    };
-    let within = || is_member(frames, name).then(|| frames.to_owned());
-    given.clone().or_else(within).or_else(in_folder)
-}
-
-/// Checks that a part has the taxels and frames of the first part.
-///
-/// # Errors
-/// If the part has another grid, or another number of taxels or frames.
-fn check_shape((part, path): (&Part, &Path), (first, of_first): (&Part, &Path)) -> Result<()> {
-    let shape = |part: &Part| (part.frames.ncols(), part.n_frames);
-    if shape(part) == shape(first) && part.grid == first.grid {
+/// Checks that frames have the taxels and the number of frames of the first file.
+fn check_shape((own, path): (&FrameShape, &Path), first: (&FrameShape, &Path)) -> Result<()> {
+    let sides = |shape: &FrameShape| shape.has_grid.then_some((shape.rows, shape.columns));
+    let counts = |shape: &FrameShape| (shape.n_frames, shape.n_frame_values());
+    if (sides(own), counts(own)) == (sides(first.0), counts(first.0)) {
         return Ok(());
     }
-    let given = format!(
-        "{} frames of {} taxels a touch",
-        part.n_frames,
-        part.frames.ncols()
-    );
-    let (n_taxels, n_frames) = shape(first);
-    let allowed = format!("{n_frames} of {n_taxels}, as {}", of_first.display());
-    Err(Error::input(path.display(), given, allowed))
+    let words = |shape: &FrameShape| {
+        let (n_frames, n_taxels) = counts(shape);
+        format!("{n_frames} frames of {n_taxels} taxels a touch")
+    };
+    let allowed = format!("{}, as {}", words(first.0), first.1.display());
+    Err(Error::input(path.display(), words(own), allowed))
 }
 
 /// Joins the arrays of all parts, one after the other, and sorts the touches by time if all parts have times.
-fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
+fn assembled(parts: Vec<Part>) -> Result<AuditData> {
+    let first = &parts[0];
+    for part in &parts {
+        check_shape(
+            (&part.shape, &part.spec.frames),
+            (&first.shape, &first.spec.frames),
+        )?;
+    }
     let joined = |name: &str, list: usize| {
         let lists = parts.iter().map(|part| part.lists[list].clone());
         let lists: Option<Vec<Vec<KeyValue>>> = lists.collect();
         let values = lists.map(|lists| lists.concat()).unwrap_or_default();
-        let is_text = |value: &KeyValue| matches!(value, KeyValue::Text(_));
-        let n_texts = values.iter().filter(|value| is_text(value)).count();
+        let n_texts = values.iter().filter(|value| value.is_text()).count();
         match n_texts == 0 || n_texts == values.len() {
             true => Ok(Some(values).filter(|values| !values.is_empty())),
             false => {
@@ -340,14 +271,23 @@ fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
             }
         }
     };
+    let mut spec = first.spec.clone();
     let labels = joined("labels", 0)?.map(|values| ClassLabels::new(&values));
-    let groups = joined("groups", 1)?.map(|values| group_keys(&values));
-    let sessions = joined("sessions", 2)?.map(|values| group_keys(&values));
-    let times = parts.iter().map(|part| part.times.clone());
-    let times: Option<Vec<Vec<f64>>> = times.collect();
-    let times: Option<Vec<f64>> = times.map(|times| times.concat());
-    let (n_frames, grid) = (parts[0].n_frames, parts[0].grid);
-    let mut all: Vec<Array2<f64>> = parts.into_iter().map(|part| part.frames).collect();
+    // Texts are their own names.
+    let is_text = |labels: &ClassLabels| labels.classes[0].is_text();
+    if labels.as_ref().is_some_and(is_text) {
+        spec.names = None;
+    }
+    let classes = labels.as_ref().map(|labels| spec.classes(labels));
+    let (groups, sessions) = (joined("groups", 1)?, joined("sessions", 2)?);
+    let times: Option<Vec<Vec<f64>>> = parts.iter().map(|part| part.times.clone()).collect();
+    let is_test: Vec<bool> = parts.iter().flat_map(|part| part.is_test.clone()).collect();
+    let n_frames = first.shape.n_frames;
+    let grid = first
+        .shape
+        .has_grid
+        .then_some((first.shape.rows, first.shape.columns));
+    let mut all: Vec<Array2<f64>> = parts.into_iter().flat_map(|part| part.frames).collect();
     let frames = match all.len() {
         1 => all.remove(0),
         _ => {
@@ -356,28 +296,20 @@ fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
                 .map_err(|error| Error::input("frames", error, "frames of equal shape"))?
         }
     };
-    let name = |class: &KeyValue| match class {
-        KeyValue::Integer(number) => format!("class {number}"),
-        KeyValue::Text(text) => text.clone(),
-    };
     let mut data = AuditData {
         frames,
         n_frames,
         grid,
-        classes: labels
-            .iter()
-            .flat_map(|labels| &labels.classes)
-            .map(name)
-            .collect(),
+        classes: classes.transpose()?.map_or(Vec::new(), |classes| classes.0),
         labels: labels.map(|labels| labels.labels),
-        groups,
-        sessions,
-        full_scale,
-        is_in_order_of_time: times.is_some(),
+        groups: groups.map(|values| group_keys(&values)),
+        sessions: sessions.map(|values| group_keys(&values)),
+        is_test: is_test.contains(&true).then_some(is_test),
+        full_scale: spec.full_scale,
         ..AuditData::default()
     };
     if let Some(times) = times {
-        data.sort_by_time(&times);
+        data.sort_by_time(&times.concat());
     }
     Ok(data)
 }

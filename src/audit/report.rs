@@ -86,35 +86,23 @@ fn pictures_html(pictures: &[NamedPicture]) -> String {
 
 /// Returns the findings as HTML, faults first. `charts` and `pictures` are the names of the charts and pictures on the page.
 fn findings_html(findings: &[Finding], charts: &[&str], pictures: &[&str]) -> String {
-    let rows = by_verdict(findings);
-    let cards = rows.iter().map(|finding| {
-        let (class, word) = match finding.verdict {
-            Verdict::Fault => ("fault", "Fault"),
-            Verdict::Note => ("note", "Note"),
-            Verdict::Passed => ("passed", "Passed"),
-            Verdict::NotChecked => ("unchecked", "Not checked"),
-        };
-        let p = match &finding.p_text()[..] {
-            "" => String::new(),
-            p => format!(" <span class=\"quiet\">{}</span>", escape(p)),
-        };
+    let cards = by_verdict(findings).into_iter().map(|finding| {
         let advice = match &finding.advice[..] {
             "" => String::new(),
             advice => format!("<p><b>What to do:</b> {}</p>", escape(advice)),
         };
-        let link = match finding.picture {
-            _ if finding.verdict == Verdict::Passed => String::new(),
-            name if charts.contains(&name) => {
-                format!("<p class=\"quiet\"><a href=\"#chart-{name}\">Chart</a></p>")
-            }
-            name if pictures.contains(&name) => {
-                format!("<p class=\"quiet\"><a href=\"#picture-{name}\">Picture</a></p>")
-            }
-            _ => String::new(),
-        };
+        let places = [("chart", "Chart", charts), ("picture", "Picture", pictures)];
+        let place = places.iter().find(|place| place.2.contains(&&finding.picture[..]));
+        let place = place.filter(|_| finding.verdict != Verdict::Passed);
+        let link = place.map_or(String::new(), |(kind, word, _)| {
+            format!("<p class=\"quiet\"><a href=\"#{kind}-{}\">{word}</a></p>", finding.picture)
+        });
         format!(
-            "<article class=\"finding {class}\"><h3><span class=\"verdict\">{word}</span> {}{p}</h3><p>{}</p>{advice}{link}</article>",
+            "<article class=\"finding {}\"><h3><span class=\"verdict\">{}</span> {} <span class=\"quiet\">{}</span></h3><p>{}</p>{advice}{link}</article>",
+            finding.verdict.word(),
+            finding.verdict.words(),
             escape(&finding.title()),
+            escape(&finding.p_text()),
             escape(&finding.sentence)
         )
     });
@@ -128,35 +116,23 @@ fn findings_html(findings: &[Finding], charts: &[&str], pictures: &[&str]) -> St
 /// Returns the text of an audit for the terminal, wrapped at `width` characters. The text contains the sentences on the claim, the findings with advice, and
 /// the names of the checks that passed.
 pub fn audit_text(audit: &Audit, width: usize) -> String {
-    let sentences = audit.sentences.iter();
-    let mut text: String = sentences
-        .map(|sentence| paragraph(sentence, width))
-        .collect();
-    let findings = by_verdict(&audit.findings);
-    for finding in findings
-        .iter()
-        .filter(|finding| finding.verdict != Verdict::Passed)
-    {
-        let word = match finding.verdict {
-            Verdict::Fault => "FAULT",
-            Verdict::NotChecked => "Not checked",
-            _ => "Note",
-        };
+    let (passed, found): (Vec<&Finding>, _) = by_verdict(&audit.findings)
+        .into_iter()
+        .partition(|finding| finding.verdict == Verdict::Passed);
+    let found = found.into_iter().map(|finding: &Finding| {
         let p = match &finding.p_text()[..] {
             "" => String::new(),
             p => format!(" ({p})"),
         };
+        let (word, title) = (finding.verdict.words(), finding.title());
         let said = format!(
-            "{word}: {}{p}. {} {}",
-            finding.title(),
-            finding.sentence,
-            finding.advice
+            "{word}: {title}{p}. {} {}",
+            finding.sentence, finding.advice
         );
-        text += &paragraph(said.trim(), width);
-    }
-    let passed = findings
-        .iter()
-        .filter(|finding| finding.verdict == Verdict::Passed);
-    let passed: Vec<String> = passed.map(|finding| finding.title()).collect();
-    text + &paragraph(&format!("Passed: {}.", passed.join("; ")), width)
+        said.trim().to_owned()
+    });
+    let passed: Vec<String> = passed.into_iter().map(Finding::title).collect();
+    let passed = format!("Passed: {}.", passed.join("; "));
+    let all = audit.sentences.iter().cloned().chain(found).chain([passed]);
+    all.map(|text| paragraph(&text, width)).collect()
 }

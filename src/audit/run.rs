@@ -57,17 +57,16 @@ pub fn audit(data: AuditData, options: AuditOptions) -> Result<Audit> {
 
 /// Returns the sentence on the worst fault.
 fn worst(findings: &[Finding]) -> String {
-    let sorted = by_verdict(findings);
-    let faults = sorted
-        .iter()
-        .filter(|finding| finding.verdict == Verdict::Fault);
-    match (faults.clone().next(), faults.count()) {
-        (None, _) => "No test finds a fault.".to_owned(),
-        (Some(worst), 1) => format!("There is one fault: {}. {}", worst.title(), worst.sentence),
-        (Some(worst), n) => format!(
-            "The worst of {n} faults: {}. {}",
-            worst.title(),
-            worst.sentence
-        ),
+    let mut faults = by_verdict(findings);
+    faults.retain(|finding| finding.verdict == Verdict::Fault);
+    match &faults[..] {
+        [] => "No test finds a fault.".to_owned(),
+        [worst, ..] => {
+            let n = match faults.len() {
+                1 => "There is one fault".to_owned(),
+                n => format!("The worst of {n} faults"),
+            };
+            format!("{n}: {}. {}", worst.title(), worst.sentence)
+        }
     }
 }

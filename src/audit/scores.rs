@@ -24,8 +24,6 @@ pub const METHODS: &[(&str, &str)] = &[
     ("linear_svm_spectrum", "linear SVM, spectrum"),
     ("nearest_row_spectrum", "nearest neighbour, spectrum"),
 ];
-/// Number of classifiers of each representation.
-pub const N_METHODS: usize = 3;
 
 /// Predictions of one classifier by one split.
 pub struct Tested {
@@ -85,7 +83,7 @@ impl Tested {
 /// If a feature is not finite.
 pub fn scores(
     representations: &[Array2<f64>],
-    (labels, n_classes): (&[usize], usize),
+    labels: &[usize],
     splits: &[AuditSplit],
     (n_nearest, seed): (usize, &Seed),
 ) -> Result<(Vec<Tested>, NearestRows)> {
@@ -100,16 +98,15 @@ pub fn scores(
     let mut nearest_of_means = None;
     for (representation, rows) in representations.iter().enumerate() {
         let near = nearest(rows.view(), n_nearest, &folds);
-        let names = &METHODS[N_METHODS * representation..][..N_METHODS];
+        let names = METHODS.iter().skip(3 * representation).take(3);
         for (arm, &(index, is_held_out, folds)) in arms.iter().enumerate() {
             let split = &splits[index];
             let held_out = HeldOut {
                 features: rows.view(),
                 labels,
-                n_classes,
                 folds,
             };
-            for (place, &(method, _)) in names.iter().enumerate() {
+            for (place, &(method, _)) in names.clone().enumerate() {
                 let predicted =
                     match [HeldOutMethod::NearestCentroid, HeldOutMethod::LinearSvm].get(place) {
                         Some(method) => predictions(&held_out, *method, split.n_folds, seed)?,
@@ -147,21 +144,11 @@ fn predictions(
     seed: &Seed,
 ) -> Result<Vec<Option<usize>>> {
     let folds = (0..n_folds).into_par_iter();
-    let folds = folds.map(|fold| held_out.scores(method, fold, seed));
+    let folds = folds.map(|fold| held_out.predicted(method, fold, seed));
     let folds: Vec<_> = folds.collect::<std::result::Result<_, _>>()?;
     let mut predicted = vec![None; held_out.labels.len()];
-    for (rows, found) in folds {
-        for (row, found) in rows.into_iter().zip(found.rows()) {
-            let classes = 0..held_out.n_classes;
-            let best = classes.reduce(|best, class| {
-                if found[class] > found[best] {
-                    class
-                } else {
-                    best
-                }
-            });
-            predicted[row] = best;
-        }
+    for (row, class) in folds.into_iter().flatten() {
+        predicted[row] = Some(class);
     }
     Ok(predicted)
 }

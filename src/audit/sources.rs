@@ -2,7 +2,7 @@
 //!
 //! Each source is a list of features of the touches. One test, with units exchanged, decides whether the class can be read from them.
 
-use crate::audit::context::Context;
+use crate::audit::context::{Context, MAX_BLOCKS};
 use crate::audit::finding::{Finding, Verdict, percent};
 use crate::audit::splits::is_same;
 use bubbletouch_sim::audit::dependence::without_class_means;
@@ -10,12 +10,10 @@ use bubbletouch_sim::audit::pooled::pooled;
 use bubbletouch_svm::audit::Readability;
 use ndarray::{Array1, Array2, Axis};
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 /// Smallest gain of accuracy over exchanged labels that is reported. With less, weak dependences of large data sets are reported.
 const LEAST_GAIN: f64 = 0.05;
-/// Maximum number of sessions whose numbers are features, and of block means of frames before contact.
-const MAX_FEATURES: usize = 64;
 
 /// Features of touches, the places of these touches in the sample, and whether units are held out.
 struct Features {
@@ -28,7 +26,7 @@ struct Features {
 
 /// Source from which labels may be readable.
 pub struct Source {
-    /// Name in tables, and for `--not-claimed`.
+    /// Name in tables, and for `--not-claimed`; also the name of the check.
     pub name: &'static str,
     /// Whether the source is part of the claim unless the user says otherwise.
     pub is_claimed: bool,
@@ -62,11 +60,10 @@ const fn source(
 
 /// Result of the test of a source.
 pub struct SourceResult {
-    /// Name of the source.
-    pub name: &'static str,
     /// Accuracy and its test.
     pub found: Readability,
-    finding: Finding,
+    /// Finding of the check with the name of the source.
+    pub finding: Finding,
 }
 
 /// Tests all sources that the data contain.
@@ -113,11 +110,7 @@ pub fn tested(context: &Context) -> Vec<SourceResult> {
             .tested(&found.permuted)
             .advice(advice)
             .shown_in("sources");
-        Some(SourceResult {
-            name: source.name,
-            found,
-            finding,
-        })
+        Some(SourceResult { found, finding })
     });
     found.collect()
 }
@@ -133,7 +126,8 @@ pub fn findings(context: &Context, results: &[SourceResult]) -> Vec<Finding> {
         ("untouched", !context.options.untouched.is_empty()),
     ];
     for (name, is_given) in given {
-        if is_given && context.has_classes && !results.iter().any(|result| result.name == name) {
+        if is_given && context.has_classes && !findings.iter().any(|finding| finding.check == name)
+        {
             findings.push(Finding::counted(
                 name,
                 false,
@@ -149,7 +143,8 @@ pub fn findings(context: &Context, results: &[SourceResult]) -> Vec<Finding> {
     findings
 }
 
-/// Returns whether the order of the touches is that of a file: within each session, or else within each group of several classes, they are sorted by class.
+/// Returns whether the order of the touches is that of a file: within each session, each group or the whole file, the touches of each class of several touches
+/// follow each other, or the classes ascend.
 fn is_sorted(context: &Context) -> bool {
     let (data, labels) = (&context.data, &context.labels);
     let is_sorted_within = |units: &Vec<usize>| {
@@ -157,7 +152,11 @@ fn is_sorted(context: &Context) -> bool {
         let n_runs = 1 + cells.windows(2).filter(|pair| pair[0] != pair[1]).count();
         let n_cells = cells.iter().collect::<BTreeSet<_>>().len();
         let n_units = units.iter().collect::<BTreeSet<_>>().len();
-        n_runs == n_cells && n_cells > n_units && 2 * n_cells <= cells.len()
+        let mut of_units = cells.clone();
+        of_units.sort_by_key(|cell| cell.0);
+        let are_ascending = of_units.is_sorted();
+        let are_runs = n_runs == n_cells && 2 * n_cells <= cells.len();
+        n_cells > n_units && (are_runs || are_ascending)
     };
     let whole = Some(vec![0; labels.len()]);
     let mut of = [&data.sessions, &data.groups, &whole].into_iter().flatten();
@@ -191,27 +190,23 @@ fn order(context: &Context) -> Option<Features> {
     of_each(context, names, |touch| touch as f64).filter(|_| !is_sorted(context))
 }
 
-/// One column of 0 and 1 for each session. Groups within sessions are the units; without them, or if each session is a group, touches are.
+/// One column of 0 and 1 for each session. Groups are the units; without groups, touches are. If each session is a group, the split by groups is the test.
 fn session(context: &Context) -> Option<Features> {
-    let sessions = context.data.sessions.as_ref()?;
+    let (sessions, groups) = (context.data.sessions.as_ref()?, &context.data.groups);
     let known = Vec::from_iter(sessions.iter().collect::<BTreeSet<_>>());
-    if !(2..=MAX_FEATURES).contains(&known.len()) {
+    let is_group = groups
+        .as_ref()
+        .is_some_and(|groups| is_same(groups, sessions));
+    if is_group || !(2..=MAX_BLOCKS).contains(&known.len()) {
         return None;
     }
     let shape = (context.sample.len(), known.len());
     let rows = Array2::from_shape_fn(shape, |(place, column)| {
         f64::from(u8::from(sessions[context.sample[place]] == *known[column]))
     });
-    let is_within = |groups: &Vec<usize>| {
-        let mut of = BTreeMap::new();
-        let mut pairs = groups.iter().zip(sessions);
-        pairs.all(|(group, session)| of.entry(group).or_insert(session) == &session)
-            && !is_same(groups, sessions)
-    };
-    let has_units = context.data.groups.as_ref().is_some_and(is_within);
     let features = of_sample(context, rows, "The session names")?;
     Some(Features {
-        has_units,
+        has_units: groups.is_some(),
         ..features
     })
 }
@@ -310,7 +305,7 @@ fn before_contact(context: &Context) -> Option<Features> {
     let frames = touches.flat_map(|first| range.clone().map(move |frame| first + frame));
     let frames: Vec<usize> = frames.collect();
     let frames = context.data.frames.select(Axis(0), &frames);
-    let rows = pooled(frames.view(), range.len(), context.data.grid, MAX_FEATURES);
+    let rows = pooled(frames.view(), range.len(), context.data.grid, MAX_BLOCKS);
     of_sample(context, rows, "The frames before contact name")
 }
 

@@ -8,8 +8,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of folds of each split.
 const N_FOLDS: usize = 5;
-/// Maximum number of units that are held out one at a time. With more units, folds of several units have nearly equal sizes.
-const MAX_LEFT_OUT: usize = 10;
 /// Maximum number of units with which the held-out accuracy is a note without a test: two days or sensors cannot show how the accuracy varies.
 const FEW_UNITS: usize = 4;
 
@@ -151,7 +149,8 @@ fn whole_units(labels: &[usize], units: &[usize], seed: &Seed) -> Option<Vec<Opt
         classes.entry(unit).or_default().insert(label);
     }
     let n_folds = match classes.len() {
-        n @ ..=MAX_LEFT_OUT => n,
+        // Folds of one or two units have unequal sizes, so that few units are held out one at a time.
+        n if n <= 2 * N_FOLDS => n,
         _ => N_FOLDS,
     };
     let mut order: Vec<usize> = classes.keys().copied().collect();

@@ -3,7 +3,7 @@
 use crate::audit::claim::Claim;
 use crate::audit::context::Context;
 use crate::audit::finding::Finding;
-use crate::audit::readings::TaxelState;
+use crate::audit::readings::{N_BLOCKS, TaxelState};
 use crate::audit::scores::METHODS;
 use crate::audit::sources::SourceResult;
 use crate::error::Result;
@@ -11,7 +11,6 @@ use crate::row;
 use crate::table::{Along, ChartSpec, File, Mark, Rule, Table};
 use bubbletouch_sim::audit::taxels::levels;
 
-const VERDICTS: &[(&str, &str)] = &[("not_checked", "not checked")];
 const SPLITS: &[(&str, &str)] = &[
     ("time", "blocks of time"),
     ("group", "groups"),
@@ -26,33 +25,6 @@ const LABELS: &[(&str, &str)] = &[
     ("given", "given labels"),
     ("exchanged", "exchanged labels, up to 95 %"),
 ];
-
-row! {
-/// Finding of an audit.
-pub struct FindingRow {
-    /// Name of the check.
-    check: String => Choice;
-    /// Part of the data that the finding is about; empty if it is about all data.
-    subject: String => Choice;
-    /// Verdict: fault, not_checked, note or passed.
-    verdict: String => Outcome named VERDICTS;
-    /// Measured number; its meaning is in the sentence.
-    value: Option<f64> => Value(Neither): Linear between [value_low, value_high];
-    /// Lower end of the 95 % interval of the value.
-    value_low: Option<f64> => Note: Linear;
-    /// Upper end of the 95 % interval of the value.
-    value_high: Option<f64> => Note: Linear;
-    /// Value without the fault, such as the accuracy by chance.
-    baseline: Option<f64> => Note: Linear;
-    /// p-value of the test; empty for counts.
-    p_value: Option<f64> => Note "p": Log;
-    /// p-value after Holm's correction over all tests of the audit.
-    p_holm: Option<f64> => Note "p, Holm": Log;
-    /// Result of the check in one or two sentences.
-    sentence: String => Note;
-    /// Recommended action against a fault.
-    advice: String => Note;
-} }
 
 row! {
 /// Accuracy of a classifier by a split.
@@ -78,7 +50,7 @@ pub struct SourceRow {
     source: String => Choice;
     /// Labels: as given, or exchanged.
     labels: String => Condition named LABELS;
-    /// Fraction of touches whose class is predicted correctly from the other touches.
+    /// Fraction of touches whose class is predicted correctly from other units. The touches of each unit and class together have the same weight.
     accuracy: f64 => Value(Neither): Share between [accuracy_low, accuracy_high];
     /// Accuracy; for exchanged labels, the mean accuracy.
     accuracy_low: f64 => Note: Share;
@@ -94,7 +66,7 @@ pub struct TaxelRow {
     /// Number of the taxel, from 0, row by row.
     taxel: usize => Subject: Linear;
     /// State: working, constant, stuck or equal.
-    state: String => Outcome;
+    state: TaxelState => Outcome;
     /// Mean reading.
     mean: f64 => Value(Neither): Linear;
     /// Standard deviation of the readings.
@@ -135,68 +107,43 @@ pub struct LevelRow {
     level: f64 => Value(Neither) "change": Linear;
 } }
 
-const FINDINGS: File<FindingRow> = File::new("findings.csv", "Findings", "");
-const ACCURACY: File<SplitRow> = File::new(
-    "accuracy_by_split.csv",
-    "Accuracy of fast classifiers by split",
-    "Each split stands beside the random split that trains on equally many touches of each class. Intervals are over groups if there are any.",
-);
-const SOURCE_ROWS: File<SourceRow> = File::new(
-    "sources.csv",
-    "Classes read from single sources",
-    "A source names the class if its accuracy exceeds that of exchanged labels.",
-);
-const TAXELS: File<TaxelRow> = File::new(
-    "taxels.csv",
-    "Taxels",
-    "Statistics over at most 2,000 frames.",
-);
-const ROWS: File<DoubtfulRow> = File::new("rows.csv", "Touches to look at", "");
-const LEVELS: File<LevelRow> = File::new(
-    "levels.csv",
-    "Level in the order of recording",
-    "Means of blocks of consecutive touches, less the means of the classes.",
-);
-
-/// Number of blocks of touches in the table of levels.
-const N_LEVELS: usize = 20;
-
 /// Results of all checks, from which the tables are made.
 pub struct Results<'a> {
-    /// All findings.
     pub findings: &'a [Finding],
-    /// Results of the first question.
     pub claim: &'a Claim,
-    /// Results of the second question.
     pub sources: &'a [SourceResult],
-    /// State of each taxel.
     pub states: &'a [TaxelState],
 }
 
-/// Returns the tables of an audit; the first one lists the findings.
+/// Returns the tables of an audit. The first one contains the findings.
+///
+/// # Errors
+/// If an interval cannot be computed.
 pub fn tables(context: &Context, results: &Results) -> Result<Vec<Table>> {
-    let known = |number: f64| number.is_finite().then_some(number);
-    let finding_rows = results.findings.iter().map(|finding| FindingRow {
-        check: finding.check.to_owned(),
-        subject: finding.subject.clone(),
-        verdict: finding.verdict.word().to_owned(),
-        value: known(finding.value),
-        value_low: known(finding.interval[0]),
-        value_high: known(finding.interval[1]),
-        baseline: known(finding.baseline),
-        p_value: finding.p_value,
-        p_holm: finding.p_holm,
-        sentence: finding.sentence.clone(),
-        advice: finding.advice.clone(),
-    });
-    let mut tables = vec![FINDINGS.table(&finding_rows.collect::<Vec<_>>())?];
+    let findings = File::new("findings.csv", "Findings", "");
+    let accuracy = File::new(
+        "accuracy_by_split.csv",
+        "Accuracy of fast classifiers by split",
+        "Each split stands beside the random split that trains on equally many touches of each class. Intervals are over groups if there are any.",
+    );
+    let sources = File::new(
+        "sources.csv",
+        "Classes read from single sources",
+        "A source names the class if its accuracy exceeds that of exchanged labels.",
+    );
+    let note = "Means of blocks of consecutive touches, less the means of the classes.";
+    let levels = File::new("levels.csv", "Level in the order of recording", note);
+    let rows = File::new("rows.csv", "Touches to look at", "");
+    let note = "Statistics over at most 2,000 frames.";
+    let taxels = File::new("taxels.csv", "Taxels", note);
+    let mut tables = vec![findings.table(results.findings)?];
     if context.has_classes {
-        tables.push(ACCURACY.table(&split_rows(context)?)?);
-        tables.push(SOURCE_ROWS.table(&source_rows(results.sources))?);
+        tables.push(accuracy.table(&split_rows(context)?)?);
+        tables.push(sources.table(&source_rows(results.sources))?);
     }
-    tables.push(LEVELS.table(&level_rows(context))?);
-    tables.push(ROWS.table(&doubtful_rows(context, results.claim))?);
-    tables.push(TAXELS.table(&taxel_rows(context, results.states))?);
+    tables.push(levels.table(&level_rows(context))?);
+    tables.push(rows.table(&doubtful_rows(context, results.claim))?);
+    tables.push(taxels.table(&taxel_rows(context, results.states))?);
     Ok(tables)
 }
 
@@ -220,9 +167,9 @@ fn split_rows(context: &Context) -> Result<Vec<SplitRow>> {
 }
 
 fn source_rows(sources: &[SourceResult]) -> Vec<SourceRow> {
-    let rows = sources.iter().flat_map(|SourceResult { name, found, .. }| {
+    let rows = sources.iter().flat_map(|SourceResult { found, finding }| {
         let row = |labels: &str, accuracy: f64, high: f64, p_value: Option<f64>| SourceRow {
-            source: (*name).to_owned(),
+            source: finding.check.clone(),
             labels: labels.to_owned(),
             accuracy,
             accuracy_low: accuracy,
@@ -273,7 +220,7 @@ fn taxel_rows(context: &Context, states: &[TaxelState]) -> Vec<TaxelRow> {
     let taxels = context.taxels.iter().enumerate();
     let rows = taxels.map(|(taxel, readings)| TaxelRow {
         taxel,
-        state: states[taxel].word().to_owned(),
+        state: states[taxel],
         mean: readings.mean,
         std: readings.std,
         least: readings.least,
@@ -285,7 +232,7 @@ fn taxel_rows(context: &Context, states: &[TaxelState]) -> Vec<TaxelRow> {
 
 fn level_rows(context: &Context) -> Vec<LevelRow> {
     let n = context.labels.len();
-    let n_blocks = N_LEVELS.min(n);
+    let n_blocks = N_BLOCKS.min(n);
     let mut rows = Vec::new();
     for ((quantity, values), scale) in ["level", "contact"]
         .iter()

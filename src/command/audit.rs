@@ -9,6 +9,7 @@ use bubbletouch::audit::{
 use bubbletouch::files::{DataFolder, check_output};
 use bubbletouch::report::folder::write_files;
 use bubbletouch::shell_line::shell_line;
+use bubbletouch::study::RecordedSpec;
 use bubbletouch::{Error, Result};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -124,15 +125,17 @@ pub fn audit(args: &Args) -> Result<()> {
     DataFolder::claim(&out, "audit", AUDIT_FILES.iter().copied())?;
     let files = AuditFiles {
         data: args.data.clone(),
-        labels: args.labels.clone(),
-        groups: args.groups.clone(),
+        given: RecordedSpec {
+            labels: args.labels.clone().unwrap_or_default(),
+            groups: args.groups.clone(),
+            order: args.order.clone(),
+            columns: args.columns.clone(),
+            grid: args.grid,
+            full_scale: args.full_scale,
+            ..RecordedSpec::default()
+        },
         sessions: args.sessions.clone(),
         times: args.times.clone(),
-        order: args.order.clone(),
-        columns: args.columns.clone(),
-        grid: args.grid,
-        full_scale: args.full_scale,
-        ..AuditFiles::default()
     };
     let data = files.read()?;
     let options = AuditOptions {

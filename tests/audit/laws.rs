@@ -35,6 +35,25 @@ fn what_is_not_claimed_becomes_a_fault_and_the_named_split_a_note() {
     );
 }
 
+/// Readings fall under pressure, and the full scale of the converter is above them; a full scale of 0 is reached.
+#[test]
+fn touches_at_the_full_scale_are_counted_on_its_side_of_rest() {
+    let share = |full_scale: f64| {
+        let mut set = Set::discs(2);
+        set.frames.mapv_inplace(|x| (0.9 - x).max(0.0));
+        set.full_scale = Some(full_scale);
+        let findings = set.findings();
+        let mut findings = findings.iter();
+        let saturation = findings
+            .find(|finding| finding.check == "saturation")
+            .unwrap();
+        saturation.value.unwrap()
+    };
+    assert_eq!(share(1.5), 0.0);
+    let at_zero = share(0.0);
+    assert!((0.1..0.9).contains(&at_zero), "{at_zero}");
+}
+
 /// Law: times of a clock that wraps around continue, and times that fall back otherwise are sorted by value.
 #[test]
 fn a_clock_that_wraps_around_continues() {

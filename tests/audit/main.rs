@@ -2,6 +2,7 @@
 
 mod clean;
 mod laws;
+mod level;
 mod plants;
 mod sets;
 mod structures;

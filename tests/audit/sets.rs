@@ -17,6 +17,7 @@ pub struct Set {
     pub groups: Option<Vec<usize>>,
     pub sessions: Option<Vec<usize>>,
     pub is_test: Option<Vec<bool>>,
+    pub full_scale: Option<f64>,
     pub options: AuditOptions,
     pub rng: ChaCha8Rng,
 }
@@ -49,7 +50,25 @@ pub fn disc(side: usize, (y, x): (f64, f64), radius: f64, depth: f64) -> Vec<f64
     (0..side * side).map(reading).collect()
 }
 
+/// Returns an array of normal numbers, such as a pattern of each class.
+pub fn patterns(name: &str, seed: u64, n: usize, m: usize) -> Array2<f64> {
+    normals(&mut rng(&format!("patterns {name}"), seed), n, m)
+}
+
 impl Set {
+    /// Creates a set of `per_class` touches of each of `n_classes` classes in random order.
+    pub fn of(
+        name: &str,
+        seed: u64,
+        [n_classes, per_class]: [usize; 2],
+        n_frames: usize,
+        touch: impl FnMut(usize, usize, &mut ChaCha8Rng) -> Vec<f64>,
+    ) -> Self {
+        let mut rng = rng(name, seed);
+        let labels = shuffled_labels(&mut rng, n_classes, per_class);
+        Self::new(rng, labels, n_frames, touch)
+    }
+
     /// Creates a set from a function that returns the readings of all frames of a touch.
     pub fn new(
         mut rng: ChaCha8Rng,
@@ -70,6 +89,7 @@ impl Set {
             groups: None,
             sessions: None,
             is_test: None,
+            full_scale: None,
             options: AuditOptions {
                 n_permutations: 399,
                 ..AuditOptions::default()
@@ -95,6 +115,21 @@ impl Set {
             grid: Some((12, 12)),
             ..set
         }
+    }
+
+    pub fn grid(self, grid: (usize, usize)) -> Self {
+        let grid = Some(grid);
+        Self { grid, ..self }
+    }
+
+    pub fn groups(self, groups: Vec<usize>) -> Self {
+        let groups = Some(groups);
+        Self { groups, ..self }
+    }
+
+    pub fn sessions(self, sessions: Vec<usize>) -> Self {
+        let sessions = Some(sessions);
+        Self { sessions, ..self }
     }
 
     pub fn n(&self) -> usize {
@@ -141,6 +176,7 @@ impl Set {
             groups: self.groups,
             sessions: self.sessions,
             is_test: self.is_test,
+            full_scale: self.full_scale,
             ..AuditData::default()
         };
         audit(data, self.options).unwrap().findings

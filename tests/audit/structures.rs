@@ -7,13 +7,11 @@ use rand::seq::SliceRandom;
 
 type Structure = (&'static str, fn(u64) -> Set);
 
-const STRUCTURES: [Structure; 16] = [
+const STRUCTURES: [Structure; 17] = [
     (
         "classes that differ in Fz and Tz of a wrist sensor",
         |seed| {
-            let mut rng = rng("fz", seed);
-            let labels = shuffled_labels(&mut rng, 4, 50);
-            Set::new(rng, labels, 1, |_, class, rng| {
+            Set::of("fz", seed, [4, 50], 1, |_, class, rng| {
                 (0..6)
                     .map(|k| {
                         f64::from(k == 2 || k == 5) * class as f64 * rng.gen_range(0.8..1.2)
@@ -24,9 +22,7 @@ const STRUCTURES: [Structure; 16] = [
         },
     ),
     ("tails of optical imprints", |seed| {
-        let mut rng = rng("tails", seed);
-        let labels = shuffled_labels(&mut rng, 4, 50);
-        let set = Set::new(rng, labels, 1, |_, class, rng| {
+        let set = Set::of("tails", seed, [4, 50], 1, |_, class, rng| {
             let place: (f64, f64) = (rng.gen_range(5.0..7.0), rng.gen_range(5.0..7.0));
             let reading = |taxel: usize| {
                 let away = ((taxel / 12) as f64 - place.0).hypot((taxel % 12) as f64 - place.1);
@@ -36,10 +32,7 @@ const STRUCTURES: [Structure; 16] = [
                 .map(|taxel| reading(taxel) + 0.01 * normal(rng))
                 .collect()
         });
-        Set {
-            grid: Some((12, 12)),
-            ..set
-        }
+        set.grid((12, 12))
     }),
     ("crosstalk of 2 %", |seed| {
         let mut set = Set::discs(seed);
@@ -50,9 +43,7 @@ const STRUCTURES: [Structure; 16] = [
         set
     }),
     ("classes of stiffness with light contacts", |seed| {
-        let mut rng = rng("stiffness", seed);
-        let labels = shuffled_labels(&mut rng, 5, 40);
-        Set::new(rng, labels, 20, |_, class, rng| {
+        Set::of("stiffness", seed, [5, 40], 20, |_, class, rng| {
             let start = rng.gen_range(4..6);
             let readings = (0..20).flat_map(|t| (0..8).map(move |k| (t, k)));
             readings
@@ -95,10 +86,8 @@ const STRUCTURES: [Structure; 16] = [
         set
     }),
     ("four sides of ten independent touches", |seed| {
-        let mut rng = rng("sides", seed);
-        let labels = shuffled_labels(&mut rng, 5, 40);
-        let sides = normals(&mut rng, 20, 30);
-        Set::new(rng, labels, 1, |_, class, rng| {
+        let sides = patterns("sides", seed, 20, 30);
+        Set::of("sides", seed, [5, 40], 1, |_, class, rng| {
             let side = 4 * class + rng.gen_range(0..4);
             (0..30)
                 .map(|k| sides[(side, k)] + 0.2 * normal(rng))
@@ -106,10 +95,8 @@ const STRUCTURES: [Structure; 16] = [
         })
     }),
     ("objects that share a part", |seed| {
-        let mut rng = rng("parts", seed);
-        let labels = shuffled_labels(&mut rng, 4, 60);
-        let parts = normals(&mut rng, 5, 30);
-        Set::new(rng, labels, 1, |_, class, rng| {
+        let parts = patterns("parts", seed, 5, 30);
+        Set::of("parts", seed, [4, 60], 1, |_, class, rng| {
             let part = if rng.gen_bool(0.3) { 4 } else { class };
             (0..30)
                 .map(|k| parts[(part, k)] + 0.3 * normal(rng))
@@ -126,10 +113,7 @@ const STRUCTURES: [Structure; 16] = [
                 .map(|k| classes[(class, k)] + 0.5 * habits[(groups[touch], k)] + 0.4 * normal(rng))
                 .collect()
         });
-        Set {
-            groups: Some(groups),
-            ..set
-        }
+        set.groups(groups)
     }),
     ("six sessions that are each saved sorted by class", |seed| {
         let mut set = Set::discs(seed);
@@ -158,16 +142,26 @@ const STRUCTURES: [Structure; 16] = [
         set.add_styles(&groups, 0.4);
         let cells: Vec<usize> = (0..480).map(|k| 6 * groups[k] + set.labels[k]).collect();
         set.add_styles(&cells, 0.4);
-        Set {
-            groups: Some(groups),
-            ..set
-        }
+        set.groups(groups)
     }),
+    (
+        "subjects who touch each object once, in the order of the file",
+        |seed| {
+            let objects = patterns("once", seed, 17, 24);
+            let labels = (0..13 * 17).map(|k| k % 17).collect();
+            let mut set = Set::new(rng("once", seed), labels, 1, |_, class, rng| {
+                (0..24)
+                    .map(|k| objects[(class, k)] + 0.4 * normal(rng))
+                    .collect()
+            });
+            let subjects: Vec<usize> = (0..set.n()).map(|k| k / 17).collect();
+            set.add_styles(&subjects, 0.2);
+            set.groups(subjects)
+        },
+    ),
     ("a subtracted first frame", |seed| {
-        let mut rng = rng("subtracted", seed);
-        let labels = shuffled_labels(&mut rng, 4, 50);
-        let patterns = normals(&mut rng, 4, 12);
-        Set::new(rng, labels, 8, |_, class, rng| {
+        let patterns = patterns("subtracted", seed, 4, 12);
+        Set::of("subtracted", seed, [4, 50], 8, |_, class, rng| {
             let force: f64 = rng.gen_range(0.8..1.2);
             let readings = (0..8).flat_map(|t| (0..12).map(move |k| (t, k)));
             readings
@@ -201,12 +195,8 @@ const STRUCTURES: [Structure; 16] = [
             let frame = disc(12, (y, x), 1.0 + class as f64, weight);
             frame.into_iter().map(|x| x + 0.01 * normal(rng)).collect()
         });
-        let groups = Some((0..288).map(|k| k / 12).collect());
-        Set {
-            grid: Some((12, 12)),
-            groups,
-            ..set
-        }
+        set.grid((12, 12))
+            .groups((0..288).map(|k| k / 12).collect())
     }),
     ("a few empty frames", |seed| {
         let mut set = Set::discs(seed);
@@ -236,6 +226,23 @@ fn clean_designs_have_at_most_one_fault_in_three_seeds() {
         let found: Vec<_> = (0..3).map(|seed| faults(&make(seed).findings())).collect();
         let n_faulty = found.iter().filter(|faults| !faults.is_empty()).count();
         assert!(n_faulty <= 1, "{name}: {found:#?}");
+    }
+}
+
+/// Frames that are each scaled by their own maximum have a note that says so, and no copies.
+#[test]
+fn frames_that_are_scaled_one_by_one_are_no_copies() {
+    for seed in 0..5 {
+        let mut set = Set::discs(seed);
+        for mut row in set.frames.rows_mut() {
+            let least = row.iter().copied().fold(f64::INFINITY, f64::min);
+            let largest = row.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            row.mapv_inplace(|x| (x - least) / (largest - least));
+        }
+        let findings = set.findings();
+        assert!(faults(&findings).is_empty(), "{:?}", faults(&findings));
+        let mut sentences = findings.iter().map(|finding| &finding.sentence);
+        assert!(sentences.any(|sentence| sentence.contains("scaled by its own maximum")));
     }
 }
 

@@ -5,7 +5,7 @@ use crate::study::laid_out;
 use bubbletouch::audit::{AuditData, AuditFiles};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::TrialScore;
-use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames, write_integers};
+use bubbletouch::study::{RecordedSkinFiles, RecordedSpec, UntouchedFrames, write_integers};
 use ndarray::{Array1, Array2, Array3};
 use std::path::Path;
 
@@ -42,13 +42,22 @@ fn table(header: &str, line: impl Fn(usize, &str) -> String) -> String {
     text
 }
 
-fn audited(case: &Case, name: &str, columns: Option<&str>) -> bubbletouch::Result<AuditData> {
+/// Reads a table as an audit does, with keys of `[recorded]`.
+fn audited_with(case: &Case, name: &str, given: RecordedSpec) -> bubbletouch::Result<AuditData> {
     let files = AuditFiles {
         data: case.path(name),
-        columns: columns.map(str::to_owned),
+        given,
         ..AuditFiles::default()
     };
     files.read()
+}
+
+fn audited(case: &Case, name: &str, columns: Option<&str>) -> bubbletouch::Result<AuditData> {
+    let given = RecordedSpec {
+        columns: columns.map(str::to_owned),
+        ..RecordedSpec::default()
+    };
+    audited_with(case, name, given)
 }
 
 fn calibrated(case: &Case, name: &str, columns: Option<&str>) -> bubbletouch::Result<Array2<f64>> {
@@ -261,15 +270,12 @@ fn a_named_last_column_without_readings_is_a_taxel() {
 fn labels_of_pandas_are_the_same_classes_and_a_number_for_each_touch_is_no_index() {
     let case = with_labels();
     let read = |labels: &str, groups: Option<&str>| {
-        let files = AuditFiles {
-            data: case.path("plain.csv"),
-            labels: Some(case.path(labels)),
+        let given = RecordedSpec {
+            labels: case.path(labels),
             groups: groups.map(|groups| case.path(groups)),
-            ..AuditFiles::default()
+            ..RecordedSpec::default()
         };
-        files
-            .read()
-            .unwrap_or_else(|error| panic!("{labels}: {error}"))
+        audited_with(&case, "plain.csv", given).unwrap_or_else(|error| panic!("{labels}: {error}"))
     };
     let rows =
         |line: &dyn Fn(usize) -> String| (0..N).map(|touch| line(touch) + "\n").collect::<String>();
@@ -337,14 +343,14 @@ fn labels_of_pandas_are_the_same_classes_and_a_number_for_each_touch_is_no_index
         "few.csv",
         "object\n".to_owned() + &rows(&|touch| label(touch).to_string()).replacen("0\n", "", 1),
     );
-    let files = AuditFiles {
-        data: case.path("plain.csv"),
-        labels: Some(case.path("few.csv")),
-        ..AuditFiles::default()
+    let given = RecordedSpec {
+        labels: case.path("few.csv"),
+        ..RecordedSpec::default()
     };
-    let said = files.read().unwrap_err().to_string();
+    let said = audited_with(&case, "plain.csv", given).unwrap_err();
+    let said = said.to_string();
     assert!(
-        said.contains("few.csv: 29 values; 30, one for each touch of"),
+        said.contains("few.csv: 29 values; 30, one a touch of"),
         "{said}"
     );
 }

@@ -20,6 +20,13 @@ pub enum KeyValue {
     Text(String),
 }
 
+impl KeyValue {
+    /// Returns whether the value is a text.
+    pub const fn is_text(&self) -> bool {
+        matches!(self, Self::Text(_))
+    }
+}
+
 /// Classes of all touches or rows of a data set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClassLabels {

@@ -3,7 +3,7 @@
 //! | module | question |
 //! |---|---|
 //! | [`missing`] | Which readings are missing, and what replaces them? |
-//! | [`taxels`] | What does each taxel read; which taxels are constant, stuck for some time or equal to another; which level ends the readings? |
+//! | [`taxels`] | What does each taxel read; which taxels are constant, stuck for some time or equal to another; which number stands for a missing reading? |
 //! | [`pooled`] | Which numbers represent a touch for a cheap classifier? |
 //! | [`spectrum`] | Which numbers represent a vibration? |
 //! | [`copies`] | Which touches are two or three copies of each other? |

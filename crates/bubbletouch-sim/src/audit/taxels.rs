@@ -1,10 +1,9 @@
-//! Readings of taxels: constant ones, ones that are stuck for some time, ones that repeat another, and the level at which readings end.
+//! Readings of taxels: constant ones, ones that are stuck for some time, ones that repeat another, and numbers that stand for missing readings.
 
 use crate::audit::dependence::without_class_means;
 use crate::statistics::quantile::quantile;
 use ndarray::{Array1, ArrayView2, Axis};
-use statrs::distribution::{Binomial, DiscreteCDF};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Minimum number of readings of a level, or of frames in which a taxel leaves its median. With fewer, chance explains the finding.
 const MIN_READINGS: usize = 20;
@@ -56,29 +55,6 @@ pub fn smallest_step(frames: ArrayView2<f64>) -> f64 {
     if least.is_finite() { least } else { 0.0 }
 }
 
-/// Returns the largest reading of each touch over all taxels that are not constant, or the largest of the negative readings if contact lowers them, and the
-/// sign. `frames` has the shape (n_touches · n_frames, n_taxels).
-pub fn largest_readings(
-    frames: ArrayView2<f64>,
-    n_frames: usize,
-    taxels: &[TaxelReadings],
-) -> (Vec<f64>, f64) {
-    let is_varying: Vec<bool> = taxels.iter().map(|taxel| !taxel.is_constant()).collect();
-    let varying = taxels.iter().filter(|taxel| !taxel.is_constant());
-    let away = varying.map(|taxel| taxel.largest + taxel.least - 2.0 * taxel.median);
-    let sign = if away.sum::<f64>() >= 0.0 { 1.0 } else { -1.0 };
-    let largest = |touch: ArrayView2<f64>| {
-        let rows = touch
-            .rows()
-            .into_iter()
-            .flat_map(|row| row.into_iter().zip(&is_varying));
-        let readings = rows.filter(|(_, is_varying)| **is_varying);
-        readings.fold(f64::NEG_INFINITY, |most, (&x, _)| most.max(sign * x))
-    };
-    let touches = frames.axis_chunks_iter(Axis(0), n_frames);
-    (touches.map(largest).collect(), sign)
-}
-
 /// Returns the distance of each row from the medians of the columns: the size of a touch.
 pub fn sizes(rows: ArrayView2<f64>) -> Vec<f64> {
     let medians: Vec<f64> = rows
@@ -112,8 +88,9 @@ pub fn levels(means: ArrayView2<f64>, labels: &[usize]) -> [Vec<f64>; 2] {
     [level, contact]
 }
 
-/// Returns pairs of taxels whose readings are equal, or proportional after subtraction of a constant, in all frames. The taxels vary in at least 20 frames.
-pub fn equal_taxels(frames: ArrayView2<f64>, taxels: &[TaxelReadings]) -> Vec<(usize, usize)> {
+/// Returns the taxels whose readings are equal to those of a taxel before, or proportional after subtraction of a constant, in all frames. The taxels vary in at
+/// least 20 frames.
+pub fn equal_taxels(frames: ArrayView2<f64>, taxels: &[TaxelReadings]) -> Vec<usize> {
     let mut columns = Vec::new();
     for (taxel, readings) in taxels.iter().enumerate() {
         let column = frames.column(taxel);
@@ -130,68 +107,33 @@ pub fn equal_taxels(frames: ArrayView2<f64>, taxels: &[TaxelReadings]) -> Vec<(u
         columns.push((taxel, own * sign));
     }
     columns.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]).then(a.0.cmp(&b.0)));
-    let mut pairs = Vec::new();
-    for pair in columns.windows(2) {
-        let [(a, first), (b, second)] = pair else {
-            continue;
-        };
-        let is_equal = first.iter().zip(second).all(|(x, y)| (x - y).abs() < 1e-6);
-        pairs.extend(is_equal.then_some((*a.min(b), *a.max(b))));
-    }
-    pairs
+    let is_equal = |pair: &&[(usize, Array1<f64>)]| {
+        let both = pair[0].1.iter().zip(&pair[1].1);
+        both.into_iter().all(|(x, y)| (x - y).abs() < 1e-6)
+    };
+    let pairs = columns.windows(2).filter(is_equal);
+    let repeated: BTreeSet<usize> = pairs.map(|pair| pair[0].0.max(pair[1].0)).collect();
+    repeated.into_iter().collect()
 }
 
-/// Returns the taxels that keep one reading in all frames of a part of the recording, and rarely have this reading in the others, with the number of the part.
-/// `parts` contains the part of each frame, such as its session.
-pub fn stuck_taxels(frames: ArrayView2<f64>, parts: &[usize]) -> Vec<(usize, usize)> {
+/// Returns the taxels that keep one reading in all frames of a part of the recording, and rarely have this reading in the others. `parts` contains the part of
+/// each frame, such as its session.
+pub fn stuck_taxels(frames: ArrayView2<f64>, parts: &[usize]) -> Vec<usize> {
     let mut rows = BTreeMap::<usize, Vec<usize>>::new();
     (0..parts.len()).for_each(|row| rows.entry(parts[row]).or_default().push(row));
-    let mut found = Vec::new();
-    for (taxel, column) in frames.columns().into_iter().enumerate() {
-        for (&part, rows) in rows.iter().filter(|(_, rows)| rows.len() >= MIN_READINGS) {
+    rows.retain(|_, rows| rows.len() >= MIN_READINGS);
+    let is_stuck = |taxel: &usize| {
+        let column = frames.column(*taxel);
+        rows.values().any(|rows| {
             let level = column[rows[0]];
-            if !rows.iter().all(|&row| column[row] == level) {
-                continue;
-            }
             let n_others = column.len() - rows.len();
-            let n_equal = column.iter().filter(|&&x| x == level).count() - rows.len();
-            if n_others >= MIN_READINGS && 10 * n_equal <= n_others {
-                found.push((taxel, part));
-            }
-        }
-    }
-    found
-}
-
-/// Returns the largest of some readings and its frequency, if it is more frequent than the level below it allows: readings end there. `readings` are the largest
-/// readings of touches.
-///
-/// Readings become rarer towards their end. Of c readings at the largest level and b at the level below, c therefore has at most the binomial distribution of
-/// c + b trials with probability 1/2. Continuous readings have no equal largest readings.
-pub fn plateau(mut readings: Vec<f64>) -> Option<(f64, usize)> {
-    readings.sort_by(f64::total_cmp);
-    let largest = *readings.last()?;
-    let n_below = readings.partition_point(|&x| x < largest);
-    let n_largest = readings.len() - n_below;
-    if n_largest < MIN_READINGS / 4 {
-        return None;
-    }
-    let below = &readings[..n_below];
-    let gaps = below.windows(2).map(|pair| pair[1] - pair[0]);
-    let n_equal = gaps.clone().filter(|&gap| gap == 0.0).count();
-    if 10 * n_equal > n_below {
-        let step = gaps.filter(|&gap| gap > 0.0).fold(f64::INFINITY, f64::min);
-        let n_next = below
-            .iter()
-            .rev()
-            .take_while(|&&x| largest - x < 1.5 * step);
-        let n_next = n_next.count();
-        let binomial = Binomial::new(0.5, (n_largest + n_next) as u64).ok()?;
-        if binomial.sf(n_largest as u64 - 1) > 1e-3 || n_largest < 3 * n_next {
-            return None;
-        }
-    }
-    Some((largest, n_largest))
+            let n_equal = || column.iter().filter(|&&x| x == level).count() - rows.len();
+            rows.iter().all(|&row| column[row] == level)
+                && n_others >= MIN_READINGS
+                && 10 * n_equal() <= n_others
+        })
+    };
+    (0..frames.ncols()).filter(is_stuck).collect()
 }
 
 /// Returns the value that stands for a missing reading, and its number of readings: the smallest or largest reading, if it is frequent, no taxel has it as its
@@ -245,25 +187,8 @@ mod tests {
         let other = frames.column(2).mapv(|x| 5.0 - 3.0 * x);
         frames.column_mut(6).assign(&other);
         (50..100).for_each(|row| frames[(row, 4)] = 0.7);
-        assert_eq!(of(&frames), [(2, 6)]);
-        assert_eq!(stuck_taxels(frames.view(), &parts), [(4, 1)]);
-    }
-
-    #[test]
-    fn levels_that_end_the_readings_are_found_and_tails_are_not() {
-        for levels in [f64::INFINITY, 30.0] {
-            let rounded = noise(300, 1).mapv(|x| match levels.is_finite() {
-                true => (x * levels).round(),
-                false => x,
-            });
-            let readings: Vec<f64> = rounded.iter().copied().collect();
-            assert_eq!(plateau(readings.clone()), None);
-            let mut sorted = readings.clone();
-            sorted.sort_by(f64::total_cmp);
-            let level = sorted[250];
-            let clipped = readings.into_iter().map(|x| x.min(level)).collect();
-            assert_eq!(plateau(clipped).map(|found| found.0), Some(level));
-        }
+        assert_eq!(of(&frames), [6]);
+        assert_eq!(stuck_taxels(frames.view(), &parts), [4]);
     }
 
     #[test]

@@ -71,6 +71,8 @@ pub struct Units {
     pub of: Vec<usize>,
     /// Number of units.
     pub n: usize,
+    /// Weight of each row, such that all cells have the weight 1: exchanged labels then have the same weights, also if the cells of a label are larger.
+    pub weights: Vec<f64>,
     /// Rows of one label and one unit, for each label and unit.
     cells: Vec<Vec<usize>>,
     /// Cells that exchange their labels.
@@ -85,6 +87,7 @@ impl Units {
             return Self {
                 of: (0..n).collect(),
                 n,
+                weights: vec![1.0; n],
                 cells: (0..n).map(|row| vec![row]).collect(),
                 strata: vec![(0..n).collect()],
             };
@@ -97,6 +100,7 @@ impl Units {
         let mut found = Self {
             of: vec![0; n],
             n: rows.len(),
+            weights: vec![0.0; n],
             cells: Vec::new(),
             strata: Vec::new(),
         };
@@ -106,7 +110,9 @@ impl Units {
             found.cells.extend(cells.into_values());
             let numbers = first..found.cells.len();
             for cell in &found.cells[numbers.clone()] {
-                cell.iter().for_each(|&row| found.of[row] = unit);
+                for &row in cell {
+                    (found.of[row], found.weights[row]) = (unit, 1.0 / cell.len() as f64);
+                }
             }
             match numbers.len() {
                 1 => single.extend(numbers),

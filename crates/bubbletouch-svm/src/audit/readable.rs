@@ -5,7 +5,7 @@
 
 use crate::audit::permutation::{Permuted, Units, exchange_within, generator, permute};
 use crate::streams::Streams;
-use ndarray::{Array2, ArrayView2, Axis};
+use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
 use std::ops::RangeInclusive;
 
 /// Number of nearest rows that vote.
@@ -14,14 +14,15 @@ const N_VOTES: usize = 5;
 /// Accuracy with which labels can be read from features, and its distribution under exchanged labels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readability {
-    /// Fraction of rows whose label the better classifier predicts from the rows of other units.
+    /// Fraction of rows whose label the better classifier predicts from the rows of other units. All cells of a unit and a label have the same weight.
     pub accuracy: f64,
     /// The same over permutations of the labels.
     pub permuted: Permuted,
 }
 
-/// Inner products of all pairs of rows, and the other rows of each row, nearest first.
-struct Pairs {
+/// Weights of rows, inner products of each row with each other weighted row, and the other rows of each row, nearest first.
+struct Pairs<'a> {
+    weights: &'a [f64],
     products: Array2<f64>,
     order: Vec<Vec<u32>>,
 }
@@ -55,15 +56,16 @@ pub fn readability(
         return None;
     }
     let units = Units::new(units, labels);
-    let pairs = Pairs::new(features);
+    let pairs = Pairs::new(features, &units.weights);
     let folds = Folds {
         of: &units.of,
         n: units.n,
         n_tested: units.n,
     };
+    let total: f64 = units.weights.iter().sum();
     let accuracy = |labels: &[usize]| {
-        let [by_mean, by_votes] = pairs.recognised(labels, n_classes, &folds).map(count);
-        by_mean.max(by_votes) as f64 / n as f64
+        let [by_mean, by_votes] = pairs.n_recognised(labels, n_classes, &folds);
+        by_mean.max(by_votes) / total
     };
     let observed = accuracy(labels);
     let mut permuted = labels.to_vec();
@@ -91,15 +93,16 @@ pub fn held_out_loss(
     let n_classes = labels.iter().max()? + 1;
     let n_folds = folds.iter().max()? + 1;
     let n = folds.iter().filter(|&&fold| fold < n_tested).count();
-    let pairs = Pairs::new(features);
+    let weights = vec![1.0; labels.len()];
+    let pairs = Pairs::new(features, &weights);
     let wrong = |of: &[usize]| {
         let folds = Folds {
             of,
             n: n_folds,
             n_tested,
         };
-        let counts = pairs.recognised(labels, n_classes, &folds).map(count);
-        1.0 - counts.iter().sum::<usize>() as f64 / (2 * n.max(1)) as f64
+        let counts = pairs.n_recognised(labels, n_classes, &folds);
+        1.0 - counts.iter().sum::<f64>() / (2 * n.max(1)) as f64
     };
     let observed = wrong(folds);
     let mut permuted = folds.to_vec();
@@ -110,25 +113,22 @@ pub fn held_out_loss(
     }))
 }
 
-fn count(recognised: Vec<bool>) -> usize {
-    recognised.into_iter().filter(|&is| is).count()
-}
-
-impl Pairs {
-    fn new(features: ArrayView2<f64>) -> Self {
+impl<'a> Pairs<'a> {
+    fn new(features: ArrayView2<f64>, weights: &'a [f64]) -> Self {
         let mean = features.mean_axis(Axis(0));
         let centred = match mean {
             Some(mean) => &features - &mean,
             None => features.to_owned(),
         };
         // The product of single columns may have its columns in order.
-        let products = centred.dot(&centred.t());
+        let weighted = &centred.t() * &ArrayView1::from(weights);
+        let products = centred.dot(&weighted);
         let products = products.as_standard_layout().into_owned();
         let n = products.nrows();
         let order = (0..n).map(|row| {
             let distance = |other: u32| {
                 let other = other as usize;
-                products[(other, other)] - 2.0 * products[(row, other)]
+                (products[(other, other)] - 2.0 * products[(row, other)]) / weights[other]
             };
             let mut others: Vec<u32> = (0..n as u32)
                 .filter(|&other| other as usize != row)
@@ -137,7 +137,20 @@ impl Pairs {
             others
         });
         let order = order.collect();
-        Self { products, order }
+        Self {
+            weights,
+            products,
+            order,
+        }
+    }
+
+    /// Returns the weights of the rows that the nearest class mean and the nearest rows recognise.
+    fn n_recognised(&self, labels: &[usize], n_classes: usize, folds: &Folds) -> [f64; 2] {
+        let found = self.recognised(labels, n_classes, folds);
+        found.map(|found| {
+            let rows = found.into_iter().zip(self.weights);
+            rows.filter(|(is, _)| *is).map(|(_, weight)| weight).sum()
+        })
     }
 
     /// Returns whether the nearest class mean, and whether the nearest rows predict each row correctly from rows of other folds; false if it is not tested.
@@ -146,21 +159,21 @@ impl Pairs {
         // Sums of the products of each row with the rows of each class, and with those in its own fold.
         let mut sums = vec![0.0; n * n_classes];
         let mut own_sums = sums.clone();
-        let mut of_classes = vec![(0, 0.0); n_classes];
+        let mut of_classes = vec![(0.0, 0.0); n_classes];
         for (row, sums) in sums.chunks_exact_mut(n_classes).enumerate() {
             for (product, &label) in self.products.row(row).iter().zip(labels) {
                 sums[label] += product;
             }
             let (count, square) = &mut of_classes[labels[row]];
-            *count += 1;
-            *square += sums[labels[row]];
+            *count += self.weights[row];
+            *square += self.weights[row] * sums[labels[row]];
         }
         let mut rows_of = vec![Vec::new(); folds.n];
         for (row, &fold) in folds.of.iter().enumerate() {
             rows_of[fold].push(row);
         }
-        // Let S be the sum of the rows of a class, and U the sum of its rows within a fold: |S − U|² = |S|² − 2 S·U + |U|².
-        let mut outside: Vec<(usize, f64)> = Vec::with_capacity(folds.n * n_classes);
+        // Let S be the weighted sum of the rows of a class, and U that of its rows within a fold: |S − U|² = |S|² − 2 S·U + |U|².
+        let mut outside: Vec<(f64, f64)> = Vec::with_capacity(folds.n * n_classes);
         for rows in &rows_of {
             let first = outside.len();
             outside.extend(&of_classes);
@@ -171,12 +184,15 @@ impl Pairs {
                 }
                 let label = labels[row];
                 let (count, square) = &mut outside[first + label];
-                *count -= 1;
-                *square += own_sums[label] - 2.0 * sums[row * n_classes + label];
+                let weight = self.weights[row];
+                *count -= weight;
+                *square += weight * (own_sums[label] - 2.0 * sums[row * n_classes + label]);
             }
         }
         let mut found = [vec![false; n], vec![false; n]];
-        let mut votes = vec![0_usize; n_classes];
+        let mut votes = vec![0.0; n_classes];
+        // A difference of sums of weights that is smaller is rounding.
+        let least = 0.5 * self.weights.iter().copied().fold(1.0, f64::min);
         for (row, &own) in labels.iter().enumerate() {
             let fold = folds.of[row];
             if fold >= folds.n_tested {
@@ -185,10 +201,10 @@ impl Pairs {
             let (sums, own_sums) = (&sums[row * n_classes..], &own_sums[row * n_classes..]);
             let outside = &outside[fold * n_classes..];
             let distance = |class: usize| match outside[class] {
-                (0, _) => f64::INFINITY,
+                (count, _) if count < least => f64::INFINITY,
                 (count, square) => {
                     let sum = sums[class] - own_sums[class];
-                    square / (count * count) as f64 - 2.0 * sum / count as f64
+                    square / (count * count) - 2.0 * sum / count
                 }
             };
             let of_own = distance(own);
@@ -196,14 +212,16 @@ impl Pairs {
             found[0][row] = of_own.is_finite() && others.all(|class| of_own < distance(class));
             let near = self.order[row].iter().map(|&other| other as usize);
             let near = near.filter(|&other| folds.of[other] != fold).take(N_VOTES);
-            near.clone().for_each(|other| votes[labels[other]] += 1);
-            let most = near.clone().map(|other| votes[labels[other]]).max();
-            // The nearest row among those with the most votes decides.
-            let winner = near
+            near.clone()
+                .for_each(|other| votes[labels[other]] += self.weights[other]);
+            let most = near
                 .clone()
-                .find(|&other| Some(votes[labels[other]]) == most);
+                .map(|other| votes[labels[other]])
+                .fold(0.0, f64::max);
+            // The nearest row among those with the most votes decides.
+            let winner = near.clone().find(|&other| votes[labels[other]] == most);
             found[1][row] = winner.is_some_and(|other| labels[other] == own);
-            near.for_each(|other| votes[labels[other]] = 0);
+            near.for_each(|other| votes[labels[other]] = 0.0);
         }
         found
     }
@@ -251,7 +269,7 @@ mod tests {
         let grouped: Vec<usize> = (0..40).map(|row| 7 * row % 11).collect();
         for grouped in [None, Some(&grouped[..])] {
             let units = Units::new(grouped, &labels);
-            let pairs = Pairs::new(features.view());
+            let pairs = Pairs::new(features.view(), &units.weights);
             let folds = Folds {
                 of: &units.of,
                 n: units.n,
@@ -265,9 +283,12 @@ mod tests {
                 };
                 let distance = |class: usize| {
                     let others = (0..40).filter(|&other| is_other(other) && labels[other] == class);
-                    let others: Vec<usize> = others.collect();
-                    let mean = features.select(Axis(0), &others).mean_axis(Axis(0));
-                    let mean = mean.unwrap();
+                    let (mut mean, mut total) = (ndarray::Array1::zeros(3), 0.0);
+                    for other in others {
+                        mean.scaled_add(units.weights[other], &features.row(other));
+                        total += units.weights[other];
+                    }
+                    mean /= total;
                     (&mean - &features.row(row)).mapv(|x| x * x).sum()
                 };
                 let expected = distance(labels[row]) < distance(1 - labels[row]);

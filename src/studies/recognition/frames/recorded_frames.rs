@@ -215,16 +215,15 @@ impl RecordedSpec {
 
     /// Returns the class labels of all touches; the separate test set comes last.
     fn class_labels(&self, n: [usize; 2]) -> Result<ClassLabels> {
-        let mut values = Vec::new();
+        let mut values: Vec<KeyValue> = Vec::new();
         for (name, n) in ["labels", "labels_test"].into_iter().zip(n) {
             let Some(path) = self.file_of(name).filter(|_| n > 0) else {
                 continue;
             };
             let own = read_class_values(path, name, n)?;
             one_each((path, name), (own.len(), n), self.first_frames())?;
-            let is_text = |value: &KeyValue| matches!(value, KeyValue::Text(_));
             if let (Some(first), Some(other)) = (own.first(), values.first())
-                && is_text(first) != is_text(other)
+                && first.is_text() != other.is_text()
             {
                 let labels = self.file_of("labels").unwrap_or(&self.labels);
                 let allowed = format!("texts or numbers in both, as in {}", labels.display());
@@ -255,7 +254,10 @@ impl RecordedSpec {
     }
 
     /// Returns the name, the random-stream name and the number of touches of each class.
-    fn classes(&self, labels: &ClassLabels) -> Result<(Vec<String>, Vec<String>, Vec<usize>)> {
+    pub(crate) fn classes(
+        &self,
+        labels: &ClassLabels,
+    ) -> Result<(Vec<String>, Vec<String>, Vec<usize>)> {
         let n_classes = labels.classes.len();
         let mut counts = vec![0; n_classes];
         for &label in &labels.labels {

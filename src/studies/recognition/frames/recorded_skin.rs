@@ -63,7 +63,7 @@ impl RecordedSkinFiles {
         let forces = self
             .forces
             .as_ref()
-            .map(|path| numbers_of(path, n))
+            .map(|path| numbers_of(path, "forces", (n, "frame")))
             .transpose()?;
         let all: Vec<usize> = (0..n).collect();
         let (untouched, untouched_times, touched) = match &self.untouched {
@@ -173,9 +173,12 @@ fn times_in(ranges: &[Range<f64>], n: usize) -> Result<Array1<f64>> {
     Ok((0..n).map(time).collect())
 }
 
-/// Reads one number per frame from a file.
-fn numbers_of(path: &Path, n: usize) -> Result<Array1<f64>> {
-    let array = FileArray::read_content(path, "forces", TableContent::Rows(n))?;
+/// Reads one finite number for each of `n` frames or touches from the array `name` of a file. `each` is the word for one of them.
+///
+/// # Errors
+/// If the file cannot be read, or contains texts, other numbers, or another number of them.
+pub(crate) fn numbers_of(path: &Path, name: &str, (n, each): (usize, &str)) -> Result<Array1<f64>> {
+    let array = FileArray::read_content(path, name, TableContent::Rows(n))?;
     if array.kind == ElementKind::Text {
         return Err(Error::input(path.display(), "texts", "finite numbers"));
     }
@@ -185,7 +188,7 @@ fn numbers_of(path: &Path, n: usize) -> Result<Array1<f64>> {
         return Err(Error::input(
             path.display(),
             given,
-            format!("{n}, one for each frame"),
+            format!("{n}, one for each {each}"),
         ));
     }
     match numbers.iter().find(|number| !number.is_finite()) {

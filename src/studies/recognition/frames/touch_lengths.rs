@@ -116,7 +116,7 @@ pub(crate) fn lengths_of_file(
 }
 
 /// Returns an error if the array `name` of a file does not contain exactly one value per touch.
-pub(super) fn one_each(
+pub(crate) fn one_each(
     (path, name): (&Path, &str),
     (n_given, n): (usize, usize),
     frames: &Path,
