@@ -423,15 +423,18 @@ def test_the_program_of_the_guide_trains_and_predicts(tmp_path: Path, monkeypatc
         bt.run(tmp_path / "study.toml", tmp_path / "out")
 
 
-def test_the_python_of_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_python_of_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("sklearn")
     pytest.importorskip("pandas")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "experiments").mkdir()
     (tmp_path / "experiments" / "quickstart.toml").write_text(bt._core.toml_of(bt.study._json(with_keys(classifier="nearest_centroid"))))
-    code = re.findall(r"^```python\n(.*?)^```", GUIDE, re.M | re.S)[0]
-    exec(compile(code, "own_methods.md", "exec"), {})
+    variables: dict[str, object] = {}
+    for code in re.findall(r"^```python\n(.*?)^```", GUIDE, re.M | re.S)[:2]:
+        exec(compile(code, "own_methods.md", "exec"), variables)
     assert "tuned" in (tmp_path / "results" / "mine" / "summary.csv").read_text()
+    # A parameter of an own estimator becomes a column.
+    assert capsys.readouterr().out.splitlines()[-5].split() == ["svc_c"]
 
 
 FACTOR = 2.0

@@ -19,6 +19,11 @@ pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM")
 }
 
+/// Returns the memory that this process uses now, bytes; `None` if the system does not report it.
+pub(crate) fn memory_in_use() -> Option<u64> {
+    kilobytes("/proc/self/status", "VmRSS")
+}
+
 /// Checks that a required memory (bytes) is at most the limit (`None` for no limit); the error states the limit.
 pub(crate) fn check_memory(
     bytes: f64,

@@ -321,7 +321,7 @@ fn frames_take_memory_in_proportion() {
     let bytes = |frames: usize| {
         let text = with(&format!("frames = {frames}"), "");
         let many = text.replace("per_object = 32", "per_object = 60000");
-        recognition_scale(&Study::new(&many).of_items()).bytes
+        recognition_scale(&Study::new(&many).of_items()).stages[0].bytes
     };
     // At least a bit for each of 256 taxels, and at most a number, too.
     let more = (bytes(4) - bytes(1)) / (3.0 * 6.0 * 60_000.0);

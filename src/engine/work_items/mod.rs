@@ -16,6 +16,6 @@ pub(crate) mod work_item;
 pub use crate::engine::work_items::pending::PendingItems;
 pub use crate::engine::work_items::record::ItemRows;
 pub use crate::engine::work_items::run_options::{Part, RunOptions};
-pub use crate::engine::work_items::scale::Scale;
+pub use crate::engine::work_items::scale::{Scale, Stage};
 pub use crate::engine::work_items::shared::Shared;
 pub use crate::engine::work_items::study_run::{ItemFailure, StudyRun};

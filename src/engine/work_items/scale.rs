@@ -1,11 +1,13 @@
 //! Size of a study, estimated before it runs.
 
-use crate::inputs::memory::Bytes;
+use crate::inputs::memory::{Bytes, memory_in_use};
 use crate::spelling::counted;
 
-/// Approximate memory of the program without the data of the study, bytes. It contains the program itself, its objects, and the pictures that it draws at
-/// the end.
-const PROGRAM_BYTES: f64 = 2e8;
+/// Approximate memory of the pictures and the page that a study draws at the end, bytes.
+const DRAWING_BYTES: f64 = 8e7;
+
+/// Memory of the program if the system does not report it, bytes.
+const PROGRAM_BYTES: f64 = 1.2e8;
 
 /// Size of a study: its numbers of objects, touches and configurations, and its memory.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,14 +18,24 @@ pub struct Scale {
     pub touches: String,
     /// Number of configurations of the study.
     pub n_configurations: usize,
-    /// Approximate memory of the data that all work items share, bytes, without the memory of the program itself.
+    /// Approximate memory of the data that the whole run keeps, bytes, beside the program and the loaded study.
     pub bytes: f64,
-    /// Approximate memory of one work item while it is computed, bytes.
-    pub item_bytes: f64,
+    /// Stages of the run, one after the other. Results are drawn in a further stage.
+    pub stages: Vec<Stage>,
+}
+
+/// Memory of a stage of a study: nothing of it remains in the next stage.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stage {
+    /// Approximate memory of the data that all work items of the stage share, bytes.
+    pub bytes: f64,
+    /// Approximate memory of each work item while it is computed, bytes.
+    pub items: Vec<f64>,
 }
 
 impl Scale {
-    /// Returns the approximate memory of a run that computes one work item at a time, bytes.
+    /// Returns the approximate memory of a run that computes one work item at a time, bytes. The memory that the process uses now counts as the memory of the
+    /// program and the loaded study.
     pub fn least_bytes(&self) -> f64 {
         self.bytes_at_once(1)
     }
@@ -52,6 +64,12 @@ impl Scale {
     }
 
     fn bytes_at_once(&self, n_items: usize) -> f64 {
-        PROGRAM_BYTES + self.bytes + n_items as f64 * self.item_bytes
+        let most = self.stages.iter().map(|stage| {
+            let mut items = stage.items.clone();
+            items.sort_by(|a, b| b.total_cmp(a));
+            stage.bytes + items.iter().take(n_items).sum::<f64>()
+        });
+        let loaded = memory_in_use().map_or(PROGRAM_BYTES, |bytes| bytes as f64);
+        loaded + self.bytes + most.fold(DRAWING_BYTES, f64::max)
     }
 }

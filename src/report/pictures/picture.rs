@@ -40,7 +40,7 @@ impl Picture {
         let info = reader.next_frame(&mut elements).map_err(unfit)?;
         let (width, height) = (info.width as usize, info.height as usize);
         let n_samples = info.color_type.samples();
-        let rgb = without_opacity(&elements, n_samples);
+        let rgb = without_opacity(elements, n_samples);
         Ok(Self { width, height, rgb })
     }
 

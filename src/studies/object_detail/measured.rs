@@ -15,27 +15,27 @@ use std::path::Path;
 /// Object with all its models, including the exact mesh.
 pub(super) struct Measured<'a> {
     pub mesh: &'a NamedMesh,
-    surface: Surface,
     pub truth: Truth,
     /// Models of the object; the first one is the mesh itself.
     pub variants: Vec<Variant>,
 }
 
 impl<'a> Measured<'a> {
+    /// Computes all models of an object; also returns the surface of its mesh, which only their errors need.
     pub fn new(
         (plan, packings): (&ObjectDetailPlan, Option<&Path>),
         mesh: &'a NamedMesh,
-    ) -> Result<Self> {
+    ) -> Result<(Self, Surface)> {
         let surface = Surface::new(mesh.mesh.clone());
         let variants = variants(plan, &mesh.place, &surface, packings)?;
         let exact = (&mesh.name[..], variants[0].model.clone());
         let seed = Seed::new(plan.spec.seed);
-        Ok(Self {
+        let measured = Self {
             truth: Truth::new(exact, &plan.array, &plan.placement, &seed)?,
             mesh,
-            surface,
             variants,
-        })
+        };
+        Ok((measured, surface))
     }
 
     /// Returns the configuration of each model of the object, together with the result of `row`.
@@ -52,9 +52,13 @@ impl<'a> Measured<'a> {
             .collect()
     }
 
-    pub fn models(&self, plan: &ObjectDetailPlan) -> Vec<(DetailConfiguration, DetailScore)> {
+    pub fn models(
+        &self,
+        plan: &ObjectDetailPlan,
+        surface: &Surface,
+    ) -> Vec<(DetailConfiguration, DetailScore)> {
         let n_points = plan.spec.object_detail.surface_points;
-        self.rows(|variant| self.score(variant, n_points))
+        self.rows(|variant| self.score(variant, (surface, n_points)))
     }
 
     pub fn times(&self) -> Vec<(DetailConfiguration, DetailTime)> {
@@ -66,8 +70,8 @@ impl<'a> Measured<'a> {
     }
 
     /// Returns the distances between the surfaces of a model and its mesh, measured at `n_points` points, and the deflection errors of the model.
-    fn score(&self, variant: &Variant, n_points: usize) -> DetailScore {
-        let (surface, truth) = (&self.surface, &self.truth);
+    fn score(&self, variant: &Variant, (surface, n_points): (&Surface, usize)) -> DetailScore {
+        let truth = &self.truth;
         let model = &variant.model;
         // An open surface has no inside in which parts could be hidden.
         let body = match surface.is_closed() {

@@ -1,11 +1,13 @@
 //! Object-detail study: computes models and their errors on all threads, and then computing times on one thread.
 
 use crate::engine::work_items::pending::PendingItems;
-use crate::engine::work_items::scale::Scale;
+use crate::engine::work_items::scale::{Scale, Stage};
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::keys::KeyAbout;
 use crate::inputs::object_files::{NamedMesh, load_named_meshes, objects_content};
+use crate::inputs::packings::packing_path;
+use crate::inputs::units::MM;
 use crate::studies::model_recognition::check_apart;
 use crate::studies::object_detail::measured::Measured;
 use crate::studies::object_detail::plan::ObjectDetailPlan;
@@ -73,6 +75,13 @@ fn times_item(object: usize) -> usize {
     models_item(object) + 1
 }
 
+/// Memory of a triangle in an exact model of a mesh, or in the surface from which its other models are computed, bytes.
+const TRIANGLE_BYTES: f64 = 600.0;
+/// Memory of a sphere of a model, bytes. A model has about as many spheres as the mesh has vertices.
+const SPHERE_BYTES: f64 = 70.0;
+/// Memory of the samples of a surface while it is packed, bytes.
+const PACKING_BYTES: f64 = 6e7;
+
 impl ObjectDetailStudy {
     /// Computes all models of an object and stores their errors. If the computation fails, all work items that need these models fail, including those in
     /// `learners`.
@@ -83,18 +92,16 @@ impl ObjectDetailStudy {
         left: &PendingItems<DetailRows>,
     ) -> Result<Option<Measured<'_>>> {
         let (mesh, mut made) = (&self.meshes[object], None);
+        let measured = || Measured::new((&self.plan, self.packings.as_deref()), mesh);
         left.finish(models_item(object), || {
-            let object = made.insert(Measured::new((&self.plan, self.packings.as_deref()), mesh)?);
-            Ok((object.models(&self.plan), Vec::new(), Vec::new()))
+            let (object, surface) = measured()?;
+            let scores = object.models(&self.plan, &surface);
+            made = Some(object);
+            Ok((scores, Vec::new(), Vec::new()))
         })?;
         let needed = [&[times_item(object)], learners].concat();
         // If the models are not computed, their rows are in the journal.
-        left.prepare(&needed, || {
-            made.map_or_else(
-                || Measured::new((&self.plan, self.packings.as_deref()), mesh),
-                Ok,
-            )
-        })
+        left.prepare(&needed, || made.map_or_else(|| Ok(measured()?.0), Ok))
     }
 }
 
@@ -151,6 +158,18 @@ impl Study for ObjectDetailStudy {
         let n_classifiers = learned.map_or(0, |learned| learned.classifiers.len());
         let n_taxels = self.plan.array.n_taxels();
         let n_measurements = learned.map_or(0, |learned| learned.measurements);
+        let models = self.meshes.iter().map(|NamedMesh { mesh, .. }| {
+            let n_spheres = (n_levels - 1) * mesh.vertices().len();
+            let exact = TRIANGLE_BYTES * mesh.n_triangles() as f64;
+            let kept = exact + SPHERE_BYTES * n_spheres as f64;
+            let tolerances = &self.plan.spec.object_detail.tolerances_mm;
+            let is_packed = tolerances.iter().all(|mm| {
+                let folder = self.packings.as_deref();
+                folder.is_some_and(|folder| packing_path(folder, mesh, mm * MM).exists())
+            });
+            [kept, exact + if is_packed { 0.0 } else { PACKING_BYTES }]
+        });
+        let models: Vec<[f64; 2]> = models.collect();
         Scale {
             objects: format!("{n_objects} meshes, in {n_levels} models each"),
             touches: match n_learned {
@@ -158,9 +177,16 @@ impl Study for ObjectDetailStudy {
                 n => format!("{per_object} of each model, {n} of each for recognition"),
             },
             n_configurations: n_levels * (n_objects + n_classifiers),
-            bytes: 8.0 * (n_objects * n_learned * n_levels * n_measurements) as f64,
-            // Memory of the frames before and after the signal chain.
-            item_bytes: 12.0 * (n_learned * n_taxels) as f64,
+            bytes: models.iter().map(|[kept, _]| kept).sum::<f64>()
+                + 8.0 * (n_objects * n_learned * n_levels * n_measurements) as f64,
+            stages: vec![Stage {
+                bytes: 0.0,
+                // While models are computed, then while they are touched.
+                items: models
+                    .iter()
+                    .map(|[_, made]| made.max(12.0 * (n_learned * n_taxels) as f64))
+                    .collect(),
+            }],
         }
     }
 

@@ -1,15 +1,14 @@
 //! Memory estimate of a reconstruction study.
 
+use crate::engine::work_items::scale::Stage;
 use crate::sensing::{Basis, PCA_ATOMS, Solver};
 use crate::studies::reconstruction::plan::ReconstructionPlan;
 
-/// Memory of the picture of sample frames, bytes.
-const PICTURE_BYTES: f64 = 4e7;
-/// Part of the memory of every study that is needed for its pictures alone, bytes. The matrices of the configurations are freed before.
-const DRAWING_BYTES: f64 = 1.6e8;
+/// Memory of the charts and of the picture of sample frames, bytes.
+const PICTURE_BYTES: f64 = 1.4e8;
 
-/// Returns the memory of the frames and matrices of a study with `n_touches` touches, bytes.
-pub(super) fn memory(plan: &ReconstructionPlan, n_touches: usize) -> f64 {
+/// Returns the memory of the frames of a study with `n_touches` touches, bytes, which the whole run keeps, and the memory of its stages.
+pub(super) fn memory(plan: &ReconstructionPlan, n_touches: usize) -> (f64, Vec<Stage>) {
     let wanted = &plan.spec.reconstruction;
     let n = plan.array.n_taxels() as f64;
     let n_test = (n_touches as f64 * wanted.test_fraction).ceil();
@@ -60,6 +59,10 @@ pub(super) fn memory(plan: &ReconstructionPlan, n_touches: usize) -> f64 {
         };
         (ensemble.about().bytes)(m, n) + 8.0 * (sensed + linear + n_test * m)
     });
-    let matrices = matrices.fold(0.0, f64::max);
-    PICTURE_BYTES + kept + (matrices - DRAWING_BYTES).max(0.0)
+    let stages = [matrices.fold(0.0, f64::max), PICTURE_BYTES];
+    let stage = |bytes: f64| Stage {
+        bytes,
+        items: Vec::new(),
+    };
+    (kept, stages.map(stage).to_vec())
 }

@@ -114,12 +114,13 @@ impl Study for ReconstructionStudy {
 
     fn scale(&self) -> Scale {
         let n_touches: usize = self.touched.iter().map(|t| t.touches.len()).sum();
+        let (bytes, stages) = memory(&self.plan, n_touches);
         Scale {
             objects: self.touched.len().to_string(),
             touches: format!("{n_touches} on one array"),
             n_configurations: self.plan.configurations().len(),
-            bytes: memory(&self.plan, n_touches),
-            ..Scale::default()
+            bytes,
+            stages,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Stability study: simulates all configurations and computes the result tables.
 
 use crate::engine::work_items::pending::PendingItems;
-use crate::engine::work_items::scale::Scale;
+use crate::engine::work_items::scale::{Scale, Stage};
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::keys::KeyAbout;
@@ -99,7 +99,10 @@ impl Study for StabilityPlan {
             objects: "a ball and a plunger".to_owned(),
             touches: format!("one a configuration, on up to {most} taxels"),
             n_configurations: self.configurations.len(),
-            item_bytes: bytes.fold(0.0, f64::max),
+            stages: vec![Stage {
+                bytes: 0.0,
+                items: bytes.collect(),
+            }],
             ..Scale::default()
         }
     }

@@ -1,7 +1,7 @@
 //! Whole-body study: training comes first, then scenes and scaling series one after the other, so that timings do not disturb each other.
 
 use crate::engine::work_items::pending::PendingItems;
-use crate::engine::work_items::scale::Scale;
+use crate::engine::work_items::scale::{Scale, Stage};
 use crate::engine::work_items::shared::Shared;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::{Error, Result};
@@ -115,8 +115,8 @@ impl Study for WholeBodyPlan {
                 self.recognition().n_touches()
             ),
             n_configurations: self.compressions.len() + self.scenes.len(),
-            bytes: self.memory(),
-            ..Scale::default()
+            bytes: self.size.body_bytes,
+            stages: vec![self.memory()],
         }
     }
 
@@ -247,11 +247,8 @@ impl WholeBodyPlan {
         ladders.map_or_else(Vec::new, rungs)
     }
 
-    /// Returns the approximate memory of the skins, the compressions and the pictures, bytes.
-    fn memory(&self) -> f64 {
-        // Memory of the picture of the body, and part of the memory of every study that is needed for its pictures alone.
-        const PICTURE_BYTES: f64 = 9e7;
-        const DRAWING_BYTES: f64 = 1.15e8;
+    /// Returns the approximate memory of the states of the skin, the compressions and the scaling series.
+    fn memory(&self) -> Stage {
         // Memory of a taxel of a scaling series, and of a non-zero entry of a measurement matrix.
         const LADDER_BYTES: f64 = 10.0;
         const ENTRY_BYTES: f64 = 16.0;
@@ -265,9 +262,10 @@ impl WholeBodyPlan {
         let ladders = self.spec.whole_body.ladders.iter();
         let ladders = ladders.flat_map(|of| of.taxels.iter().chain([&of.taxels_at_touch]));
         let largest = ladders.copied().max().unwrap_or(0) as f64;
-        let states = self.size.state_bytes * rayon::current_num_threads() as f64;
-        let measured = states + compressions.sum::<f64>() + rows + LADDER_BYTES * largest;
-        self.size.body_bytes + PICTURE_BYTES.max(measured - DRAWING_BYTES)
+        Stage {
+            bytes: compressions.sum::<f64>() + rows + LADDER_BYTES * largest,
+            items: vec![self.size.state_bytes; rayon::current_num_threads()],
+        }
     }
 
     /// Returns the robot covered with skin, whose neighbouring taxels are `pitch` metres apart.

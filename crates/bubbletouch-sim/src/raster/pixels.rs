@@ -35,12 +35,13 @@ pub fn halved(rgb: &[u8], width: usize) -> Vec<u8> {
 ///
 /// # Panics
 /// If `n_samples` is less than 3.
-pub fn without_opacity(samples: &[u8], n_samples: usize) -> Vec<u8> {
-    let mut rgb = Vec::with_capacity(samples.len() / n_samples * 3);
-    for pixel in samples.chunks_exact(n_samples) {
-        rgb.extend_from_slice(&pixel[..3]);
+pub fn without_opacity(mut samples: Vec<u8>, n_samples: usize) -> Vec<u8> {
+    let n_pixels = samples.len() / n_samples;
+    for pixel in 1..n_pixels {
+        samples.copy_within(n_samples * pixel..n_samples * pixel + 3, 3 * pixel);
     }
-    rgb
+    samples.truncate(3 * n_pixels);
+    samples
 }
 
 /// Replaces each value of a picture by the value of another picture of equal size if the other value is darker.
@@ -142,7 +143,7 @@ mod tests {
 
     #[test]
     fn opacity_is_left_out_and_ink_darkens() {
-        let mut rgb = without_opacity(&[1, 2, 3, 255, 4, 5, 6, 0], 4);
+        let mut rgb = without_opacity(vec![1, 2, 3, 255, 4, 5, 6, 0], 4);
         assert_eq!(rgb, [1, 2, 3, 4, 5, 6]);
         darken(&mut rgb, &[255, 0, 3, 3, 255, 255]);
         assert_eq!(rgb, [1, 0, 3, 3, 5, 6]);

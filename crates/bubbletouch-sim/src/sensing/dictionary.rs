@@ -120,7 +120,7 @@ impl Dictionary {
     ) -> Result<Self> {
         check_training(grid, frames, n_atoms)?;
         if basis == Basis::Pca {
-            let pca = Pca::new(frames, n_atoms.unwrap_or(PCA_ATOMS), seed);
+            let pca = Pca::new(frames.to_owned(), n_atoms.unwrap_or(PCA_ATOMS), seed);
             return Ok(Self::of_components(grid, pca));
         }
         let mut dictionary = Self::complete(basis, grid)?;
@@ -145,7 +145,7 @@ impl Dictionary {
         Ok(dictionary)
     }
 
-    fn of_components(grid: (usize, usize), pca: Pca) -> Self {
+    pub(super) fn of_components(grid: (usize, usize), pca: Pca) -> Self {
         let rest = (pca.total_variance - pca.variance.sum()) / pca.mean.len() as f64;
         Self {
             basis: Basis::Pca,
@@ -283,7 +283,7 @@ fn pick(all: impl Iterator<Item = f64>, chosen: &[usize], mut row: ArrayViewMut1
     }
 }
 
-fn check_training(
+pub(super) fn check_training(
     grid: (usize, usize),
     frames: ArrayView2<f64>,
     n_atoms: Option<usize>,

@@ -3,7 +3,8 @@
 //! Statistics of few frames overfit: images of training touches would be more accurate than images of test touches. A classifier trained on accurate images
 //! would misclassify the less accurate ones. Shifted and mirrored copies of the frames reduce this effect.
 
-use super::{Basis, Dictionary};
+use super::dictionary::{Dictionary, check_training};
+use super::pca::Pca;
 use crate::error::Result;
 use crate::random::Seed;
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
@@ -50,7 +51,8 @@ impl ImagePrior {
     ) -> Result<Self> {
         let k = N_COMPONENTS.min(grid.0 * grid.1);
         let training = with_copies(readings.training, grid, n_frames, seed);
-        let dictionary = Dictionary::learned(Basis::Pca, grid, training.view(), Some(k), seed)?;
+        check_training(grid, training.view(), Some(k))?;
+        let dictionary = Dictionary::of_components(grid, Pca::new(training, k, seed));
         let n_untouched = readings.untouched.nrows().max(1) as f64;
         let atoms = dictionary.atoms(0..dictionary.n_atoms());
         let of_noise = readings.untouched.dot(&atoms.t());

@@ -7,7 +7,7 @@
 use super::symmetric_eigen::symmetric_eigen;
 use crate::random::Seed;
 use ndarray::linalg::general_mat_mul;
-use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, Axis, s};
+use ndarray::{Array1, Array2, ArrayViewMut1, Axis, s};
 use ndarray_rand::RandomExt;
 use rand_distr::StandardNormal;
 
@@ -35,17 +35,19 @@ pub(super) struct Pca {
 }
 
 impl Pca {
-    /// Computes at most k principal components of frames (n_frames × n_taxels), or fewer if the rank of the frames is lower.
-    pub(super) fn new(frames: ArrayView2<f64>, k: usize, seed: &Seed) -> Self {
+    /// Computes at most k principal components of frames (n_frames × n_taxels), or fewer if the rank of the frames is lower. The frames are centred in place.
+    pub(super) fn new(mut frames: Array2<f64>, k: usize, seed: &Seed) -> Self {
         let (n_frames, n) = frames.dim();
         let mean = frames
             .mean_axis(Axis(0))
             .unwrap_or_else(|| Array1::zeros(n));
-        let centred = &frames - &mean;
+        frames -= &mean;
+        let centred = frames;
         let n_directions = (k + OVERSAMPLING).min(n_frames).min(n);
         let mut rng = seed.named("pca").rng();
         let random = Array2::random_using((n_directions, n_frames), StandardNormal, &mut rng);
         let mut basis = orthonormal_rows(random.dot(&centred));
+        drop(random);
         for _ in 0..ITERATIONS {
             let across = orthonormal_rows(basis.dot(&centred.t()));
             basis = orthonormal_rows(across.dot(&centred));
@@ -128,7 +130,7 @@ mod tests {
     #[test]
     fn components_are_those_of_the_full_eigendecomposition() {
         let frames = frames(50, 30);
-        let pca = Pca::new(frames.view(), 5, &Seed::new(1));
+        let pca = Pca::new(frames.clone(), 5, &Seed::new(1));
         let centred = &frames - &frames.mean_axis(Axis(0)).unwrap();
         let covariance = centred.t().dot(&centred) / 50.0;
         let (values, vectors) = symmetric_eigen(covariance.view());
@@ -144,16 +146,13 @@ mod tests {
     #[test]
     fn frames_that_span_few_directions_have_few_components() {
         let frames = frames(40, 25);
-        let pca = Pca::new(frames.view(), 25, &Seed::new(1));
+        let pca = Pca::new(frames, 25, &Seed::new(1));
         let unit = pca.components.dot(&pca.components.t());
         let error = unit - Array2::<f64>::eye(pca.components.nrows());
         assert!(error.iter().all(|e| e.abs() < 1e-12));
         assert!(pca.components.nrows() <= 7, "seven cosines");
         assert!((pca.variance.sum() / pca.total_variance - 1.0).abs() < 1e-10);
         let same = Array2::from_elem((3, 4), 2.0);
-        assert_eq!(
-            Pca::new(same.view(), 2, &Seed::new(1)).components.nrows(),
-            0
-        );
+        assert_eq!(Pca::new(same, 2, &Seed::new(1)).components.nrows(), 0);
     }
 }

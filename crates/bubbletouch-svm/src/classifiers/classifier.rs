@@ -293,19 +293,22 @@ impl Classifier {
         })
     }
 
-    /// Estimates the size of the kernel values in memory while the classifier is trained on classes of equal size, bytes. C is chosen on `n_choice` rows, or on
-    /// none if it is given. Classifiers other than kernel SVMs store no kernel values.
-    pub fn kernel_bytes(
+    /// Estimates the memory of training on classes of equal size, bytes, beside the given rows: scaled rows, rows sorted by class, and kernel values. C is
+    /// chosen on `n_choice` rows, or on none if it is given. Classifiers other than kernel SVMs store no kernel values.
+    pub fn training_bytes(
         &self,
         [n_rows, n_choice]: [usize; 2],
         n_classes: usize,
         n_features: usize,
     ) -> usize {
-        let bytes = |params: SvmParams| {
-            let trained = params.kernel_bytes(n_rows, n_classes, n_features);
-            trained.max(params.choice_bytes(n_choice))
+        // Folds are chosen on a copy of their rows.
+        let rows = |n_rows: usize, n_copies: usize| 8 * n_copies * n_rows * n_features;
+        let (trained, chosen) = (rows(n_rows, 2), rows(n_choice, 3));
+        let Some(params) = self.kernel_svm(1.0) else {
+            return trained.max(chosen);
         };
-        self.kernel_svm(1.0).map_or(0, bytes)
+        let trained = trained + params.kernel_bytes(n_rows, n_classes, n_features);
+        trained.max(chosen + params.choice_bytes(n_choice))
     }
 
     /// Checks that the parameters allow training on `n_rows` rows.

@@ -53,6 +53,11 @@ pub struct SensedBy {
 }
 
 impl Measurements {
+    /// Drops the measurements and keeps the features of images.
+    pub(crate) fn drop_values(&mut self) {
+        self.values = Array2::zeros((self.values.nrows(), 0));
+    }
+
     /// Returns the numbers of all readings of the given touches, ordered by reading, then by touch.
     pub fn readings(&self, touches: &[usize]) -> Vec<usize> {
         let n_read = self.values.nrows() / (self.n_touches * self.n_frames);

@@ -143,10 +143,10 @@ pub fn touch_content(plan: &Plan) -> String {
 }
 
 /// Memory that a touch occupies, bytes: its pose, its label and its reading parameters.
-pub(super) const TOUCH_BYTES: f64 = 400.0;
+const TOUCH_BYTES: f64 = 400.0;
 
 /// Memory of one touch in the split of one trial, bytes.
-pub(super) const SPLIT_BYTES: f64 = 8.0;
+const SPLIT_BYTES: f64 = 8.0;
 
 /// Checks whether the touches of `n_classes` classes, with one split per trial, fit into `ceiling` bytes (`None`: no limit).
 ///

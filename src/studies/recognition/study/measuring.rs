@@ -1,5 +1,6 @@
 //! Computation of the work items: simulates touches once per array, measures each group once per trial, and evaluates each pending family.
 
+use crate::engine::at_once::run_at_once;
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::work_items::pending::PendingItems;
 use crate::error::{Error, Result};
@@ -12,20 +13,20 @@ use crate::studies::recognition::study::rows::{ConfigurationRow, RecognitionRows
 use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::recognition::training::trial::Trial;
-use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// Measurement to compute: a group of configurations in one trial, and the group's pending families.
 pub(crate) struct Job<'a> {
-    study: &'a RecognitionStudy,
+    pub study: &'a RecognitionStudy,
     /// Index of the group; among groups with equal measurements, the index of the first group.
-    group: usize,
+    pub group: usize,
     trial: usize,
-    n_measurements: usize,
+    pub n_measurements: usize,
     /// Training rows to which the measurements are fitted.
     rows: TrainingRows,
-    families: Vec<usize>,
+    pub families: Vec<usize>,
 }
 
 impl RecognitionStudy {
@@ -96,7 +97,12 @@ impl RecognitionStudy {
     /// Returns each set of touches that pending work items need, with the measurements to compute from its frames.
     fn jobs_left(&self, left: &PendingItems<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
         let touches = 0..self.touch_sets.len();
-        let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
+        let jobs = touches.map(|touches| {
+            let mut jobs = self.jobs(touches, 0..self.n_trials(), |item| left.has(item));
+            // The largest measurements are in memory together, not at the end.
+            jobs.sort_by_cached_key(|job| Reverse(job.bytes()[0] as u64));
+            (touches, jobs)
+        });
         let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
             !jobs.is_empty() || left.has(self.touches_item(*touches))
         };
@@ -106,7 +112,12 @@ impl RecognitionStudy {
     /// Returns the measurements of a set of touches that pending families of configurations need. If smaller sets of measurements are prefixes of larger ones,
     /// a group is measured once for all its configurations. Otherwise, each number m of measurements is measured separately. So are training rows to which
     /// something is fitted.
-    fn jobs(&self, left: &PendingItems<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
+    pub(crate) fn jobs(
+        &self,
+        touches: usize,
+        trials: Range<usize>,
+        is_left: impl Fn(usize) -> bool,
+    ) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
             let group = &self.groups[family.group];
@@ -115,14 +126,14 @@ impl RecognitionStudy {
             }
         }
         let mut jobs = Vec::new();
-        for trial in 0..self.n_trials() {
+        for trial in trials {
             for (&group, families) in &alike {
                 let measured = self.group(group).1;
                 let is_nested = measured.ensemble.is_prefix_nested();
                 for n_measurements in measured.projected() {
                     let is_served = |&family: &usize| {
                         (is_nested || self.family(family).1[0].measurements == n_measurements)
-                            && left.has(self.family_item(trial, family))
+                            && is_left(self.family_item(trial, family))
                     };
                     let mut by_rows: Vec<(TrainingRows, Vec<usize>)> = Vec::new();
                     for family in families.iter().copied().filter(is_served) {
@@ -165,7 +176,7 @@ impl RecognitionStudy {
         for (tested, jobs) in by_tested {
             let run = |tested: &Frames| {
                 let frames = [&frames, tested];
-                jobs.par_iter().try_for_each(|job| job.run(left, frames))
+                run_at_once(&jobs, |job| job.run(left, frames))
             };
             if tested == on {
                 run(&frames)?;
@@ -235,13 +246,15 @@ impl Job<'_> {
     /// Computes the measurements of a group of configurations, then evaluates the group's pending families.
     fn run(&self, left: &PendingItems<RecognitionRows>, frames: [&Frames; 2]) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
-        let measured = left.prepare(&need, || self.measure(frames))?;
-        let cpu_s = measured.as_ref().map_or(0.0, |measured| measured.cpu_s);
-        let Some(measured) = measured else {
+        let Some(mut measured) = left.prepare(&need, || self.measure(frames))? else {
             return Ok(());
         };
-        let families = self.families.par_iter().zip(&need).enumerate();
-        families.try_for_each(|(place, (&family, &item))| {
+        if !self.reads_values() {
+            measured.drop_values();
+        }
+        let cpu_s = measured.cpu_s;
+        let families = self.families.iter().zip(&need).enumerate();
+        run_at_once(families, |(place, (&family, &item))| {
             left.finish(item, || {
                 // The row of the measured touches is recorded only once.
                 let touches = (place == 0).then(|| TouchRow {
@@ -255,6 +268,15 @@ impl Job<'_> {
                 ))
             })
         })
+    }
+
+    /// Returns whether a family reads the measurements themselves, and not only features of images.
+    pub(crate) fn reads_values(&self) -> bool {
+        let mut configurations = self
+            .families
+            .iter()
+            .map(|&one| &self.study.family(one).1[0]);
+        configurations.any(|configuration| configuration.of_images().is_none())
     }
 
     fn measure(&self, frames: [&Frames; 2]) -> Result<Measurements> {

@@ -1,73 +1,29 @@
 //! Memory estimate of a recognition study: frames, measurements, and data of the training.
 
-use crate::engine::work_items::scale::Scale;
-use crate::sensing::N_COMPONENTS;
+use crate::engine::work_items::scale::{Scale, Stage};
+use crate::sensing::{Ensemble, N_COMPONENTS};
 use crate::studies::recognition::measurements::measurement::UNTOUCHED;
 use crate::studies::recognition::measurements::measurement_inputs::MeasurementInputs;
-use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::image_features::join_values;
-use crate::studies::recognition::study::load::{SPLIT_BYTES, TOUCH_BYTES};
+use crate::studies::recognition::study::measuring::Job;
 use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::sweep::configurations::StudyPart;
-use crate::studies::recognition::sweep::learned_frames::WITH_COPIES;
+use crate::studies::recognition::sweep::learned_frames::{LEARNED_FRAMES, WITH_COPIES};
 use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
-use bubbletouch_sim::frame_coding::most_bytes;
 use bubbletouch_svm::Multiclass;
-use std::collections::HashSet;
-use std::sync::Arc;
 
 /// Memory of the result rows of one configuration in one trial, bytes.
 const CELL_BYTES: f64 = 4e3;
-/// Memory per value of the training rows, bytes. The memory covers four copies of a value: original, scaled, sorted by class, and as support vectors.
-const TRAINING_BYTES: f64 = 32.0;
-/// Memory per feature value of the test rows, bytes. The memory covers three copies of a value: original, scaled, and in the format of the kernel.
-const TEST_BYTES: f64 = 20.0;
+/// Memory of a number, bytes.
+const NUMBER: f64 = 8.0;
 /// Memory of an encoded frame beside its values, bytes: its place in the list and the header of its allocation.
 const FRAME_BYTES: f64 = 32.0;
-/// Memory of a score and of its share in decisions on several touches, bytes.
-const SCORE_BYTES: f64 = 16.0;
+/// Number of directions in which principal components are sought beyond the components.
+const OVERSAMPLING: f64 = 16.0;
 
 /// Returns the size of a recognition study: numbers of work items, memory and disk space.
 pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
-    type Placed<'a> = (&'a StudyPart, &'a MeasurementGroup);
-    let n_values = |(part, group): Placed| part.plan.arrays[group.array].n_values();
-    let n_frames = |(part, group): Placed| (part.sweep.labels.len() * group.frames) as f64;
-    let m = |on: Placed| {
-        let most = on.1.projected().into_iter().max().unwrap_or(0);
-        on.1.ensemble
-            .n_measurements(most, on.0.plan.arrays[on.1.array].n_values()) as f64
-    };
-    let n_read = |on: Placed| n_frames(on) * on.1.n_readings(&on.0.plan) as f64;
-    let measured = |on: Placed| {
-        let matrix = on.1.ensemble.about().bytes;
-        let of_images = on.1.features_of_images().into_iter();
-        let shapes = on.0.plan.arrays[on.1.array].image_shapes();
-        let numbers: usize = of_images.map(|one| join_values(one.join, &shapes)).sum();
-        let learned = learned_bytes(&on.1.inputs(&on.0.plan), n_values(on) as f64)
-            + 8.0 * n_read(on) * numbers as f64;
-        8.0 * n_read(on) * m(on) + matrix(m(on), n_values(on) as f64) + learned
-    };
-    let groups = || {
-        let parts = study.parts().iter();
-        parts.flat_map(|part| part.sweep.groups.iter().map(move |group| (part, group)))
-    };
-    let learned = |(part, group): Placed| {
-        let n_test = part.sweep.splits.iter().map(|split| split.test.len());
-        let (n_test, n_classes) = (n_test.max().unwrap_or(0), part.touched.class_names().len());
-        let n_read = n_classes * group.n_readings(&part.plan);
-        let bytes =
-            |family: &[Configuration]| family_bytes(part, family, n_test, (n_classes, n_read));
-        largest(group.families().map(bytes))
-    };
-    // Separate test touches are in memory together with the training touches.
-    let n_made = |(part, _): Placed| 1.0 + f64::from(u8::from(part.plan.tested.is_some()));
-    let most = |g: &Placed| n_made(*g) * n_frames(*g) * most_bytes(n_values(*g)) as f64;
-    let largest_frames = groups().max_by(|a, b| most(a).total_cmp(&most(b)));
-    let frames = largest_frames.map_or(0.0, |g| {
-        let array = (&g.0.plan.arrays[g.1.array], g.1.frames);
-        n_made(g) * n_frames(g) * (g.0.touched.frame_bytes(array) + FRAME_BYTES)
-    });
     let n_touches = study.of_parts(|part| part.sweep.labels.len().to_string());
     let mut touches = match study.n_arrays() {
         1 => format!("{n_touches} on one array"),
@@ -77,50 +33,88 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         keys if keys.is_empty() => {}
         keys => touches += &format!("; test touches with {keys}"),
     }
+    let frames = |set: usize| {
+        let (touched, array, n_frames) = study.on(set);
+        let n_frames_in_all = (touched.labels().len() * n_frames) as f64;
+        n_frames_in_all * (touched.frame_bytes((array, n_frames)) + FRAME_BYTES)
+    };
+    let frames: Vec<f64> = (0..study.touch_sets.len()).map(frames).collect();
+    let n_alike = study.n_trials().min(rayon::current_num_threads());
+    let stages = frames.iter().enumerate().map(|(set, bytes)| {
+        let jobs = study.jobs(set, 0..1, |_| true);
+        // Separate test touches are in memory together with the training touches.
+        let tested = jobs.iter().map(|job| study.groups[job.group].tested);
+        let tested = tested.filter(|tested| *tested != set);
+        let items = jobs.iter().flat_map(Job::bytes);
+        Stage {
+            bytes: bytes + largest(tested.map(|tested| frames[tested])),
+            items: items.flat_map(|bytes| vec![bytes; n_alike]).collect(),
+        }
+    });
     Scale {
         objects: study.of_parts(|part| part.touched.class_names().len().to_string()),
         touches,
         n_configurations: study.n_configurations(),
-        bytes: frames
-            + touch_bytes(study)
-            + CELL_BYTES * (study.n_configurations() * study.n_trials()) as f64,
-        // While a thread is blocked by other threads, it computes another group. Two items can therefore be in memory.
-        item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
+        bytes: CELL_BYTES * (study.n_configurations() * study.n_trials()) as f64,
+        stages: stages.collect(),
     }
 }
 
-/// Returns the memory of the touches of all parts and of their splits, bytes.
-fn touch_bytes(study: &RecognitionStudy) -> f64 {
-    let mut known = HashSet::new();
-    let parts = study.parts().iter();
-    let bytes = parts.map(|part| {
-        let sets = [&part.touched, &part.tested];
-        let new = sets.map(|set| known.insert(Arc::as_ptr(set).cast::<()>()));
-        let n_sets = new.into_iter().filter(|is_new| *is_new).count() as f64;
-        let of_splits = SPLIT_BYTES * part.sweep.splits.len() as f64;
-        part.sweep.labels.len() as f64 * (n_sets * TOUCH_BYTES + of_splits)
-    });
-    bytes.sum()
-}
-
-/// Returns the memory of learned ensembles and image estimators, bytes: the frames for fitting (n values each), and the fitted results.
-fn learned_bytes(inputs: &MeasurementInputs, n: f64) -> f64 {
-    let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
-    let estimates: f64 = inputs.counts_of_images().iter().map(|&m| m as f64).sum();
-    match inputs.is_fitted() {
-        true => 8.0 * n * (frames + estimates + 3.0 * N_COMPONENTS as f64),
-        false => 0.0,
+impl Job<'_> {
+    /// Returns the approximate memory of the job, bytes: of the job while its thread evaluates one family, then of each further family, which idle threads
+    /// evaluate at the same time.
+    pub(crate) fn bytes(&self) -> Vec<f64> {
+        let (part, group) = self.study.group(self.group);
+        let array = &part.plan.arrays[group.array];
+        let (n, m) = (array.n_values() as f64, self.n_measurements as f64);
+        let n_read = (part.sweep.labels.len() * group.frames * group.n_readings(&part.plan)) as f64;
+        let inputs = group.inputs(&part.plan);
+        let shapes = array.image_shapes();
+        let of_images = inputs.of_images.iter();
+        let features: usize = of_images.map(|one| join_values(one.join, &shapes)).sum();
+        let features = NUMBER * n_read * features as f64;
+        let matrix = (group.ensemble.about().bytes)(m, n);
+        let estimates: f64 = inputs.counts_of_images().iter().map(|&m| m as f64).sum();
+        let estimates = match inputs.ensemble.gives_frames() {
+            true => 0.0,
+            false => NUMBER * n * 2.0 * estimates,
+        };
+        let values = NUMBER * n_read * m;
+        let measuring = values + features + matrix + estimates;
+        let fitting = match inputs.is_fitted() {
+            true => fitting_bytes(&inputs, part.sweep.splits[0].train.len() * group.frames, m),
+            false => 0.0,
+        };
+        let kept = features + if self.reads_values() { values } else { 0.0 };
+        let families = self.families.iter().map(|&family| {
+            let (part, family) = self.study.family(family);
+            family_bytes(part, family, group.n_readings(&part.plan))
+        });
+        let mut items: Vec<f64> = families.collect();
+        items.sort_by(|a, b| b.total_cmp(a));
+        items[0] = (kept + items[0]).max(measuring).max(fitting);
+        items
     }
 }
 
-/// Returns the memory for evaluating a family of configurations, bytes: training and test rows, scores, and kernel values.
-fn family_bytes(
-    part: &StudyPart,
-    family: &[Configuration],
-    n_test: usize,
-    (n_classes, n_read): (usize, usize),
-) -> f64 {
+/// Returns the memory while ensembles and image estimators are fitted to at most `n_train` training frames, bytes: the frames with their copies, and the
+/// directions in which m or more principal components are sought.
+fn fitting_bytes(inputs: &MeasurementInputs, n_train: usize, m: f64) -> f64 {
+    let n = inputs.array.n_values() as f64;
+    let n_train = n_train.min(LEARNED_FRAMES) as f64;
+    let (n_fitted, n_components) = match inputs.of_images.is_empty() {
+        true if inputs.ensemble != Ensemble::AdaptiveLearned => (n_train, m),
+        _ => (WITH_COPIES as f64, N_COMPONENTS as f64),
+    };
+    let n_directions = (n_components + OVERSAMPLING).min(n_fitted).min(n);
+    let frames = n_train + n_fitted + UNTOUCHED as f64;
+    NUMBER * (n * frames + n_directions * (2.0 * n_fitted + 3.0 * n))
+}
+
+/// Returns the memory for evaluating a family of configurations, bytes: training rows and kernel values, or test rows and scores.
+fn family_bytes(part: &StudyPart, family: &[Configuration], n_readings: usize) -> f64 {
     let (learned, configuration) = (&part.plan.spec.recognition, &family[0]);
+    let n_classes = part.touched.class_names().len();
     let training = FamilyInputs::new(&part.plan, &part.sweep, family).training;
     let fuses = learned.touches_per_decision.values().iter().any(|&k| k > 1);
     let n_scores = match (configuration.classifier.has_c(), learned.multiclass) {
@@ -129,27 +123,28 @@ fn family_bytes(
         (true, Multiclass::OneVsOne) => n_classes * (n_classes - 1) / 2,
         _ => n_classes,
     };
-    let n_copied = n_classes * configuration.tilt_augmentation.unwrap_or(0);
-    let n_rows = |touches: usize| touches * (n_read + n_copied);
-    let n_train = n_rows(configuration.train_touches);
+    let n_touches = n_classes * configuration.train_touches;
+    let n_train = n_touches * (n_readings + configuration.tilt_augmentation.unwrap_or(0));
     let n_choice = match training.c_grid.is_some() || training.gamma_grid.is_some() {
-        true => training.cv_touches.map_or(n_train, n_rows).min(n_train),
+        true => training
+            .cv_touches
+            .map_or(n_touches, |n| n * n_classes)
+            .min(n_touches),
         false => 0,
     };
     let n_features = configuration.n_features();
-    let classifier = &training.classifier;
-    let kernel_values = classifier.kernel_bytes([n_train, n_choice], n_classes, n_features);
-    let (m, n_train, n_test) = (n_features as f64, n_train as f64, n_test as f64);
+    let trained = (training.classifier).training_bytes([n_train, n_choice], n_classes, n_features);
+    let n_test = part.sweep.splits.iter().map(|split| split.test.len());
+    let (m, n_test) = (n_features as f64, n_test.max().unwrap_or(0) as f64);
+    let rows = NUMBER * n_train as f64 * m;
     // Inner folds exist beside the fit on all rows; the model of expected decisions has one table per object and test pose.
-    let (n_copies, n_tables) = match learned.is_informed() {
+    let (n_fits, n_tables) = match learned.is_informed() {
         false => (1.0, 0),
-        true => (2.0, rayon::current_num_threads() * n_classes),
+        true => (2.0, n_classes),
     };
-    TRAINING_BYTES * n_copies * n_train * m
-        + 8.0 * n_test * n_tables as f64
-        + TEST_BYTES * n_test * m
-        + SCORE_BYTES * n_test * n_scores as f64
-        + kernel_values as f64
+    // The model may keep its training rows. Test rows are scaled; a score and its share in decisions on several touches are two numbers.
+    let tested = 2.0 * rows + NUMBER * n_test * (2.0 * m + 2.0 * n_scores as f64 + n_tables as f64);
+    (n_fits * (rows + trained as f64)).max(tested)
 }
 
 fn largest(values: impl Iterator<Item = f64>) -> f64 {

@@ -109,11 +109,6 @@ impl Trial<'_> {
     pub fn evaluate(&self, family: &FamilyInputs) -> Result<Vec<Evaluation>> {
         let (split, learned_labels) = self.inputs.training(&family.training_rows)?;
         let training = self.training(family, (&split, &learned_labels))?;
-        let labels = self.inputs.labels.select(Axis(0), &split.test);
-        let test = dataset(
-            self.measurements.features(&family.rows, &split.test)?,
-            labels,
-        )?;
         let groups = self.inputs.test_groups(&split.test);
         let same_fit: Vec<&[Decision]> = family.fits().collect();
         let penalties: Vec<Option<f64>> = same_fit
@@ -121,6 +116,11 @@ impl Trial<'_> {
             .map(|configurations| configurations[0].c)
             .collect();
         let fitted = training.train_all(&penalties)?;
+        // The rows of the test are not in memory together with the kernel values of the training.
+        let test = dataset(
+            self.measurements.features(&family.rows, &split.test)?,
+            self.inputs.labels.select(Axis(0), &split.test),
+        )?;
         let mut evaluations = Vec::with_capacity(family.decisions.len());
         for (fitted, configurations) in fitted.iter().zip(same_fit) {
             let start = Instant::now();

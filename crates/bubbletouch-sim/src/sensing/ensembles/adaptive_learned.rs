@@ -60,10 +60,11 @@ impl AdaptiveLearned {
     fn new(training: &TrainingFrames, grid: (usize, usize), m: usize, seed: &Seed) -> Result<Self> {
         let seed = seed.named("adaptive_learned");
         let frames = with_copies(training.frames, grid, N_FRAMES, &seed);
-        let pca = Pca::new(frames.view(), N_COMPONENTS.min(grid.0 * grid.1), &seed);
+        let n_frames = frames.nrows() as f64;
+        let pca = Pca::new(frames, N_COMPONENTS.min(grid.0 * grid.1), &seed);
         let n = pca.mean.len() as f64;
         let rest = ((pca.total_variance - pca.variance.sum()) / n).max(0.0);
-        let accuracy = 3.0 * (rest / frames.nrows() as f64).sqrt();
+        let accuracy = 3.0 * (rest / n_frames).sqrt();
         Ok(Self {
             readout: Adaptive::new(grid, m),
             nx: grid.1,

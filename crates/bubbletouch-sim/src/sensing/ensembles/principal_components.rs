@@ -32,7 +32,7 @@ fn learn(training: &TrainingFrames, m: usize, seed: &Seed) -> Result<Box<dyn Ope
 /// If the frames differ in fewer than m directions.
 pub(crate) fn components(training: &TrainingFrames, m: usize, seed: &Seed) -> Result<Array2<f64>> {
     let frames = training.frames;
-    let components = Pca::new(frames, m, &seed.named("principal_components")).components;
+    let components = Pca::new(frames.to_owned(), m, &seed.named("principal_components")).components;
     match components.nrows() {
         found if found < m => {
             let given = format!("{m} principal components");
