@@ -115,8 +115,17 @@ impl AuditData {
     }
 }
 
-/// Numbers of bits at which the counters of clocks wrap around, and factors by which recordings convert their counts to other units.
-const CLOCK_BITS: [i32; 4] = [16, 24, 31, 32];
+/// Counts at which clocks wrap around: 16, 24, 31 and 32 bits, and a minute, an hour and a day in microseconds.
+const CLOCK_PERIODS: [f64; 7] = [
+    65_536.0,
+    16_777_216.0,
+    2_147_483_648.0,
+    4_294_967_296.0,
+    60e6,
+    3600e6,
+    86_400e6,
+];
+/// Factors by which recordings convert their counts to other units.
 const CLOCK_FACTORS: [f64; 3] = [1.0, 1e-3, 1e-6];
 /// Longest step over the end of a clock's range, in multiples of the longest other step, and shortest range, in the same unit. With a larger step or a shorter
 /// range, times of touches that are sorted by class may count as wrapped; with a smaller step, a pause at the end of the range hides it.
@@ -134,7 +143,7 @@ fn unwrapped(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     }
     let periods = CLOCK_FACTORS
         .into_iter()
-        .flat_map(|factor| CLOCK_BITS.map(|bits| factor * 2.0_f64.powi(bits)));
+        .flat_map(|factor| CLOCK_PERIODS.map(|period| factor * period));
     let is_explained = |period: &f64| {
         let mut back = steps().filter(|&step| step < 0.0);
         back.all(|step| (0.0..=MAX_STEP * longest).contains(&(step + period)))
