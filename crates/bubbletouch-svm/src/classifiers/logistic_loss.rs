@@ -32,6 +32,10 @@ const ROUNDING: f64 = 1e-7;
 /// training ends far from the minimum if the objective is flat along some direction; with a larger value, the last step needs more products.
 const LAST_PRODUCTS: usize = 40;
 
+/// Minimum number of rows per feature with which conjugate gradients are preconditioned by a Kronecker product. With a smaller value, the memory of the product
+/// may be much larger than that of the features; with a larger value, more trainings take two to three times as long.
+const MIN_ROWS_PER_FEATURE: usize = 4;
+
 /// Minimum decrease of the objective in an accepted step, relative to the decrease predicted by the gradient (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
@@ -113,21 +117,23 @@ impl<'a> LogisticLoss<'a> {
         let at = Array2::zeros((self.n_classes, self.means.len() + 1));
         let scores = Array2::zeros((self.label.len(), self.n_classes));
         let mut point = self.point(at, scores);
-        let mut preconditioner = Preconditioner::of_diagonal(self.n_classes, &self.penalties);
-        let mut n_products = 0;
+        let (mut kronecker, mut n_products) = (None, 0);
         for n_iterations in 1..=max_iterations {
             let (p, gradient) = self.gradient(&point);
-            if n_products >= self.refresh_products() {
-                let (features, weights) = (&self.scaled, &self.row_weights);
-                preconditioner = Preconditioner::new(features, &p, weights, &self.penalties);
+            let (weights, penalties) = (&self.row_weights, &self.penalties);
+            if self.refresh_products().is_some_and(|n| n_products >= n) {
+                let new = Preconditioner::kronecker(&self.scaled, &p, weights, penalties);
+                kronecker = Some(new);
                 n_products = 0;
             }
+            let diagonal = Preconditioner::diagonal(&p, weights, penalties);
+            let preconditioner = kronecker.as_ref().unwrap_or(&diagonal);
             let least = [tolerance, SINGLE_PRECISION].map(|part| part * point.value);
             let NewtonStep {
                 step,
                 decrease,
                 n_products: n_new,
-            } = self.newton_step(&p, &gradient, &preconditioner, least);
+            } = self.newton_step(&p, &gradient, preconditioner, least);
             n_products += n_new;
             let slope = dot(&gradient, &step);
             let next = self.lower_point(&point, &step, slope);
@@ -192,10 +198,11 @@ impl<'a> LogisticLoss<'a> {
         None
     }
 
-    /// Returns the number of products with the Hessian that take as long as a new preconditioner.
-    fn refresh_products(&self) -> usize {
+    /// Returns the number of products with the Hessian that take as long as a new Kronecker product. Returns `None` if this product needs much more memory than
+    /// the features.
+    fn refresh_products(&self) -> Option<usize> {
         let (n, m) = self.scaled.dim();
-        m * (n + m) / (n * self.n_classes)
+        (MIN_ROWS_PER_FEATURE * m <= n).then(|| m * (n + m) / (n * self.n_classes))
     }
 
     /// Returns an approximate Newton step at the point with probabilities `p` and the given gradient. The step ends the training if its predicted decrease is at
@@ -210,7 +217,7 @@ impl<'a> LogisticLoss<'a> {
         let single = p.mapv(|p| p as f32);
         let mut residual = -gradient;
         let mut step = Array2::zeros(gradient.dim());
-        let mut scaled = preconditioner.times(&residual);
+        let mut scaled = preconditioner.solve(&residual);
         let mut direction = scaled.clone();
         let mut product = dot(&residual, &scaled);
         let first = product;
@@ -232,7 +239,7 @@ impl<'a> LogisticLoss<'a> {
             step.scaled_add(length, &direction);
             residual.scaled_add(-length, &turned);
             decrease += 0.5 * length * product;
-            scaled = preconditioner.times(&residual);
+            scaled = preconditioner.solve(&residual);
             let last = product;
             product = dot(&residual, &scaled);
             decreases.push(decrease);

@@ -6,7 +6,8 @@
 //! `H ≈ (K A / h + ε I) ⊗ (B / K + penalties / (1 + ε))`,
 //!
 //! where K is the number of classes, A the mean of `v_i (diag p_i − p_i p_iᵀ)`, h the trace of A, and B the mean of `h_i x_i x_iᵀ` with
-//! `h_i = v_i Σ_k p_ik (1 − p_ik)`. The damping ε is the square root of the smallest penalty relative to the mean curvature h / K.
+//! `h_i = v_i Σ_k p_ik (1 − p_ik)`. The damping ε is the square root of the smallest penalty relative to the mean curvature h / K. The diagonal of H is a second
+//! approximation, which needs less time and memory.
 
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView2, Axis, concatenate, s};
@@ -17,26 +18,33 @@ use crate::classifiers::logistic_loss::sums;
 /// the approximation has errors where features are almost collinear.
 const RIDGE: f64 = 1e-13;
 
-/// Approximate inverse of the Hessian: a positive definite Kronecker product.
-pub(super) struct Preconditioner {
-    /// Shape K × K.
-    of_classes: Array2<f64>,
-    /// Shape (m + 1) × (m + 1).
-    of_features: Array2<f64>,
+/// Approximate Hessian, positive definite.
+pub(super) enum Preconditioner {
+    /// Diagonal, shape K × (m + 1).
+    Diagonal(Array2<f64>),
+    /// Inverses of the factors of a Kronecker product.
+    Kronecker {
+        /// Shape K × K.
+        of_classes: Array2<f64>,
+        /// Shape (m + 1) × (m + 1).
+        of_features: Array2<f64>,
+    },
 }
 
 impl Preconditioner {
-    /// Returns the inverse of the diagonal at coefficients of 0, if the features have a mean square of 1.
-    pub fn of_diagonal(n_classes: usize, penalties: &Array1<f64>) -> Self {
-        let diagonal = penalties.mapv(|penalty| 1.0 / (1.0 / n_classes as f64 + penalty));
-        Self {
-            of_classes: Array2::eye(n_classes),
-            of_features: Array2::from_diag(&diagonal),
-        }
+    /// Creates the diagonal at the point with probabilities `p`, shape n × K, if the features have a mean square of 1.
+    pub fn diagonal(p: &Array2<f64>, row_weights: &Array1<f64>, penalties: &Array1<f64>) -> Self {
+        let weights = row_weights.view().insert_axis(Axis(1));
+        let curvature = p.mapv(|p| p * (1.0 - p)) * weights;
+        let curvature = curvature.mean_axis(Axis(0)).expect("at least one row");
+        let mut diagonal = &curvature.insert_axis(Axis(1)) + penalties;
+        // Probabilities of 0 and 1 have no curvature.
+        diagonal.mapv_inplace(|value| value.max(f64::MIN_POSITIVE.sqrt()));
+        Self::Diagonal(diagonal)
     }
 
-    /// Creates the approximation at the point with probabilities `p`, shape n × K.
-    pub fn new(
+    /// Creates the Kronecker product at the point with probabilities `p`, shape n × K.
+    pub fn kronecker(
         features: &Array2<f64>,
         p: &Array2<f64>,
         row_weights: &Array1<f64>,
@@ -66,15 +74,21 @@ impl Preconditioner {
         diagonal += &(penalties / (1.0 + damping));
         let ridge = RIDGE * diagonal.fold(0.0, |max, &value| f64::max(max, value));
         diagonal += ridge;
-        Self {
+        Self::Kronecker {
             of_classes: inverse(classes.view()),
             of_features: inverse(products.view()),
         }
     }
 
-    /// Returns the product with a residual, shape K × (m + 1).
-    pub fn times(&self, residual: &Array2<f64>) -> Array2<f64> {
-        self.of_classes.dot(residual).dot(&self.of_features)
+    /// Returns the product of the inverse with a residual, shape K × (m + 1).
+    pub fn solve(&self, residual: &Array2<f64>) -> Array2<f64> {
+        match self {
+            Self::Diagonal(diagonal) => residual / diagonal,
+            Self::Kronecker {
+                of_classes,
+                of_features,
+            } => of_classes.dot(residual).dot(of_features),
+        }
     }
 }
 
@@ -111,7 +125,7 @@ mod tests {
         let probabilities = [0.5, 0.3, 0.2];
         let p = Array2::from_shape_fn((50, 3), |(_, k)| probabilities[k]);
         let penalties = Array1::from_vec(vec![1e-16; 7]);
-        let found = Preconditioner::new(&features, &p, &weights, &penalties);
+        let found = Preconditioner::kronecker(&features, &p, &weights, &penalties);
         // A residual whose sum over the classes is 0, as that of a gradient.
         let mut step = Array2::from_shape_fn((3, 7), |(k, j)| ((k * 5 + j) as f64).cos());
         step -= &step.mean_axis(Axis(0)).unwrap();
@@ -122,7 +136,7 @@ mod tests {
             (0..3).for_each(|k| change[k] = weight * probabilities[k] * (change[k] - mean));
         }
         let product = changes.t().dot(&augmented) / 50.0;
-        let error = found.times(&product) - &step;
+        let error = found.solve(&product) - &step;
         assert!(error.iter().all(|error| error.abs() < 1e-6), "{error}");
     }
 
