@@ -188,7 +188,7 @@ pub use bubbletouch_sim::statistics::quantile;
 #[cfg(test)]
 use bubbletouch_sim::statistics::standard_errors;
 pub(crate) use bubbletouch_sim::text::{
-    note, numbers_csv, spelling, toml_lines, toml_numbers, toml_text,
+    encoding, note, numbers_csv, spelling, toml_lines, toml_numbers, toml_text,
 };
 pub use bubbletouch_sim::{
     Error, Result, calibration, contact, dynamics, error, files, geometry, mesh, objects, packing,

@@ -21,7 +21,7 @@ pub fn read_table(path: &str) -> PyResult<ReadTable> {
         let table = Table::read(Path::new(path), None).map_err(exception)?;
         let owned = |column: Vec<&str>| column.into_iter().map(str::to_owned).collect();
         let columns = table.columns().into_iter().map(owned).collect();
-        let kept = table.without_counts();
+        let kept = table.without_index();
         Ok((table.names, columns, kept, table.notes))
     })
 }

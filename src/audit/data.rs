@@ -129,10 +129,12 @@ fn unwrapped(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     if n_back == 0 || longest == 0.0 {
         return None;
     }
-    // Numbers of bits of the counters of clocks, and factors by which recordings convert their counts to other units.
-    let periods = [1.0, 1e-3, 1e-6].into_iter();
-    let mut periods =
-        periods.flat_map(|factor| [16, 24, 31, 32].map(|bits| factor * 2.0_f64.powi(bits)));
+    // Counts at which clocks wrap around: 16 to 32 bits, and a minute, an hour and a day in microseconds; factors by which recordings convert them to other
+    // units.
+    let bits = [16, 24, 31, 32].map(|bits| 2.0_f64.powi(bits));
+    let counts = [&bits[..], &[60e6, 3600e6, 86_400e6]].concat();
+    let factors = [1.0, 1e-3, 1e-6].into_iter();
+    let mut periods = factors.flat_map(|factor| counts.iter().map(move |count| factor * count));
     let is_explained = |period: &f64| {
         let mut back = steps().filter(|&step| step < 0.0);
         back.all(|step| (0.0..=MAX_STEP * longest).contains(&(step + period)))

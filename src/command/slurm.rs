@@ -12,7 +12,7 @@ use bubbletouch::study::work_items::Part;
 use bubbletouch::study::{Shard, sha256};
 use bubbletouch::{Error, Result};
 use jobs::{output_pattern, queued_shards, submit};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Maximum number of jobs in a job array, which is the largest value that Slurm can be configured to allow.
 const MAX_JOBS: usize = 4_000_000;
@@ -64,8 +64,9 @@ pub fn slurm(args: &Args) -> Result<()> {
     for error in study.check_elsewhere(Part::All, &finished)? {
         note(format_args!("note: the nodes have to have it: {error}"));
     }
-    output_folder(&folder)?;
+    // Without Slurm, nothing is written.
     let queued = queued_shards(&args.name("shards")?)?;
+    output_folder(&folder)?;
     let mut missing = Vec::new();
     for shard in Shard::all(n) {
         let is_queued = queued.contains(&shard.index());
@@ -116,16 +117,30 @@ fn is_done(study: &dyn AnyStudy, folder: &Path, shard: Shard) -> Result<bool> {
     Ok(known.is_some_and(|known| study.n_without_success(Part::Shard(shard), &known) == 0))
 }
 
+/// Returns the absolute path with symbolic links resolved, also of a file or folder that does not exist yet.
+fn real_path(path: &Path) -> Result<PathBuf> {
+    let path = std::path::absolute(path).map_err(|e| Error::io(path, "find", e))?;
+    let known = path
+        .ancestors()
+        .find_map(|known| Some((known, known.canonicalize().ok()?)));
+    Ok(match known {
+        Some((known, real)) => {
+            let rest = path.iter().skip(known.iter().count());
+            real.iter().chain(rest).collect()
+        }
+        None => path,
+    })
+}
+
 impl Args {
     /// Returns the name of the jobs in the cluster's queue. Jobs have the same name if they write the same results. The name contains a hash of the study's
     /// file, of the options that replace parts of it, and of the folder. Characters that Slurm interprets, such as the comma between the names of a list, are
     /// replaced by `_`.
     fn name(&self, what: &str) -> Result<String> {
         let study = &self.results.study;
-        let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let mut made_of = study.arguments();
-        made_of[0] = absolute(&study.study).display().to_string();
-        made_of.push(absolute(&self.results.folder()?).display().to_string());
+        made_of[0] = real_path(&study.study)?.display().to_string();
+        made_of.push(real_path(&self.results.folder()?)?.display().to_string());
         let hash = sha256(made_of.join("\n"));
         let plain = |c: char| match c.is_ascii_alphanumeric() || "-_.".contains(c) {
             true => c,

@@ -81,6 +81,15 @@ fn a_clock_that_wraps_around_continues() {
         sorted(&|touch| f64::from((60_000 + 500 * touch as u32) as u16)),
         in_order
     );
+    // A time of day over midnight in seconds, and the second of a minute with two wraps.
+    assert_eq!(
+        sorted(&|touch| (86_000.0 + 37.5 * touch as f64) % 86_400.0),
+        in_order
+    );
+    assert_eq!(
+        sorted(&|touch| (30.0 + 2.2 * touch as f64) % 60.0),
+        in_order
+    );
     // Touches that are listed by class.
     let by_class = sorted(&|touch| (touch % 20 * 3 + touch / 20) as f64);
     let expected: Vec<f64> = (0..60).map(|k| (k / 3 + 20 * (k % 3)) as f64).collect();

@@ -21,6 +21,7 @@ fn obeys_all_laws(kind: Kind, choices: Choices) {
     let case = &whole.case;
     whole.has_the_work_items_that_its_plan_counts();
     whole.has_the_same_tables_in_shards_at_any_number_of_threads();
+    whole.has_a_resolved_study_that_runs_from_any_folder();
     is_advised(case, choices);
     whole.is_compared_with_a_changed_study();
     has_tables_that_sort_and_can_be_searched(case);
@@ -90,6 +91,18 @@ impl Faults {
         self.case
             .succeeds(&["merge", "study.toml", "--out", "parts"]);
         self.assert_same_tables("parts");
+    }
+
+    /// Runs a copy of the resolved study, whose paths are absolute, in another folder.
+    fn has_a_resolved_study_that_runs_from_any_folder(&self) {
+        let [whole, far] = ["whole/study.toml", "far/study.toml"].map(|file| self.case.path(file));
+        fs::create_dir(self.case.path("far")).unwrap();
+        fs::copy(whole, far).unwrap();
+        let run = ["run", "study.toml", "--out", "../from_far"];
+        let mut command = self.case.command(&run);
+        let output = command.current_dir(self.case.path("far")).output().unwrap();
+        assert!(output.status.success(), "{}", said(&output));
+        self.assert_same_tables("from_far");
     }
 
     /// Compares a folder with itself, and with the folder of a changed study.

@@ -267,6 +267,7 @@ fn without_slurm_the_command_says_so() {
         error.contains("squeue: the command is not installed"),
         "{error}"
     );
+    assert!(!case.path("results").exists(), "a folder was written");
 }
 
 /// Small study of two shards with at least two work items each.

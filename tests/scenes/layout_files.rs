@@ -298,7 +298,7 @@ fn spellings_of_a_csv_file_are_read_as_the_same_layout() {
     std::fs::write(folder.0.path().join("latin.csv"), b"x_mm\xe9\n").unwrap();
     refused(
         &folder.0.path().join("latin.csv"),
-        "latin.csv: a text that is not UTF-8; a file in UTF-8",
+        "latin.csv: cannot be read (stream did not contain valid UTF-8); a layout in .csv",
     );
 }
 

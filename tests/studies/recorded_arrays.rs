@@ -260,6 +260,15 @@ fn labels_of_every_form_are_the_same_classes() {
     };
     case.file("latin1.csv", lines([b"caf\xe9", b"th\xe9", b"ma\xdf"]));
     assert_eq!(class_names("latin1.csv"), ["café", "thé", "maß"]);
+    let words = labels.iter().map(|&label| ["café", "thé", "maß"][label]);
+    let words = words.fold("\u{feff}".to_owned(), |all, word| all + word + "\r\n");
+    let units: Vec<u16> = words.encode_utf16().collect();
+    let little: Vec<u8> = units.iter().flat_map(|unit| unit.to_le_bytes()).collect();
+    let big: Vec<u8> = units.iter().flat_map(|unit| unit.to_be_bytes()).collect();
+    for bytes in [little, big] {
+        case.file("utf16.csv", bytes);
+        assert_eq!(class_names("utf16.csv"), ["café", "thé", "maß"]);
+    }
     case.file("padded.csv", lines([b"007", b"7", b"8"]));
     assert_eq!(class_names("padded.csv"), ["007", "7", "8"]);
     // 2⁵³ + 1 is no number of f64, and would be the class 2⁵³.

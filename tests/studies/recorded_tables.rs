@@ -137,6 +137,22 @@ fn every_reader_finds_the_readings_of_tables_of_pandas_and_of_loggers() {
             }),
         ),
         (
+            "an index of chosen rows without a header",
+            table("", |touch, cells| {
+                format!("{},{cells}", 3 * touch + touch % 2)
+            }),
+        ),
+        (
+            "an index of shuffled rows without a header",
+            table("", |touch, cells| format!("{},{cells}", touch * 7 % N)),
+        ),
+        (
+            "an index of reversed rows, named",
+            table("row,s0,s1,s2,s3", |touch, cells| {
+                format!("{},{cells}", N - 1 - touch)
+            }),
+        ),
+        (
             "an index of texts",
             table(",s0,s1,s2,s3", |touch, cells| {
                 format!("touch {touch},{cells}")
@@ -223,6 +239,14 @@ fn every_reader_finds_the_readings_of_tables_of_pandas_and_of_loggers() {
         }
         assert_eq!(of_study("it.csv").unwrap(), usual, "{what}");
     }
+    // Whole readings: consecutive numbers in any order are an index, other distinct numbers are readings.
+    let whole = |index: fn(usize) -> usize| {
+        let line = |touch: usize| format!("{},{},7\n", index(touch), touch * touch % 11);
+        case.file("whole.csv", (0..N).map(line).collect::<String>());
+        audited(&case, "whole.csv", None).unwrap().frames.ncols()
+    };
+    assert_eq!(whole(|touch| 5 + touch * 7 % N), 2);
+    assert_eq!(whole(|touch| 5 + touch * 14 % (2 * N)), 3);
     // What was left out is noted once by each command.
     case.file(
         "indexed.csv",
@@ -318,6 +342,14 @@ fn labels_of_pandas_are_the_same_classes_and_a_number_for_each_touch_is_no_index
         (
             "a series of texts",
             ",0\n".to_owned() + &rows(&|touch| format!("{touch},{}", word(touch))),
+        ),
+        (
+            "a named series of texts",
+            ",object\n".to_owned() + &rows(&|touch| format!("{touch},{}", word(touch))),
+        ),
+        (
+            "a named series of texts of shuffled rows",
+            ",object\n".to_owned() + &rows(&|touch| format!("{},{}", touch * 7 % N, word(touch))),
         ),
         (
             "a series of texts without a header",

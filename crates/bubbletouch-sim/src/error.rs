@@ -77,26 +77,29 @@ impl Error {
         }
     }
 
-    /// Creates an input/output error with file and action, or an input error if the path is a folder instead of a file to be read.
+    /// Creates an input/output error with file and action. If a path to be read is a folder, or the content of the file is invalid, creates an input error.
     pub fn io(path: impl AsRef<Path>, action: &'static str, source: std::io::Error) -> Self {
-        if action == "read" && source.kind() == ErrorKind::IsADirectory {
-            return Self::input(path.as_ref().display(), "a folder", "a file");
-        }
-        Self::Io {
-            path: path.as_ref().to_owned(),
-            action,
-            source,
+        match (action, source.kind()) {
+            ("read", ErrorKind::IsADirectory | ErrorKind::InvalidData) => {
+                Self::unreadable(path, "a readable file", source)
+            }
+            _ => Self::Io {
+                path: path.as_ref().to_owned(),
+                action,
+                source,
+            },
         }
     }
 
-    /// Creates the error for a file that the user named and that cannot be read. A missing file or a folder is invalid input, with `allowed`
-    /// in the message.
+    /// Creates the error for a file that the user named and that cannot be read. A missing file, a folder or invalid content, such as a text that is not
+    /// UTF-8, is invalid input, with `allowed` in the message.
     pub fn unreadable(path: impl AsRef<Path>, allowed: &str, source: std::io::Error) -> Self {
         let path = path.as_ref();
         let given = match source.kind() {
-            ErrorKind::NotFound => "is missing",
-            ErrorKind::IsADirectory => "a folder",
-            ErrorKind::NotADirectory => "below a file",
+            ErrorKind::NotFound => "is missing".to_owned(),
+            ErrorKind::IsADirectory => "a folder".to_owned(),
+            ErrorKind::NotADirectory => "below a file".to_owned(),
+            ErrorKind::InvalidData => format!("cannot be read ({source})"),
             _ => return Self::io(path, "read", source),
         };
         Self::input(path.display(), given, allowed)
@@ -208,5 +211,22 @@ mod tests {
         let long_lines = said(&("-".repeat(300) + "\n").repeat(20));
         assert!(long_lines.len() < BYTES + 400, "{long_lines}");
         assert!(long_lines.contains("and 13 more lines"), "{long_lines}");
+    }
+
+    #[test]
+    fn a_file_that_is_no_text_is_invalid_input_and_a_failing_disk_is_not() {
+        let not_text = || std::io::Read::read_to_string(&mut &b"\xff"[..], &mut String::new());
+        let errors = [
+            Error::io("a.toml", "read", not_text().unwrap_err()),
+            Error::unreadable("a.toml", "a study", not_text().unwrap_err()),
+        ];
+        for (error, allowed) in errors.iter().zip(["a readable file", "a study"]) {
+            let given = "cannot be read (stream did not contain valid UTF-8)";
+            assert_eq!(error.to_string(), format!("a.toml: {given}; {allowed}"));
+            assert_eq!(error.exit_code(), 2);
+        }
+        let failing = || std::io::Error::from(ErrorKind::PermissionDenied);
+        assert_eq!(Error::io("a.toml", "read", failing()).exit_code(), 1);
+        assert_eq!(Error::unreadable("a.toml", "", failing()).exit_code(), 1);
     }
 }

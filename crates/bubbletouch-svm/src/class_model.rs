@@ -96,3 +96,12 @@ pub fn log_priors(labels: ArrayView1<usize>, classes: &[usize]) -> Array1<f64> {
     };
     classes.iter().map(share).collect()
 }
+
+/// Normalises each row of log-scores to log-probabilities, so that the exponentials of a row sum to 1.
+pub(crate) fn normalise(values: &mut Array2<f64>) {
+    for mut row in values.rows_mut() {
+        let max = row.fold(f64::NEG_INFINITY, |max, &value| max.max(value));
+        let sum: f64 = row.iter().map(|value| (value - max).exp()).sum();
+        row -= max + sum.ln();
+    }
+}

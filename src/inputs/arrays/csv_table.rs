@@ -5,22 +5,22 @@
 //! A first line of texts above texts is then a header, too.
 //!
 //! **Columns that are left out.** A column without a name, or with the name `Unnamed: …` of pandas, is left out. A column that counts the rows from 0 or 1 is an
-//! index and is left out; the count may begin again with each touch. So is a column of at least 8 consecutive integers. Empty columns behind the last separators of all lines are no columns. A note states what
-//! was left out.
+//! index and is left out; the count may begin again with each touch. So is a column of at least 8 consecutive integers in any order or, beside readings with
+//! fractions, of at least 8 distinct whole numbers. Empty columns behind the last separators of all lines are no columns. A note states what was left out.
 //!
 //! **Readings.** The columns of frames have names of one family (module `column_names`), or match given patterns.
 
+use crate::encoding::decoded;
 use crate::error::{Error, Result};
 use crate::inputs::arrays::column_names::{column_families, listed, matches};
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
-use crate::inputs::arrays::utf8_or_latin1;
 use std::collections::HashSet;
 use std::path::Path;
 
 /// Minimum number of consecutive integers that are a count of rows. With a smaller value, entries 0 and 1 of class columns are taken as an index.
 const MIN_COUNT: usize = 3;
-/// Minimum number of consecutive integers that are a count from any number, such as the index of chosen rows. With a smaller value, readings that rise by one
-/// are taken as an index.
+/// Minimum number of integers that are a count from any number or an index in any order, such as that of chosen or shuffled rows. With a smaller value, whole
+/// readings are taken as an index.
 const MIN_RUN: usize = 8;
 
 /// Content of a table, which decides which of its lines and columns are data.
@@ -60,8 +60,8 @@ impl Table {
     /// If the file cannot be read, is empty, or its lines differ in the number of cells.
     pub fn read(path: &Path, n_rows: Option<usize>) -> Result<Self> {
         let place = path.display().to_string();
-        let text = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
-        let text = utf8_or_latin1(text);
+        let bytes = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
+        let (text, note) = decoded(&place, &bytes);
         let is_data = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.starts_with('#');
         let lines = text.trim_start_matches('\u{feff}').lines();
         let lines = (1..).zip(lines).filter(is_data);
@@ -82,7 +82,7 @@ impl Table {
             rows: rows.collect(),
             place,
             names: None,
-            notes: Vec::new(),
+            notes: note.into_iter().collect(),
             separator,
         };
         if table.drop_empty_end() {
@@ -124,15 +124,30 @@ impl Table {
         all.map(|column| self.column(column).collect()).collect()
     }
 
-    /// Returns the columns that do not count the rows; all columns if each of them counts.
-    pub fn without_counts(&self) -> Vec<usize> {
-        let counts = |column: &usize| counts_rows(self.column(*column).map(number));
+    /// Returns the columns that are no index of the rows; all columns if each of them is one.
+    pub fn without_index(&self) -> Vec<usize> {
+        let among_fractions = 2 * self.n_fractional(0) > self.n_columns();
+        let counts = |column: &usize| {
+            let numbers: Option<Vec<f64>> = self.column(*column).map(number).collect();
+            numbers.is_some_and(|numbers| {
+                counts_rows(&numbers) || names_rows(&numbers, among_fractions)
+            })
+        };
         let all = 0..self.n_columns();
         let kept: Vec<usize> = all.clone().filter(|column| !counts(column)).collect();
         match kept.is_empty() {
             true => all.collect(),
             false => kept,
         }
+    }
+
+    /// Returns the number of columns with a fraction below the first `n_above` lines.
+    fn n_fractional(&self, n_above: usize) -> usize {
+        let has_fraction = |&column: &usize| {
+            let mut below = self.column(column).skip(n_above).filter_map(number);
+            below.any(|number| number.is_finite() && number.fract() != 0.0)
+        };
+        (0..self.rows[0].1.len()).filter(has_fraction).count()
     }
 
     /// Leaves out all other columns, with a note for each; `why` is the reason.
@@ -168,11 +183,11 @@ impl Table {
     /// If the columns of frames are of several families, or no column matches a pattern; the error lists the families.
     pub fn for_content(mut self, content: TableContent) -> Result<Self> {
         let TableContent::Frames { columns, key } = content else {
-            self.keep(&self.without_counts(), COUNTS);
+            self.keep(&self.without_index(), COUNTS);
             return Ok(self);
         };
         let Some(patterns) = columns else {
-            self.keep(&self.without_counts(), COUNTS);
+            self.keep(&self.without_index(), COUNTS);
             let families = self.names.as_deref().and_then(column_families);
             let Some((listed, largest)) = families else {
                 return Ok(self);
@@ -349,7 +364,8 @@ impl Table {
     fn has_header(&self, n_rows: Option<usize>) -> bool {
         let ((_, first), others) = (&self.rows[0], &self.rows[1..]);
         let is_text = |cell: &str| number(cell).is_none();
-        let are_texts = first.iter().all(|cell| is_text(cell));
+        let are_texts = first.iter().any(|cell| is_text(cell))
+            && first.iter().all(|cell| cell.is_empty() || is_text(cell));
         if others.is_empty() {
             return n_rows.is_none() && are_texts;
         }
@@ -374,15 +390,11 @@ impl Table {
         };
         let counts_few = counts_from(&numbered, 0.0) && numbered.len() >= n_min;
         // Ascending whole numbers above columns of which most have fractions are the names of chosen columns.
-        let has_fraction = |&column: &usize| {
-            let mut below = self.column(column).skip(1).filter_map(number);
-            below.any(|number| number.fract() != 0.0)
-        };
         let are_chosen = numbered.len() == first.len()
             && first.len() >= MIN_COUNT
             && first.iter().all(|cell| cell.parse::<u32>().is_ok())
             && numbered.is_sorted_by(|a, b| a < b)
-            && 2 * (0..first.len()).filter(has_fraction).count() > first.len();
+            && 2 * self.n_fractional(1) > first.len();
         let is_count = counts_few || is_count(&numbered) || are_chosen;
         // A known number of rows makes a first line of texts a header.
         is_count || n_rows.is_some() && are_texts
@@ -432,20 +444,25 @@ fn is_count(numbers: &[f64]) -> bool {
     first.fract() == 0.0 && numbers.len() >= n_min && counts_from(numbers, first)
 }
 
-/// Returns whether the cells of a column count the rows. A count from 0 or 1 may begin again, such as with each touch.
-fn counts_rows(cells: impl Iterator<Item = Option<f64>>) -> bool {
-    let mut cells = cells.peekable();
-    let Some(&Some(first)) = cells.peek() else {
-        return false;
-    };
-    if first.fract() != 0.0 {
-        return false;
-    }
-    let Some(numbers) = cells.collect::<Option<Vec<f64>>>() else {
-        return false;
-    };
+/// Returns whether the numbers of a column count the rows. A count from 0 or 1 may begin again, such as with each touch.
+fn counts_rows(numbers: &[f64]) -> bool {
     let mut runs = numbers.chunk_by(|a, b| *b == a + 1.0);
-    is_count(&numbers) || runs.all(|run| run[0] == first && first <= 1.0 && is_count(run))
+    let begins_again = |run: &[f64]| run[0] == numbers[0] && run[0] <= 1.0 && is_count(run);
+    is_count(numbers) || !numbers.is_empty() && runs.all(begins_again)
+}
+
+/// Returns whether the numbers of a column are the index of shuffled rows: consecutive integers in any order. Beside readings with fractions, distinct whole
+/// numbers are the index of chosen rows.
+fn names_rows(numbers: &[f64], among_fractions: bool) -> bool {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let are_whole = |number: &f64| number.fract() == 0.0 && *number >= 0.0;
+    sorted.len() >= MIN_RUN
+        && sorted.iter().all(are_whole)
+        && match among_fractions {
+            true => sorted.is_sorted_by(|a, b| a < b),
+            false => counts_from(&sorted, sorted[0]),
+        }
 }
 
 /// Returns an error if the file is an export of a pressure mat with a block of lines for each frame.

@@ -1,8 +1,8 @@
 //! Element types of NumPy files, and decoding of the elements.
 
+use crate::encoding::decoded;
 use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::{ElementKind, Elements};
-use crate::inputs::arrays::utf8_or_latin1;
 
 const ALLOWED: &str = "numbers (float16 to float64, int8 to int64, uint8 to uint64, bool) or texts";
 
@@ -112,7 +112,7 @@ impl ElementType {
     /// Decodes a text and removes its zero padding.
     fn text(&self, bytes: &[u8]) -> String {
         if self.letter != 'U' {
-            let text = utf8_or_latin1(bytes.to_vec());
+            let (text, _) = decoded("", bytes);
             return text.trim_end_matches('\0').to_owned();
         }
         let letters = bytes.as_chunks::<4>().0.iter().map(|chunk| {

@@ -1,7 +1,7 @@
 //! Reading of array files: `.npy`, members of `.npz`, and `.csv`. All NumPy element types for numbers and texts are supported.
 //!
 //! In a `.npz` archive, the member with the requested name (`frames`, `labels`, …) is read, or its only member. A `.csv` file is a table of rows and columns.
-//! Elements are converted to f64 (integers exactly below 2⁵³), or kept as texts in UTF-8 or Latin-1.
+//! Elements are converted to f64 (integers exactly below 2⁵³), or kept as texts in UTF-8, UTF-16 or Latin-1.
 
 use crate::inputs::arrays::file_array::{Elements, FileArray};
 pub(crate) mod axis_order;
@@ -174,17 +174,6 @@ fn open(path: &Path) -> Result<File> {
         true => Err(refuse("it is a folder".to_owned())),
         false => Ok(file),
     }
-}
-
-/// Returns the text of some bytes in UTF-8, or in Latin-1 (ISO 8859-1) if they are not UTF-8.
-fn utf8_or_latin1(bytes: Vec<u8>) -> String {
-    String::from_utf8(bytes).unwrap_or_else(|error| {
-        error
-            .as_bytes()
-            .iter()
-            .map(|&byte| char::from(byte))
-            .collect()
-    })
 }
 
 /// Determines the format of an array file from its first bytes; for text files, from the extension.

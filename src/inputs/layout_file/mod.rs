@@ -76,13 +76,9 @@ impl LayoutFile {
         if options.sensor.is_some() && !matches!(&ending[..], "urdf" | "xml") {
             return refuse("a sensor's name", "only robots' files have several sensors");
         }
-        let text = || match crate::files::read_to_string(path) {
-            Err(error) if error.kind() == std::io::ErrorKind::InvalidData => Err(Error::input(
-                &place,
-                "a text that is not UTF-8",
-                "a file in UTF-8",
-            )),
-            read => read.map_err(|error| Error::unreadable(path, FORMATS, error)),
+        let text = || {
+            let text = crate::files::read_to_string(path);
+            text.map_err(|error| Error::unreadable(path, FORMATS, error))
         };
         let mut file = match &ending[..] {
             "csv" | "tsv" => csv::read(&place, &text()?, options)?,

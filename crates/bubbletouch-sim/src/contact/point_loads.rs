@@ -35,14 +35,13 @@ pub struct PointLoad {
 }
 
 impl PointLoad {
-    /// Returns the load in the frame with the given pose.
-    pub fn seen_from(&self, frame: &Pose) -> Self {
-        let inverse = frame.inverse();
+    /// Returns the load in a frame; `pose` maps the load's frame to this frame.
+    pub fn transformed(&self, pose: &Pose) -> Self {
         Self {
-            point: inverse.transform_point(self.point),
-            normal: inverse.transform_vector(self.normal),
-            friction: inverse.transform_vector(self.friction),
-            torque: inverse.transform_vector(self.torque),
+            point: pose.transform_point(self.point),
+            normal: pose.transform_vector(self.normal),
+            friction: pose.transform_vector(self.friction),
+            torque: pose.transform_vector(self.torque),
         }
     }
 }

@@ -9,8 +9,10 @@
 //! | [`in_range`] | a number → the number, or an error with the allowed range |
 //! | [`spelling`] | an unknown name → the nearest known one |
 //! | [`numbers`] | numbers → short text |
+//! | [`encoding`] | bytes → text |
 //! | [`note`] | a note → standard error |
 
+pub mod encoding;
 pub mod in_range;
 pub mod note;
 pub mod numbers;

@@ -1,7 +1,7 @@
 //! Reading of numbers from CSV files, and the errors of invalid rows.
 
 use crate::error::{Error, Result};
-use std::io::{self, Read};
+use std::io::Read;
 
 /// Returns a CSV reader for rows of any length, without a header; blanks around fields are removed.
 pub fn rows_of<R: Read>(source: R) -> csv::Reader<R> {
@@ -16,9 +16,7 @@ pub fn rows_of<R: Read>(source: R) -> csv::Reader<R> {
 pub fn unreadable(place: &str, error: csv::Error, allowed: impl ToString) -> Error {
     let text = error.to_string();
     match error.into_kind() {
-        csv::ErrorKind::Io(source) if source.kind() != io::ErrorKind::InvalidData => {
-            Error::unreadable(place, &allowed.to_string(), source)
-        }
+        csv::ErrorKind::Io(source) => Error::unreadable(place, &allowed.to_string(), source),
         _ => Error::input(place, text, allowed),
     }
 }

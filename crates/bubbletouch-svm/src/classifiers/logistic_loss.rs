@@ -6,14 +6,16 @@
 //!
 //! The Newton step d solves `H d = −g`, where g is the gradient and H the Hessian of F. A product with H needs two matrix products with the features and no
 //! exponential, because the probabilities of the point are stored. Products that only steer the search are computed in f32; those that decide about its end are
-//! computed in f64. The features are centred and divided by their root mean squares, and conjugate gradients start from the diagonal of H, so the units of the
-//! features do not matter. Steps are halved until F decreases, which needs no further product with the features.
+//! computed in f64. The features are centred and divided by their root mean squares, so their units do not matter; a [`Preconditioner`] takes their correlations
+//! into account. Steps are halved until F decreases, which needs no further product with the features.
 //!
 //! The predicted decrease `−½ g·d` estimates F − min F. Training stops after the step whose predicted decrease is at most `tolerance · F`.
 
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView2, Axis, NdFloat, Zip, concatenate, s};
 
+use crate::class_model::normalise;
+use crate::classifiers::logistic_preconditioner::Preconditioner;
 use crate::linear_model::LinearModel;
 
 /// Relative residual at which the conjugate gradients stop. With a smaller value, each Newton step takes more products; with a larger value, more Newton steps
@@ -29,6 +31,10 @@ const ROUNDING: f64 = 1e-7;
 /// Number of products that must add less than a tenth to the predicted decrease before it ends the training [Strakoš & Tichý 2002]. With a smaller value, the
 /// training ends far from the minimum if the objective is flat along some direction; with a larger value, the last step needs more products.
 const LAST_PRODUCTS: usize = 40;
+
+/// Minimum number of rows per feature with which conjugate gradients are preconditioned by a Kronecker product. With a smaller value, the memory of the product
+/// may be much larger than that of the features; with a larger value, more trainings take two to three times as long.
+const MIN_ROWS_PER_FEATURE: usize = 4;
 
 /// Minimum decrease of the objective in an accepted step, relative to the decrease predicted by the gradient (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
@@ -69,6 +75,15 @@ struct Point {
     value: f64,
 }
 
+/// Approximate Newton step.
+struct NewtonStep {
+    step: Array2<f64>,
+    /// Predicted decrease of the objective.
+    decrease: f64,
+    /// Number of products with the Hessian.
+    n_products: usize,
+}
+
 impl<'a> LogisticLoss<'a> {
     /// Creates the objective of rows (n × m, at least one) with labels from 0 to n_classes − 1 and a weight per row.
     pub(crate) fn new(
@@ -102,8 +117,25 @@ impl<'a> LogisticLoss<'a> {
         let at = Array2::zeros((self.n_classes, self.means.len() + 1));
         let scores = Array2::zeros((self.label.len(), self.n_classes));
         let mut point = self.point(at, scores);
+        let (mut kronecker, mut n_products) = (None, 0);
         for n_iterations in 1..=max_iterations {
-            let (step, slope, decrease) = self.newton_step(&point, tolerance * point.value);
+            let (p, gradient) = self.gradient(&point);
+            let (weights, penalties) = (&self.row_weights, &self.penalties);
+            if self.refresh_products().is_some_and(|n| n_products >= n) {
+                let new = Preconditioner::kronecker(&self.scaled, &p, weights, penalties);
+                kronecker = Some(new);
+                n_products = 0;
+            }
+            let diagonal = Preconditioner::diagonal(&p, weights, penalties);
+            let preconditioner = kronecker.as_ref().unwrap_or(&diagonal);
+            let least = [tolerance, SINGLE_PRECISION].map(|part| part * point.value);
+            let NewtonStep {
+                step,
+                decrease,
+                n_products: n_new,
+            } = self.newton_step(&p, &gradient, preconditioner, least);
+            n_products += n_new;
+            let slope = dot(&gradient, &step);
             let next = self.lower_point(&point, &step, slope);
             let is_last = decrease <= tolerance * point.value;
             let is_stuck = next.is_none();
@@ -166,33 +198,38 @@ impl<'a> LogisticLoss<'a> {
         None
     }
 
-    /// Returns an approximate Newton step d, the slope g·d, and the predicted decrease of the objective, which ends the training
-    /// if it is at most `least`.
-    fn newton_step(&self, point: &Point, least: f64) -> (Array2<f64>, f64, f64) {
-        let (p, gradient) = self.gradient(point);
-        let scale = self.row_weights.mean().unwrap_or(1.0);
-        let curvature = Zip::from(&p).map_collect(|p| p * (1.0 - p));
-        let curvature = curvature.mean_axis(Axis(0)).expect("at least one row") * scale;
-        let curvature = curvature.insert_axis(Axis(1));
-        let mut diagonal = &curvature + &self.penalties;
-        // Probabilities of 0 and 1 have no curvature.
-        diagonal.mapv_inplace(|value| value.max(f64::MIN_POSITIVE.sqrt()));
+    /// Returns the number of products with the Hessian that take as long as a new Kronecker product. Returns `None` if this product needs much more memory than
+    /// the features.
+    fn refresh_products(&self) -> Option<usize> {
+        let (n, m) = self.scaled.dim();
+        (MIN_ROWS_PER_FEATURE * m <= n).then(|| m * (n + m) / (n * self.n_classes))
+    }
+
+    /// Returns an approximate Newton step at the point with probabilities `p` and the given gradient. The step ends the training if its predicted decrease is at
+    /// most `least`; products are computed in f32 while it is above `single`.
+    fn newton_step(
+        &self,
+        p: &Array2<f64>,
+        gradient: &Array2<f64>,
+        preconditioner: &Preconditioner,
+        [least, single_above]: [f64; 2],
+    ) -> NewtonStep {
         let single = p.mapv(|p| p as f32);
-        let mut residual = -&gradient;
+        let mut residual = -gradient;
         let mut step = Array2::zeros(gradient.dim());
-        let mut scaled = &residual / &diagonal;
+        let mut scaled = preconditioner.solve(&residual);
         let mut direction = scaled.clone();
         let mut product = dot(&residual, &scaled);
         let first = product;
         let mut decrease = 0.0;
         let mut decreases = Vec::new();
         for _ in 0..10 * step.len() {
-            let mut turned = if decrease > least.max(SINGLE_PRECISION * point.value) {
+            let mut turned = if decrease > least.max(single_above) {
                 let steps = direction.mapv(|step| step as f32);
                 let turned = self.curvature(&self.single, &single, &steps);
                 turned.mapv(f64::from)
             } else {
-                self.curvature(&self.scaled, &p, &direction)
+                self.curvature(&self.scaled, p, &direction)
             };
             turned += &(&direction * &self.penalties);
             let length = product / dot(&direction, &turned);
@@ -202,7 +239,7 @@ impl<'a> LogisticLoss<'a> {
             step.scaled_add(length, &direction);
             residual.scaled_add(-length, &turned);
             decrease += 0.5 * length * product;
-            scaled = &residual / &diagonal;
+            scaled = preconditioner.solve(&residual);
             let last = product;
             product = dot(&residual, &scaled);
             decreases.push(decrease);
@@ -219,19 +256,18 @@ impl<'a> LogisticLoss<'a> {
             direction *= product / last;
             direction += &scaled;
         }
-        let slope = dot(&gradient, &step);
-        (step, slope, decrease)
+        NewtonStep {
+            step,
+            decrease,
+            n_products: decreases.len(),
+        }
     }
 
     /// Returns the probabilities of all rows (n × n_classes), and the gradient of the objective.
     fn gradient(&self, point: &Point) -> (Array2<f64>, Array2<f64>) {
         let mut p = point.scores.clone();
-        for mut row in p.rows_mut() {
-            let max = row.fold(f64::NEG_INFINITY, |max, &score| max.max(score));
-            row.mapv_inplace(|score| (score - max).exp());
-            let sum = row.sum();
-            row /= sum;
-        }
+        normalise(&mut p);
+        p.mapv_inplace(f64::exp);
         let mut residuals = p.clone();
         for ((mut row, &label), weight) in residuals
             .rows_mut()
@@ -277,7 +313,7 @@ fn scores<T: NdFloat>(features: &Array2<T>, at: &Array2<T>) -> Array2<T> {
 }
 
 /// Returns the mean over the rows of `values[i, k] · (x_i, 1)`, shape n_classes × (m + 1).
-fn sums<T: NdFloat>(features: &Array2<T>, values: &Array2<T>) -> Array2<T> {
+pub(super) fn sums<T: NdFloat>(features: &Array2<T>, values: &Array2<T>) -> Array2<T> {
     let per_row = T::one() / T::from(features.nrows()).expect("a number of rows");
     let mut sums = Array2::zeros((values.ncols(), features.ncols() + 1));
     let of_weights = &mut sums.slice_mut(s![.., ..-1]);

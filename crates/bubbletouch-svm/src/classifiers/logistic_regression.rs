@@ -13,7 +13,7 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-use crate::class_model::{ClassModel, log_priors};
+use crate::class_model::{ClassModel, log_priors, normalise};
 use crate::class_weight::ClassWeight;
 use crate::classifiers::logistic_loss::LogisticLoss;
 use crate::dataset::{Dataset, checked_classes, positions, squared_norms};
@@ -136,15 +136,6 @@ impl ClassModel for Logistic {
 
     fn n_capped(&self) -> usize {
         usize::from(self.is_capped)
-    }
-}
-
-/// Normalises each row of log-scores to log-probabilities, so that the exponentials of a row sum to 1.
-fn normalise(values: &mut Array2<f64>) {
-    for mut row in values.rows_mut() {
-        let max = row.fold(f64::NEG_INFINITY, |max, &value| max.max(value));
-        let sum: f64 = row.iter().map(|value| (value - max).exp()).sum();
-        row -= max + sum.ln();
     }
 }
 

@@ -10,6 +10,7 @@ mod classifier_about;
 pub mod classifier;
 pub mod foreign;
 pub(crate) mod logistic_loss;
+mod logistic_preconditioner;
 pub mod parameters;
 pub(crate) mod ranked;
 pub mod trained_classifier;

@@ -7,7 +7,7 @@ use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
 use serde::{Deserialize, Serialize};
 
 use crate::Result;
-use crate::class_model::ClassModel;
+use crate::class_model::{ClassModel, normalise};
 use crate::cross_validation::choice::Chosen;
 use crate::predict::svm_model::SvmModel;
 use crate::scaling::FittedScaling;
@@ -124,11 +124,7 @@ impl TrainedClassifier {
         };
         let mut values = model.class_scores(scores);
         if model.is_probabilistic() {
-            for mut row in values.outer_iter_mut() {
-                let most = row.fold(f64::NEG_INFINITY, |a, b| a.max(*b));
-                let sum: f64 = row.iter().map(|value| (value - most).exp()).sum();
-                row -= most + sum.ln();
-            }
+            normalise(&mut values);
         }
         values
     }

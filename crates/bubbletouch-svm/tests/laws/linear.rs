@@ -195,6 +195,7 @@ fn logistic_regression_reaches_its_tolerance_at_any_penalty_and_in_any_units() {
         units,
         clusters(300, 30, 5, 3),
         clusters(90, 1, 3, 5),
+        clusters(60, 30, 3, 7),
     ];
     for (number, data) in all.iter().enumerate() {
         for c in [1e-6, 1e-2, 1.0, 1e2, 1e4, 1e6] {

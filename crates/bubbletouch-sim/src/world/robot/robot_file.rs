@@ -2,10 +2,11 @@
 
 use super::Robot;
 use super::mjcf::read_mjcf;
-use super::text::{decoded, root_name};
+use super::text::root_name;
 use super::urdf::{NamedSensor, read_urdf};
 use crate::error::{Error, Result};
 use crate::files::check_content;
+use crate::text::encoding::decoded;
 use std::path::Path;
 
 impl Robot {

@@ -1,4 +1,4 @@
-//! Text of a robot's file: decodes bytes, and repairs the text for a strict XML parser without changing line numbers.
+//! Text of a robot's file: repairs the text for a strict XML parser without changing line numbers.
 //!
 //! Many public files are not well-formed XML, although other tools accept them. Examples are comments or spaces before `<?xml`, `--` inside
 //! a comment, undeclared namespace prefixes, a second end tag of the root, and NUL bytes at the end.
@@ -9,30 +9,6 @@ use roxmltree::{Document, Error, ParsingOptions};
 
 /// Largest number of undeclared namespace prefixes in one file; robot files have far fewer.
 const MAX_PREFIXES: usize = 100;
-
-/// Decodes the bytes of a file as UTF-8, as UTF-16 if there is a byte order mark, otherwise as Latin-1 with a note.
-pub(super) fn decoded(place: &str, bytes: &[u8]) -> (String, Option<String>) {
-    let units = |from: fn([u8; 2]) -> u16| {
-        let pairs = bytes[2..].chunks_exact(2);
-        let units: Vec<u16> = pairs.map(|pair| from([pair[0], pair[1]])).collect();
-        String::from_utf16_lossy(&units)
-    };
-    match bytes {
-        [0xFF, 0xFE, ..] => return (units(u16::from_le_bytes), None),
-        [0xFE, 0xFF, ..] => return (units(u16::from_be_bytes), None),
-        _ => {}
-    }
-    match std::str::from_utf8(bytes) {
-        Ok(text) => (text.to_owned(), None),
-        Err(_) => {
-            let note = format!("{place}: not UTF-8; it is read as Latin-1 (ISO 8859-1)");
-            (
-                bytes.iter().map(|&byte| char::from(byte)).collect(),
-                Some(note),
-            )
-        }
-    }
-}
 
 /// Returns the text with spaces in place of comments and of an XML declaration that is not at the beginning. Undeclared namespace prefixes are declared. Line
 /// numbers are unchanged.

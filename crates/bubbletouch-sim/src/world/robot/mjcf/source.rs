@@ -1,8 +1,9 @@
 //! Text of an MJCF model: the main file with the text of each included file in place of its `<include>`.
 
 use crate::error::{Error, Result};
+use crate::text::encoding::decoded;
 use crate::world::robot::mesh_folders::spellings;
-use crate::world::robot::text::{decoded, parsed, repaired, unreadable};
+use crate::world::robot::text::{parsed, repaired, unreadable};
 use crate::world::robot::xml::{Element, Lines};
 use std::collections::HashSet;
 use std::ops::Range;

@@ -1,8 +1,9 @@
 //! Models in other files that a model can attach: `<asset><model name file/></asset>`.
 
 use crate::error::Result;
+use crate::text::encoding::decoded;
 use crate::world::robot::mesh_folders::spellings;
-use crate::world::robot::text::{decoded, parsed, repaired};
+use crate::world::robot::text::{parsed, repaired};
 use crate::world::robot::xml::{Element, Lines};
 use std::cell::Cell;
 use std::collections::BTreeMap;
