@@ -9,7 +9,7 @@ pub fn short_number(number: f64) -> String {
         return number.to_string();
     }
     let digits_before = number.abs().log10().floor() as i32 + 1;
-    if !(-3..=9).contains(&digits_before) {
+    if !(-3..=6).contains(&digits_before) {
         return format!("{number:.2e}").replace(".00e", "e");
     }
     let decimals = (4 - digits_before).max(0) as usize;
@@ -50,8 +50,7 @@ mod tests {
             (102.4, "102.4"),
             (12345.6, "12346"),
             (1e-5, "1e-5"),
-            (2.05e6, "2050000"),
-            (2.5e10, "2.50e10"),
+            (2.5e7, "2.50e7"),
         ] {
             assert_eq!(short_number(number), text);
         }

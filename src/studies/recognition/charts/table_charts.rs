@@ -373,7 +373,8 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
     let parts = fixed.iter().map(|setting| {
         let value = match setting.data.value(row) {
             Some(Value::Number(number)) => setting.column.tick(number),
-            _ => setting.label(row),
+            Some(Value::Word(word)) => word,
+            None => setting.label(row),
         };
         let value: String = value.chars().map(plain).collect();
         format!("_{}_{value}", word(&setting.column.name))
