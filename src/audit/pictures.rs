@@ -49,11 +49,20 @@ pub fn pictures(
             doubtful.take(MAX_PAIRS).collect(),
         ),
     ];
+    let named = |touch: &usize| {
+        let class = context.data.classes.get(context.labels[*touch]);
+        class.map_or_else(|| touch.to_string(), |class| format!("{touch} ({class})"))
+    };
     for (name, title, pairs) in rows {
         if !pairs.is_empty() {
+            let said = pairs
+                .iter()
+                .map(|pair| pair.each_ref().map(named).join(" and "));
+            let said = said.collect::<Vec<_>>().join(", ");
+            let title = format!("{title}; touches, from the top: {said}");
             let panels = pairs.into_iter().flatten();
             let panels: Vec<_> = panels.map(|touch| colours_of(context, touch)).collect();
-            pictures.push(draw((name, title), shape, &panels)?);
+            pictures.push(draw((name, &title), shape, &panels)?);
         }
     }
     Ok(pictures)

@@ -79,12 +79,11 @@ pub fn compare(args: &Args) -> Result<()> {
     }
     say(format_args!("First: {first_name}; second: {second_name}."))?;
     let width = terminal_width();
-    if let Some(ranks) = &ranks {
-        write_out(sentences_text(&ranks.words(), width).as_bytes())?;
-    }
     write_out(sentences_text(&changed, width).as_bytes())?;
     match found.is_empty() {
-        true => say("No row of the one has all settings of a row of the other."),
-        false => write_out(differences_text(&found, width)?.as_bytes()),
+        true => say("No row of the one has all settings of a row of the other.")?,
+        false => write_out(differences_text(&found, width)?.as_bytes())?,
     }
+    let ranks = ranks.map_or_else(Vec::new, |ranks| ranks.words());
+    write_out(sentences_text(&ranks, width).as_bytes())
 }

@@ -5,12 +5,15 @@ use crate::command::options::unused::check_used;
 use crate::command::terminal::output::{check_ending, terminal_width};
 use crate::command::terminal::streams::{note, write_out};
 use bubbletouch::files::write_bytes;
-use bubbletouch::report::heat_map::ColourScale;
+use bubbletouch::objects::Model;
 use bubbletouch::report::pressure_map::pressure_text;
-use bubbletouch::report::recording::animation::{Playback, frame_note, write_animation};
+use bubbletouch::report::recording::animation::{
+    Playback, colour_scale, frame_note, write_animation,
+};
 use bubbletouch::report::recording::skin_picture::SkinPicture;
 use bubbletouch::report::recording::{RecordingFile, recording_table};
 use bubbletouch::report::terminal::Ink;
+use bubbletouch::scene::ScenePlan;
 use bubbletouch::signal::Quantity;
 use bubbletouch::{Error, Result};
 use ndarray::Array2;
@@ -45,7 +48,8 @@ pub struct Args {
     out: Option<PathBuf>,
     /// Write an animated PNG, for browsers
     ///
-    /// The animation has at most 600 frames of the recording, evenly in time.
+    /// The animation has at most 600 frames of the recording, evenly in time. Beside the skin, it shows all patches and the objects of scene.toml; a strip shows
+    /// the total force.
     #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     animate: Option<PathBuf>,
     /// Limit the pictures per second of the animation (at most 50) [default: 25]
@@ -108,11 +112,11 @@ fn chosen_patch(args: &Args, file: &RecordingFile) -> Result<usize> {
 fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()> {
     let number = chosen_patch(args, file)?;
     let values = file.frame(number, args.quantity(), frame)?;
+    let scale = colour_scale(file, number, args.quantity())?;
     let patch = &file.header().patches[number];
     let said = frame_note(file.time(), frame);
     match (&args.out, patch.grid) {
         (Some(path), _) => {
-            let scale = ColourScale::over(&values, args.quantity());
             let skin = SkinPicture::new(patch, scale)?;
             write_bytes(path, &skin.frame(&values, &said)?.png()?)?;
         }
@@ -144,7 +148,17 @@ fn animate(args: &Args, file: &mut RecordingFile, path: &Path) -> Result<()> {
         speed: args.speed.unwrap_or(usual.speed),
         fps: args.fps.unwrap_or(usual.fps),
     };
-    let shown = write_animation(path, file, patch, args.quantity(), &playback)?;
+    // The scene that bubbletouch simulate wrote beside the recording has the shapes of the objects.
+    let scene = args.file.with_file_name("scene.toml");
+    let models: Vec<(String, Model)> = match scene.exists() {
+        true => {
+            let plan = ScenePlan::read(&scene)?;
+            let names = plan.objects.into_iter().map(|object| object.name);
+            names.zip(plan.models).collect()
+        }
+        false => Vec::new(),
+    };
+    let shown = write_animation(path, file, patch, (args.quantity(), &models), &playback)?;
     let milliseconds: u64 = shown.iter().map(|frame| frame.milliseconds).sum();
     note(format_args!(
         "{} of {} frames in {:.1} s, at {} × the speed of the recording",

@@ -33,6 +33,13 @@ pub struct ChartSpec {
     pub right: Option<Shown>,
     /// Reference lines across the chart, such as the chance level, a limit or a published value.
     pub rules: Vec<Rule>,
+    /// Markers on the lines that are not rows of the table, such as the place at which an accuracy is halved.
+    pub dots: Vec<Dot>,
+    /// Small charts of the same table in groups with a heading each. They share the title, the legend and the y axis of this chart and replace its panels. Empty
+    /// for a chart with panels of its own.
+    pub parts: Vec<(&'static str, Vec<ChartSpec>)>,
+    /// Whether both axes have the same range and length, as for places on a skin and for two values of one quantity.
+    pub square: bool,
     /// Whether the Pareto front of the points is drawn. The x axis is the cost, and the role of the y column defines the better direction.
     pub front: bool,
 }
@@ -97,6 +104,15 @@ impl Mark {
             _ => None,
         }
     }
+}
+
+/// Marker at a position on the line of a table row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dot {
+    /// Index of a table row on the line, which determines the colour of the marker.
+    pub row: usize,
+    /// Position of the marker, in the units of the x and the y column.
+    pub at: (f64, f64),
 }
 
 /// Reference line across the chart.

@@ -184,9 +184,10 @@ impl Column {
         }
     }
 
-    /// Returns the display name of a text that the column contains.
+    /// Returns the display name of a text that the column contains; a file of an array has its name without the ending.
     pub fn word(&self, code: &str) -> String {
         let name = self.name_of(code);
+        let code = code.strip_suffix(".npy").unwrap_or(code);
         name.map_or_else(|| code.replace('_', " "), str::to_owned)
     }
 

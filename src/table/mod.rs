@@ -16,7 +16,7 @@ mod rows;
 #[allow(clippy::module_inception)]
 mod table;
 
-pub use chart::{Along, At, ChartSpec, Mark, Rule, Shown};
+pub use chart::{Along, At, ChartSpec, Dot, Mark, Rule, Shown};
 pub use column::{Better, Column, Columns, Role, Scale, column_name};
 pub use file::{File, FileAbout};
 pub use front::front;

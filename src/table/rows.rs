@@ -64,16 +64,21 @@ impl Table {
     }
 
     /// Formats the value of a row with its interval, such as `0.93 [0.90, 0.95]`. Fractions have two decimal places; from 0.995 to below 1 they have four, so
-    /// that they are not rounded to 1. Returns an empty text if the value is absent.
+    /// that they are not rounded to 1. Other numbers have the digits of which the width of the interval has two. Returns an empty text if the value is absent.
     pub fn bounded(&self, column: &Column, row: usize) -> String {
         let value = self.number(&column.name, row);
         let is_share = column.scale == Scale::Share && column.unit.is_empty();
-        let said = |number: f64| match value {
-            0.995..1.0 if is_share => format!("{number:.4}"),
+        let interval = self.interval(column, row);
+        let said = |number: f64| match (value, interval) {
+            (0.995..1.0, _) if is_share => format!("{number:.4}"),
             _ if is_share => format!("{number:.2}"),
+            (_, Some([low, high])) if low < high => {
+                let step = 10f64.powf((high - low).log10().floor() - 1.0);
+                column.tick((number / step).round() * step)
+            }
             _ => column.tick(number),
         };
-        match self.interval(column, row) {
+        match interval {
             _ if value.is_nan() => self.words(&column.name, row),
             Some([low, high]) => format!("{} [{}, {}]", said(value), said(low), said(high)),
             None if is_share => said(value),

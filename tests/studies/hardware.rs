@@ -4,6 +4,7 @@ use crate::command::Case;
 use crate::study::{Study, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};
 use bubbletouch::random::Seed;
+use bubbletouch::report::chart::{draw, places};
 use bubbletouch::signal::{Chain, Recording, SensorError, SignalWorkspace};
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::progress::Silent;
@@ -244,23 +245,35 @@ fn a_table_has_a_row_of_each_condition_and_the_written_study_is_the_same() {
 }
 
 #[test]
-fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
+fn every_strength_gets_its_small_chart_and_every_imperfection_its_picture() {
     let study = Study::new(&with_signal(ALL));
-    let mut charts = charts(&tables_of(&study.run()).unwrap(), None);
-    charts.retain(|spec| spec.y == "accuracy");
-    let names: Vec<&str> = charts.iter().map(|spec| spec.name.as_str()).collect();
+    let made = tables_of(&study.run()).unwrap();
+    let all = charts(&made, None);
+    let sheet = all.iter().find(|spec| spec.name == "accuracy_by_setting");
+    let sheet = sheet.unwrap();
+    let [(heading, parts)] = &sheet.parts[..] else {
+        panic!("one group: {:?}", sheet.parts);
+    };
+    assert_eq!(*heading, "");
+    let mut names: Vec<&str> = parts.iter().map(|spec| &spec.x[..]).collect();
+    names.sort_unstable();
     let expected = [
-        "accuracy_by_noise",
-        "accuracy_by_hysteresis_full_scale",
-        "accuracy_by_crosstalk",
-        "accuracy_by_gain_std",
-        "accuracy_by_drift_std_full_scale",
-        "accuracy_by_dead_fraction",
-        "accuracy_by_stuck_fraction",
-        "accuracy_by_scan_time_ms",
-        "accuracy_by_adc_bits",
+        "adc_bits",
+        "crosstalk",
+        "dead_fraction",
+        "drift_std_full_scale",
+        "gain_std",
+        "hysteresis_full_scale",
+        "noise_std",
+        "scan_time_ms",
+        "stuck_fraction",
     ];
     assert_eq!(names, expected);
+    let svg = draw(sheet, &made).unwrap().svg("");
+    for part in parts {
+        assert!(svg.contains(&format!(">{}<", part.title)), "{}", part.title);
+        assert!(places(part, &made).unwrap().len() >= 2, "{}", part.x);
+    }
     let samples = sample_frames(&study.plan, &study.sweep.groups, &study.touched).unwrap();
     let names: Vec<&str> = samples
         .shown

@@ -3,7 +3,7 @@
 use super::legend::{Heading, LEFT, LegendEntry, RIGHT};
 use super::scale::{Scale, Tick, thin};
 use super::view::View;
-use crate::report::pictures::colours::{GRID, INK, MUTED};
+use crate::report::pictures::colours::{GRID, INK, MUTED, PAPER};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::text_width::{shorten, text_width, wrap};
 
@@ -22,7 +22,7 @@ const DEEPEST: f64 = 160.0;
 /// Maximum number of lines of a label below a panel.
 const MAX_LINES: usize = 3;
 /// Font size and line height of the caption below the panels, pixels.
-const CAPTION: f64 = 12.0;
+pub(super) const CAPTION: f64 = 12.0;
 const CAPTION_LINE: f64 = 17.0;
 /// Height of a line in a panel's title, pixels.
 const TITLE_LINE: f64 = 16.0;
@@ -32,8 +32,8 @@ pub(super) struct Layout {
     columns: usize,
     /// Width and height of a panel, pixels.
     size: (f64, f64),
-    /// Left edge of the first panel, pixels.
-    left: f64,
+    /// Top left corner of the first panel, pixels.
+    corner: (f64, f64),
     /// Width of the whole chart, pixels.
     pub width: f64,
     /// Lines of the title above each panel.
@@ -64,6 +64,7 @@ impl Layout {
         let titles = titles.map(|title| wrap(title, 1.12 * f64::from(LABEL), size.0));
         let titles: Vec<Vec<String>> = titles.collect();
         let titled = TITLE_LINE * titles.iter().map(Vec::len).max().unwrap_or(0) as f64;
+        let above = 10.0 + titled;
         let panels_width = columns as f64 * (size.0 + GAP) - GAP;
         let width = f64::max(panels_width + left + RIGHT, NARROWEST);
         let inner = width - LEFT - RIGHT;
@@ -76,16 +77,32 @@ impl Layout {
         let caption = [format!("{others} {}", view.spec.note), view.omitted()];
         let caption = caption.iter().flat_map(|text| wrap(text, CAPTION, inner));
         let caption = caption.collect();
+        let heading = Heading::new(&view.spec.title, settings, entries, inner);
         Self {
             columns,
             size,
-            left,
+            corner: (left, heading.height() + above),
             width,
             titles,
-            above: 10.0 + titled,
+            above,
             labels: XLabels::new(&view.x, size.0),
-            heading: Heading::new(&view.spec.title, settings, entries, inner),
+            heading,
             caption,
+        }
+    }
+
+    /// Creates the layout of a small chart without heading and titles, whose panel has the given corner and size.
+    pub fn of_part(view: &View, corner: (f64, f64), size: (f64, f64)) -> Self {
+        Self {
+            columns: 1,
+            size,
+            corner,
+            width: size.0,
+            titles: vec![Vec::new()],
+            above: 0.0,
+            labels: XLabels::new(&view.x, size.0),
+            heading: Heading::new("", Vec::new(), Vec::new(), size.0),
+            caption: Vec::new(),
         }
     }
 
@@ -103,10 +120,9 @@ impl Layout {
     /// Returns the area that contains all panels, pixels.
     fn panels(&self) -> Area {
         let (across, down) = (self.columns, self.titles.len().div_ceil(self.columns));
-        let top = self.heading.height() + self.above;
         let width = across as f64 * (self.size.0 + GAP) - GAP;
         let height = (down - 1) as f64 * self.pitch() + self.size.1;
-        Area::new((self.left, top), (width, height))
+        Area::new(self.corner, (width, height))
     }
 
     fn pitch(&self) -> f64 {
@@ -129,7 +145,7 @@ impl Layout {
         let style = TextStyle::new(LABEL).align(Align::Middle);
         let shortened = |text: &str, room: f64| shorten(text, f64::from(LABEL), room);
         let below = (panels.at(0.5, 0.0).0, self.below());
-        let text = shortened(&view.x.title, panels.width + self.left);
+        let text = shortened(&view.x.title, panels.width + panels.x);
         drawing.text(below, &text, style);
         let small = TextStyle::new(CAPTION as u32).colour(MUTED);
         for (line, text) in self.caption.iter().enumerate() {
@@ -165,26 +181,29 @@ impl Layout {
     }
 }
 
-/// Draws the axes, the grid lines at the ticks, and a dashed line between the value zero and a logarithmic axis.
+/// Draws the axes and the grid lines at the ticks. A gap of an axis separates the value zero from a logarithmic axis.
 fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
     let grid = Stroke::new(GRID, 1.0);
-    let shelf = Stroke {
-        dash: Some((5, 4)),
-        ..Stroke::new(MUTED, 1.0)
-    };
-    let lines = |scale: &Scale| -> Vec<(f64, Stroke)> {
-        let ticks = scale.ticks.iter().map(|tick| (tick.at, grid));
-        ticks.chain(scale.shelf.map(|at| (at, shelf))).collect()
-    };
-    for (x, stroke) in lines(&view.x) {
-        drawing.line(frame.at(x, 1.0), frame.at(x, 0.0), stroke);
+    for tick in &view.x.ticks {
+        drawing.line(frame.at(tick.at, 1.0), frame.at(tick.at, 0.0), grid);
     }
-    for (y, stroke) in lines(&view.y) {
-        drawing.line(frame.at(0.0, y), frame.at(1.0, y), stroke);
+    for tick in &view.y.ticks {
+        drawing.line(frame.at(0.0, tick.at), frame.at(1.0, tick.at), grid);
     }
     let corners = [(0.0, 1.0), (0.0, 0.0), (1.0, 0.0)];
     let axes = corners.map(|(across, up)| frame.at(across, up));
     drawing.polyline(&axes, Stroke::new(INK, 1.0));
+    let breaks = [
+        view.x.shelf.map(|at| (at, 0.0)),
+        view.y.shelf.map(|at| (0.0, at)),
+    ];
+    for (x, y) in breaks.into_iter().flatten().map(|(x, y)| frame.at(x, y)) {
+        drawing.line(
+            (x - 3.0, y + 4.0),
+            (x + 3.0, y - 4.0),
+            Stroke::new(PAPER, 4.0),
+        );
+    }
 }
 
 impl XLabels {

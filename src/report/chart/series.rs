@@ -1,13 +1,14 @@
 //! Series of a chart: points with markers and confidence intervals, optionally joined by lines.
 
 use super::front::{self, Front};
-use super::layout::Layout;
-use super::legend::{FRONT, LegendEntry, MARKER_RADIUS, line_stroke};
+use super::layout::{CAPTION, Layout};
+use super::legend::{FRONT, Heading, LEFT, LegendEntry, MARKER_RADIUS, line_stroke};
 use super::rules;
 use super::view::{Place, View};
+use crate::error::Result;
 use crate::report::pictures::colours::{INK, MUTED, Rgb};
 use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke, TextStyle};
-use crate::report::text_width::{shorten, text_width};
+use crate::report::text_width::{shorten, text_width, wrap};
 
 /// Number of points in a chart above which all markers are small.
 const MANY: usize = 400;
@@ -16,35 +17,82 @@ const FEW: usize = 12;
 /// Font size of the labels of points on a Pareto front, pixels.
 const FRONT_LABEL: u32 = 11;
 
+/// Width and height of the panel of a small chart, pixels.
+const PART: (f64, f64) = (158.0, 100.0);
+/// Width and height that a small chart takes with its title and labels, pixels.
+const PART_PITCH: (f64, f64) = (212.0, 172.0);
+/// Maximum number of small charts side by side.
+const PARTS_ACROSS: usize = 6;
+
 /// Draws a chart in which each series of data is a line or a set of points.
-pub(super) fn draw(view: &View) -> Drawing {
+pub(super) fn draw(view: &View) -> Result<Drawing> {
+    if !view.spec.parts.is_empty() {
+        return draw_parts(view);
+    }
+    // Two charts of up to two columns fit side by side on the page.
     let (columns, width, height) = match view.titles.len() {
-        1 => (1, 660.0, 340.0),
-        2 | 4 => (2, 385.0, 300.0),
-        _ => (3, 272.0, 240.0),
+        1 => (1, 540.0, 320.0),
+        2 | 4 => (2, 275.0, 270.0),
+        _ => (3, 176.0, 220.0),
     };
     let height = match view.y.is_words {
         true if view.spec.label.is_some() => 36.0 * view.y.n_levels as f64,
         true => 22.0 * view.y.n_levels as f64,
+        false if view.spec.square => width,
         false => height,
     };
     let layout = Layout::new(view, legend(view), columns, (width, height));
-    let front = Front::new(view);
     let mut drawing = Drawing::new(layout.width, layout.bottom());
     layout.draw_titles(&mut drawing, view);
+    draw_panels(&mut drawing, view, &layout);
+    Ok(drawing)
+}
+
+fn draw_panels(drawing: &mut Drawing, view: &View, layout: &Layout) {
+    let front = &Front::new(view);
     for panel in 0..view.titles.len() {
-        layout.draw_axes(&mut drawing, view, panel);
+        layout.draw_axes(drawing, view, panel);
         let frame = layout.frame(panel);
-        rules::draw(&mut drawing, view, panel, frame);
+        rules::draw(drawing, view, panel, frame);
         let panel = Panel {
             view,
             panel,
             frame,
-            front: &front,
+            front,
         };
-        panel.draw(&mut drawing);
+        panel.draw(drawing);
     }
-    drawing
+}
+
+/// Draws a chart of small charts: the shared heading, and below it the groups. Each small chart has its title and its note above its panel.
+fn draw_parts(view: &View) -> Result<Drawing> {
+    let groups = &view.spec.parts;
+    let inner = PARTS_ACROSS as f64 * PART_PITCH.0;
+    let settings = wrap(&view.constants(), CAPTION, inner);
+    let heading = Heading::new(&view.spec.title, settings, legend(view), inner);
+    let n_rows = |parts: &Vec<_>| parts.len().div_ceil(PARTS_ACROSS) as f64;
+    let rows: f64 = groups.iter().map(|(_, parts)| n_rows(parts)).sum();
+    let below = 20.0 * groups.len() as f64 + PART_PITCH.1 * rows;
+    let mut drawing = Drawing::new(LEFT + inner, heading.height() + below + 10.0);
+    heading.draw(&mut drawing);
+    let quiet = TextStyle::new(CAPTION as u32).colour(MUTED);
+    let mut top = heading.height();
+    for (title, parts) in groups {
+        drawing.text((LEFT, top + 12.0), title, quiet);
+        top += 20.0;
+        for row in parts.chunks(PARTS_ACROSS) {
+            for (column, part) in row.iter().enumerate() {
+                let view = View::new(part, std::slice::from_ref(view.table))?;
+                let (x, y) = (LEFT + column as f64 * PART_PITCH.0, top + 40.0);
+                let title = shorten(&part.title, 1.12 * CAPTION, PART_PITCH.0 - 10.0);
+                drawing.bold_text((x, y - 23.0), &title, TextStyle::new(CAPTION as u32));
+                drawing.text((x, y - 7.0), &part.note, quiet);
+                draw_panels(&mut drawing, &view, &Layout::of_part(&view, (x, y), PART));
+            }
+            top += PART_PITCH.1;
+        }
+    }
+    Ok(drawing)
 }
 
 /// Returns whether the label of each point names its series, as in a chart of few series of one point.
@@ -97,6 +145,12 @@ fn legend(view: &View) -> Vec<LegendEntry> {
         }));
     }
     entries.extend(rules::entries(view));
+    if !view.spec.parts.is_empty() {
+        let words = "half of the accuracy above chance is lost".to_owned();
+        entries.push(LegendEntry::new(words, |drawing, area| {
+            drawing.marker(0, area.at(0.5, 0.5), MARKER_RADIUS, INK);
+        }));
+    }
     entries
 }
 
@@ -148,6 +202,13 @@ impl Panel<'_> {
             self.draw_series(drawing, line, |drawing| {
                 self.draw_points(drawing, line, places);
             });
+        }
+        for dot in &view.spec.dots {
+            let line = view.lines.of[dot.row];
+            if let (Some(x), Some(y)) = (view.x.place(dot.at.0), view.y.place(dot.at.1)) {
+                let colour = line_stroke(line).colour;
+                drawing.marker(0, self.frame.at(x, y), MARKER_RADIUS, colour);
+            }
         }
         self.draw_labels(drawing);
     }
@@ -207,9 +268,11 @@ impl Panel<'_> {
         self.frame.at(place.x, place.y)
     }
 
-    /// Returns the radius and colour of markers that are not on the Pareto front. They are paler if a front is drawn, and smaller if there are many points.
+    /// Returns the radius and colour of markers that are not on the Pareto front. They are paler if a front is drawn, and smaller if there are many points or if
+    /// the panel is small.
     fn behind(&self, colour: Rgb) -> (f64, Rgb) {
         let radius = match self.view.places.len() > MANY {
+            _ if self.frame.width <= PART.0 && self.view.is_joined => 0.35 * MARKER_RADIUS,
             true => 0.55 * MARKER_RADIUS,
             false => MARKER_RADIUS,
         };
@@ -284,6 +347,7 @@ impl Panel<'_> {
                     (x - 8.0 - width, y + inner),
                     (x + 9.0, y + outer),
                     (left, y + outer),
+                    (left, y + 2.6 * outer),
                 ],
             };
             let area = |&(x, y): &Point| Area::new((x, y - size), (width, size + 1.0));

@@ -112,6 +112,10 @@ impl<'a> View<'a> {
                 }
             }
         }
+        if spec.square {
+            let both = along.concat();
+            along = [both.clone(), both];
+        }
         let scale = |one: &Setting, own: &(Vec<f64>, Vec<String>), all: &[f64], side| match is_tiles
             || one.column.scale == Spacing::Words
         {
@@ -133,7 +137,11 @@ impl<'a> View<'a> {
                 &y,
                 &y_values,
                 &along[1],
-                if spec.front { Along::X } else { Along::Y },
+                if spec.front || spec.square {
+                    Along::X
+                } else {
+                    Along::Y
+                },
             ),
             is_joined: mark.path.is_some() && !is_broken,
             places: Vec::new(),

@@ -65,9 +65,9 @@ pub fn differences_page(
             tables: &[values, costs],
             charts: &charts,
             answers: &[
-                ranks.map_or_else(Vec::new, RankAgreement::words),
-                entries.to_vec(),
                 sentences(found),
+                entries.to_vec(),
+                ranks.map_or_else(Vec::new, RankAgreement::words),
             ]
             .concat(),
         },
@@ -92,6 +92,7 @@ fn chart(
         shown: vec![shown("table", table), shown("column", column)],
         lines: vec!["significance".to_owned()],
         mark: Mark::Points,
+        square: true,
         rules: vec![Rule {
             along: Along::Y,
             at: At::Column("first".to_owned()),
@@ -128,8 +129,8 @@ fn table<'a>(
     file.table(&rows)
 }
 
-/// Returns sentences about the differences between two result folders. For each table, they state the number of common settings, then the differences of
-/// values, then of costs.
+/// Returns sentences about the differences between two result folders: of values that changed, of other values, of costs, and the number of common settings of
+/// each table.
 fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     let mut said = Vec::new();
     let mut last = "";
@@ -139,19 +140,24 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
         };
         // Columns of one table are adjacent in `found`.
         if std::mem::replace(&mut last, table) != table {
-            said.push(format!(
+            let settings = format!(
                 "{table}: {} settings are in both runs, {} in the first alone, {} in the second alone.",
-                one.n_both,
-                one.n_first_only,
-                one.n_second_only
-            ));
+                one.n_both, one.n_first_only, one.n_second_only
+            );
+            said.push((3, settings));
         }
+        let is_equal = one.counts(|_| true) == [0, 0];
         match is_cost(one) {
-            true => said.push(cost_words(one)),
-            false => said.extend(value_words(one)),
+            true => said.push((2, cost_words(one))),
+            false => said.extend(
+                value_words(one)
+                    .into_iter()
+                    .map(|words| (usize::from(is_equal), words)),
+            ),
         }
     }
-    said
+    said.sort_by_key(|(rank, _)| *rank);
+    said.into_iter().map(|(_, words)| words).collect()
 }
 
 /// Returns sentences about all differences except differences of means: outcomes, numbers absent in one run, and other columns.

@@ -3,13 +3,12 @@
 use crate::report::advice::{AdviceQuery, Candidate, Candidates};
 use crate::report::pictures::drawing::escape;
 use crate::report::study_content::Found;
-use crate::report::swept::Setting;
-use crate::table::{Role, Value};
+use crate::table::Value;
 
 /// Maximum number of rows that are listed for each Pareto front.
 const MAX_ROWS: usize = 200;
 
-/// Returns HTML tables of the best choices, one table per cost. For each condition, a table lists the choices that are better than all choices of equal or
+/// Returns an HTML table of the best choices. For each condition, the table lists the choices that are better than all choices of equal or
 /// lower cost. The HTML is empty if no table has choices with costs.
 pub(crate) fn choices_html(found: &Found) -> String {
     let Ok(offers) = Candidates::new(found.tables, &AdviceQuery::default()) else {
@@ -19,22 +18,9 @@ pub(crate) fn choices_html(found: &Found) -> String {
     if !table.compares_choices() {
         return String::new();
     }
-    let costs = Setting::of_roles(table, &[Role::Cost]);
-    let costs = costs.filter(|one| one.is_number() && one.data.varies(0..table.n_rows));
-    let others = costs.filter(|one| one.column.name != offers.cost.name);
-    let others = others.map(|one| Candidates::of_columns(table, value, one.column));
-    let others: String = others
-        .map(|offers| {
-            format!(
-                "<details><summary>For the least {}</summary>{}</details>",
-                escape(&offers.cost.words),
-                front_html(&offers)
-            )
-        })
-        .collect();
     format!(
         "<p class=\"quiet\">The Pareto front of “{}”: each row reaches its {} for the least {}. Each condition of the world has a front of its own. \
-         <code>bubbletouch advise</code> selects a row by a value or a budget.</p>{}{others}",
+         <code>bubbletouch advise</code> selects a row by a value, a budget or another cost.</p>{}",
         escape(table.title),
         escape(&value.words),
         escape(&offers.cost.words),

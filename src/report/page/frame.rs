@@ -76,33 +76,14 @@ pub(crate) fn definition(name: &str, value: &str) -> String {
     format!("<div{class}><dt>{name}</dt><dd>{value}</dd></div>")
 }
 
-/// Maximum number of sentences before the first chart; further sentences are folded.
-const MAX_SENTENCES: usize = 5;
-
-/// Returns sentences as HTML: the first sentence in large type, the next ones as a list, and others folded. The HTML is empty if there are no sentences.
+/// Returns sentences as an HTML list; empty if there are no sentences.
 pub(crate) fn sentences_html(sentences: &[String]) -> String {
-    let Some((first, others)) = sentences.split_first() else {
-        return String::new();
-    };
-    let list = |sentences: &[String]| match sentences {
-        [] => String::new(),
-        some => {
-            let items = some
-                .iter()
-                .map(|sentence| format!("<li>{}</li>", unbroken(sentence)));
-            format!("<ul>{}</ul>", items.collect::<String>())
-        }
-    };
-    let (shown, folded) = others.split_at(others.len().min(MAX_SENTENCES - 1));
-    let folded = match folded.len() {
-        0 => String::new(),
-        n => format!(
-            "<details><summary>{n} more findings</summary>{}</details>",
-            list(folded)
-        ),
-    };
-    let list = list(shown) + &folded;
-    format!("<p class=\"answer\">{}</p>{list}", unbroken(first))
+    let items = sentences.iter();
+    let items = items.map(|sentence| format!("<li>{}</li>", unbroken(sentence)));
+    match items.collect::<String>() {
+        items if items.is_empty() => items,
+        items => format!("<ul>{items}</ul>"),
+    }
 }
 
 /// Returns a sentence as HTML without line breaks between a number and its unit or sign.

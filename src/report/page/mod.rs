@@ -10,11 +10,9 @@ mod picture;
 mod provenance;
 mod study;
 mod table;
-mod touches;
 
 pub use about::StudyAbout;
 pub use frame::Section;
 pub(crate) use frame::definition;
 pub(crate) use picture::png_element;
 pub(crate) use study::{Beside, page as study_page};
-pub(crate) use touches::touches_html;

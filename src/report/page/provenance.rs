@@ -2,9 +2,7 @@
 
 use super::frame::definition;
 use crate::engine::provenance::Manifest;
-use crate::report::pictures::drawing::escape;
 use crate::spelling::counted;
-use std::collections::BTreeMap;
 
 /// Returns the provenance as HTML: program, machine, times and hashes.
 pub(crate) fn provenance_html(manifest: &Manifest) -> String {
@@ -34,24 +32,8 @@ pub(crate) fn provenance_html(manifest: &Manifest) -> String {
         ("SHA-256 of study.toml", manifest.study_sha256.clone()),
     ];
     let rows = rows.iter().map(|(name, value)| definition(name, value));
-    let listed = [
-        listed("Methods of intervals and p-values", &manifest.methods),
-        listed("Tables (SHA-256)", &manifest.tables_sha256),
-        listed("Objects (SHA-256)", &manifest.objects_sha256),
-    ];
-    format!("<dl>{}</dl>{}", rows.collect::<String>(), listed.concat())
-}
-
-fn listed(title: &str, known: &BTreeMap<String, String>) -> String {
-    if known.is_empty() {
-        return String::new();
-    }
-    let rows = known
-        .iter()
-        .map(|(name, value)| definition(&escape(name), value));
     format!(
-        "<details><summary>{title}: {}</summary><dl class=\"hashes\">{}</dl></details>",
-        known.len(),
+        "<dl>{}</dl><p class=\"quiet\">manifest.json lists the hashes of all tables and objects, and the methods of intervals and p-values.</p>",
         rows.collect::<String>()
     )
 }

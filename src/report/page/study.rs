@@ -2,7 +2,7 @@
 
 use super::about::StudyAbout;
 use super::choices::choices_html;
-use super::frame::{Section, html, sentences_html};
+use super::frame::{Section, html, sentences_html, unbroken};
 use super::picture::{figure, png_element};
 use super::provenance::provenance_html;
 use super::table::table_html;
@@ -10,15 +10,14 @@ use crate::report::chart_format::ChartFormat;
 use crate::report::pictures::drawing::escape;
 use crate::report::study_content::{Beyond, Found, NamedPicture};
 use crate::table::{ChartSpec, Table, short_number};
-use std::collections::HashMap;
 
 /// Maximum size of all charts on a page together, bytes. With a larger value, the page is slow; with a smaller value, charts of some hundred points become
 /// links.
 const MAX_CHART_BYTES: usize = 1_200_000;
-/// Maximum total size of all tables with charts on a page, bytes. With a larger value, the page is slow; with a smaller value, tooltips of charts have no rows.
+/// Maximum size of a table with charts on a page, bytes. With a larger value, the page is slow; with a smaller value, tooltips of charts have no rows.
 const MAX_TABLE_BYTES: usize = 1_200_000;
-/// Maximum total size of the tables without charts on a page, bytes; their files have all rows.
-const MAX_OTHER_BYTES: usize = 120_000;
+/// Maximum size of a table without charts on a page, bytes; its file has all rows.
+const MAX_OTHER_BYTES: usize = 40_000;
 
 /// Parts of a study's HTML page that are neither tables nor answers.
 #[derive(Default)]
@@ -34,14 +33,15 @@ pub(crate) struct Beside {
 /// Returns the page of a study as HTML.
 pub(crate) fn page(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     let pictures = beside.beyond.pictures.iter().map(picture_html).collect();
-    let mut sections = vec![Section::new(
-        "answer",
-        "Answer",
-        sentences_html(found.answers),
-    )];
+    // The first screen holds the first sentence and the first two charts.
+    let (first, others) = found.answers.split_at(found.answers.len().min(1));
+    let first = first.iter();
+    let first = first.map(|first| format!("<p class=\"answer\">{}</p>", unbroken(first)));
+    let mut sections = vec![Section::new("answer", "Answer", first.collect())];
     sections.extend_from_slice(&beside.beyond.first_sections);
     sections.extend([
         Section::new("charts", "Charts", charts_html(about, found, beside)),
+        Section::new("more", "Further findings", sentences_html(others)),
         Section::new("choices", "What to choose", choices_html(found)),
         Section::new("pictures", "Pictures", pictures),
     ]);
@@ -57,11 +57,9 @@ pub(crate) fn page(about: &StudyAbout, found: &Found, beside: &Beside) -> String
 
 fn picture_html(picture: &NamedPicture) -> String {
     let title = &picture.title;
-    figure(
-        "card",
-        &png_element(&picture.png, picture.size, title),
-        title,
-    )
+    let image = png_element(&picture.png, picture.size, title);
+    let caption = format!("<figcaption>{}</figcaption>", escape(title));
+    figure("class=\"card\"", &(image + &caption), title)
 }
 
 /// Returns the charts as HTML; charts that are too large for the page become links to their files.
@@ -118,22 +116,18 @@ fn not_drawn(left_out: &[String]) -> String {
     )
 }
 
-/// Returns all tables as HTML. Tables of charts come first, then small ones, until the page is full. The remaining tables are truncated to their first rows.
+/// Returns all tables as HTML. Large tables are truncated to their first rows.
 fn tables_html(found: &Found) -> String {
-    let is_charted = |table: &Table| found.charts.iter().any(|chart| chart.table == table.file);
-    let mut order: Vec<&Table> = found.tables.iter().filter(|t| t.n_rows > 0).collect();
-    order.sort_by_key(|table| (!is_charted(table), table.csv.len()));
-    let mut room = [MAX_TABLE_BYTES, MAX_OTHER_BYTES];
-    let mut made = HashMap::new();
-    for table in order {
-        let room = &mut room[usize::from(!is_charted(table))];
-        let table_html = table_html(table, *room);
-        *room = room.saturating_sub(table_html.html.len());
-        made.insert(table.file, table_html);
-    }
     let place = |table: &Table| {
+        let is_charted = found.charts.iter().any(|chart| chart.table == table.file);
+        let room = if is_charted {
+            MAX_TABLE_BYTES
+        } else {
+            MAX_OTHER_BYTES
+        };
+        let made = (table.n_rows > 0).then(|| table_html(table, room));
         let (file, title, n) = (escape(table.file), escape(table.title), table.n_rows);
-        let body = match made.get(table.file) {
+        let body = match &made {
             None => "<p>No rows.</p>".to_owned(),
             Some(made) if made.n_rows == n => made.html.clone(),
             Some(made) => {

@@ -232,15 +232,7 @@ impl Drawing {
     pub fn marker(&mut self, line: usize, at: Point, radius: f64, fill: Rgb) {
         for (radius, fill) in [(radius + 1.2, PAPER), (radius, fill)] {
             match line % N_MARKERS {
-                0 => self.elements.push(Primitive::Circle {
-                    cx: snap(at.0),
-                    cy: snap(at.1),
-                    r: radius,
-                    fill: colour(fill),
-                    fill_opacity: None,
-                    stroke: None,
-                    stroke_width: None,
-                }),
+                0 => self.disc(at, radius, fill),
                 shape => self.polygon(&marker_outline(shape, at, radius), fill, 1.0),
             }
         }

@@ -14,8 +14,10 @@ use ndarray::Array2;
 
 /// Maximum number of cells along each side of a frame's picture. In a larger frame, each cell shows the largest value of a block of taxels.
 const MAX_CELLS: usize = 128;
-/// Maximum number of frames side by side in a picture.
-const MAX_COLUMNS: usize = 4;
+/// Maximum number of frames in a picture; a picture of more frames does not fit on a page.
+const MAX_FRAMES: usize = 120;
+/// Width of the frames side by side in a picture, pixels.
+const WIDTH: f64 = 768.0;
 
 /// Frames of several touches, which are drawn with a common colour scale.
 #[derive(Clone, Debug)]
@@ -30,7 +32,8 @@ pub struct Snapshots {
     pub caption: String,
 }
 
-/// Draws named frames, four per row, with a common colour bar and the caption below. The picture has two image pixels per drawing pixel.
+/// Draws the first 120 named frames, four per row, or eight if there are more than eight, with a common colour bar and the caption below. The picture has two
+/// image pixels per drawing pixel.
 ///
 /// # Errors
 /// If there are no frames, or [`check_frame`] rejects one.
@@ -38,6 +41,8 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
     let Snapshots {
         frames, pitch_mm, ..
     } = set;
+    let frames = &frames[..frames.len().min(MAX_FRAMES)];
+    let n_columns = if frames.len() > 8 { 8 } else { 4 };
     let sides = frames
         .iter()
         .map(|(_, frame)| frame.nrows().max(frame.ncols()));
@@ -47,14 +52,14 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
     let scale = ColourScale::over(frames.iter().flat_map(|(_, frame)| frame), set.quantity);
     let block = largest.div_ceil(MAX_CELLS);
     let n_cells = largest.div_ceil(block);
-    let side = whole_pixels(192.0, n_cells);
+    let side = whole_pixels(WIDTH / n_columns as f64, n_cells);
     let rows = frames.iter().map(|(_, frame)| frame.nrows());
     let n_rows = rows.max().unwrap_or(0).div_ceil(block);
     let (box_side, box_height) = (side * n_cells as f64, side * n_rows as f64);
     let (left, top) = (66.0, 34.0);
     let (column_width, row_height) = (box_side + 22.0, box_height + 74.0);
-    let right = left + frames.len().min(MAX_COLUMNS) as f64 * column_width;
-    let height = frames.len().div_ceil(MAX_COLUMNS) as f64 * row_height + 24.0;
+    let right = left + frames.len().min(n_columns) as f64 * column_width;
+    let height = frames.len().div_ceil(n_columns) as f64 * row_height + 24.0;
     let mut drawing = Drawing::new(right + 84.0, height);
     let mut maps = Vec::new();
     for (index, (name, frame)) in frames.iter().enumerate() {
@@ -65,8 +70,8 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
             ny,
             pitch: pitch_mm * 1e-3,
         };
-        let x = left + (index % MAX_COLUMNS) as f64 * column_width;
-        let y = top + (index / MAX_COLUMNS) as f64 * row_height;
+        let x = left + (index % n_columns) as f64 * column_width;
+        let y = top + (index / n_columns) as f64 * row_height;
         let cells = Cells::of_grid(&grid, block, side, (x, y));
         let area = cells.area;
         let (middle, above) = area.at(0.5, 1.0);
@@ -75,7 +80,7 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
         drawing.bold_text((middle, above - 10.0), &title, style);
         drawing.frame(area, Stroke::new(INK, 2.0));
         draw_map_axis(&mut drawing, area, Side::Below, nx as f64 * pitch_mm);
-        if index % MAX_COLUMNS == 0 {
+        if index % n_columns == 0 {
             draw_map_axis(&mut drawing, area, Side::Left, ny as f64 * pitch_mm);
         }
         maps.push((cells, largest_of_blocks(frame, (block, block))));

@@ -3,9 +3,11 @@
 //! GIF is not supported, because it would need another crate and has fewer colours and larger files.
 
 use super::reader::RecordingFile;
+use super::scene_view::SceneView;
 use super::skin_picture::{Picture, SkinPicture};
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
+use crate::objects::Model;
 use crate::report::pictures::heat_map::ColourScale;
 use crate::signal::Quantity;
 use bubbletouch_sim::raster::pixels::changed_rows;
@@ -87,7 +89,26 @@ pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>
     Ok(shown)
 }
 
-/// Writes the frames of a patch in a recording as an endless animated PNG with one colour scale. Returns the frames that are shown.
+/// Returns the colour scale of a quantity of a patch over all frames of a recording. Stills and films have this scale.
+///
+/// # Errors
+/// If the recording cannot be read.
+pub fn colour_scale(
+    recording: &mut RecordingFile,
+    patch: usize,
+    quantity: Quantity,
+) -> Result<ColourScale> {
+    let mut range = [0.0_f64; 2];
+    recording.each_frame(patch, quantity, |_, values| {
+        for &value in values {
+            range = [range[0].min(value), range[1].max(value)];
+        }
+    })?;
+    Ok(ColourScale::over(&range, quantity))
+}
+
+/// Writes the frames of a patch in a recording as an endless animated PNG with one colour scale. Beside the skin, the film shows all patches and the objects that
+/// have a model in `models`, by name; a strip shows the total force on the patch over time. Returns the frames that are shown.
 ///
 /// The memory holds only one picture and the file.
 ///
@@ -97,27 +118,27 @@ pub fn write_animation(
     path: &Path,
     recording: &mut RecordingFile,
     patch: usize,
-    quantity: Quantity,
+    (quantity, models): (Quantity, &[(String, Model)]),
     playback: &Playback,
 ) -> Result<Vec<ShownFrame>> {
     let shown = shown_frames(recording.time(), playback)?;
-    let mut range = [0.0_f64; 2];
-    recording.each_frame(patch, quantity, |_, values| {
-        for &value in values {
-            range = [range[0].min(value), range[1].max(value)];
-        }
-    })?;
-    let scale = ColourScale::over(&range, quantity);
+    let scale = colour_scale(recording, patch, quantity)?;
     let skin = SkinPicture::new(&recording.header().patches[patch], scale)?;
+    let scene = SceneView::new(recording, patch, models, skin.size().0)?;
     let failed = |error: EncodingError| Error::io(path, "encode", std::io::Error::other(error));
     let mut bytes = Vec::new();
-    let mut film = start(&mut bytes, skin.size(), shown.len()).map_err(failed)?;
-    let mut before = None;
-    for one in &shown {
+    let mut draw = |one: &ShownFrame| {
         let values = recording.frame(patch, quantity, one.frame)?;
         let now = skin.frame(&values, &frame_note(recording.time(), one.frame))?;
-        add(&mut film, before.as_ref(), &now, one).map_err(failed)?;
-        before = Some(now);
+        scene.beside(&now, (recording, one.frame), (&values, scale))
+    };
+    let mut before = draw(&shown[0])?;
+    let mut film = start(&mut bytes, (before.width, before.height), shown.len()).map_err(failed)?;
+    add(&mut film, None, &before, &shown[0]).map_err(failed)?;
+    for one in &shown[1..] {
+        let now = draw(one)?;
+        add(&mut film, Some(&before), &now, one).map_err(failed)?;
+        before = now;
     }
     film.finish().map_err(failed)?;
     write_bytes(path, &bytes)?;

@@ -20,12 +20,13 @@
 //! patch has `name`, `n_taxels` and `force` ("normal" or "vector"). If the taxels form a grid, the patch also has `grid` with `nx`, `ny` and `pitch_m`, where
 //! taxel = row · nx + column.
 //!
-//! [`skin_picture`] draws still pictures of recordings, [`animation`] draws moving ones.
+//! [`skin_picture`] draws still pictures of recordings, [`animation`] draws moving ones with the scene beside the skin.
 
 pub mod animation;
 pub(super) mod cells;
 mod header;
 mod reader;
+mod scene_view;
 pub mod skin_picture;
 mod summary;
 mod unrolled;

@@ -2,9 +2,10 @@
 
 use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};
+use crate::geometry::Pose;
 use crate::inputs::npy::{check_npy_header, read_npy_header};
 use crate::signal::Quantity;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -91,6 +92,18 @@ impl RecordingFile {
         let member = self.header.member(patch, quantity);
         let row = read_row(&mut self.archive, &member, frame);
         row.map_err(|e| self.damaged(&member.name, e))
+    }
+
+    /// Returns the pose (world from body) of a patch or an object in one frame, given its name.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub(super) fn pose(&mut self, name: &str, frame: usize) -> Result<Pose> {
+        let member = Member::new(format!("{name}/pose"), Element::Double, &[7]);
+        let row = read_row(&mut self.archive, &member, frame);
+        let row = row.map_err(|e| self.damaged(&member.name, e))?;
+        let rotation = DQuat::from_xyzw(row[4], row[5], row[6], row[3]);
+        Ok(Pose::new(rotation, DVec3::from_slice(&row)))
     }
 
     /// Calls `visit(frame, values)` for a quantity of a patch in every frame, in order. The memory holds only one frame.

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::report::advice::Candidates;
 use crate::report::study_content::NamedPicture;
 use crate::studies::reconstruction::study::{BOTH, ReconstructionStudy};
-use crate::table::{Along, At, ChartSpec, Mark, Rule, Table, short_number};
+use crate::table::{Along, At, ChartSpec, Mark, Rule, Table, Value};
 
 /// Time of a frame at 1,000 frames per second, µs.
 const US_PER_FRAME: f64 = 1000.0;
@@ -29,42 +29,42 @@ impl ReconstructionStudy {
         self.sample_frames(tables)
     }
 
-    /// Returns two answers per noise level: the most accurate configuration, and the smallest sufficient number of measurements.
+    /// Returns answers for each noise level: the smallest number of measurements that is as good as the noisy frame, for all levels first, and the most accurate
+    /// configuration.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (configurations, timing) = (&tables[0], &tables[2]);
-        let error = |row: usize| configurations.number("error", row);
-        let full = |row: usize| configurations.number("full_sampling_error", row);
-        let mut sentences = Vec::new();
-        for rows in configurations.groups(&["noise_std"], 0..configurations.n_rows) {
-            let least = rows
+        let number = |column: &'static str| move |row: usize| configurations.number(column, row);
+        let (error, full) = (number("error"), number("full_sampling_error"));
+        let said = |row: usize| {
+            format!(
+                "{:.2} in {} a frame ({})",
+                error(row),
+                timing.words("us_per_frame", row),
+                cell_words(configurations, row)
+            )
+        };
+        let levels = configurations.groups(&["noise_std"], 0..configurations.n_rows);
+        let fewest = levels.iter().filter_map(|rows| {
+            let as_good = rows.iter().copied().filter(|&row| error(row) <= full(row));
+            let key = |row: usize| (number("measurements")(row), error(row));
+            let row = as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"))?;
+            Some(format!(
+                "With {}, {} measurements are as good as the noisy frame itself (error {:.2}): error {}.",
+                noise_words(configurations, row),
+                configurations.words("measurements", row),
+                full(row),
+                said(row)
+            ))
+        });
+        let least = levels.iter().filter_map(|rows| {
+            let row = rows
                 .iter()
                 .copied()
-                .min_by(|&a, &b| error(a).total_cmp(&error(b)));
-            sentences.extend(least.map(|row| {
-                format!(
-                    "With {}: least error {:.3} ({}; {:.0} frames/s a core).",
-                    noise_words(configurations, row),
-                    error(row),
-                    cell_words(configurations, row),
-                    timing.number("frames_per_s_per_core", row)
-                )
-            }));
-            let as_good = rows.into_iter().filter(|&row| error(row) <= full(row));
-            let key = |row: usize| (configurations.number("measurements", row), error(row));
-            let fewest =
-                as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"));
-            sentences.extend(fewest.map(|row| {
-                format!(
-                    "As good as full sampling ({:.3}) from {} measurements ({:.0}:1): {:.3} ({}).",
-                    full(row),
-                    configurations.number("measurements", row),
-                    configurations.number("ratio", row),
-                    error(row),
-                    cell_words(configurations, row)
-                )
-            }));
-        }
-        sentences
+                .min_by(|&a, &b| error(a).total_cmp(&error(b)))?;
+            let noise = noise_words(configurations, row);
+            Some(format!("With {noise}: least error {}.", said(row)))
+        });
+        fewest.chain(least).collect()
     }
 }
 
@@ -101,7 +101,8 @@ fn by_measurements(configurations: &Table, rows: &[usize]) -> ChartSpec {
         configurations.words("ensemble", rows[0]),
     );
     let level = configurations.number("noise_std", rows[0]);
-    let noise = noise_words(configurations, rows[0]);
+    // A number and its unit stay on one line.
+    let noise = noise_words(configurations, rows[0]).replace(' ', "\u{a0}");
     let full = configurations.number("full_sampling_error", rows[0]);
     let rule = Rule::at(Along::Y, full, "full sampling: the noisy frame itself");
     let shown = ["noise_std", "ensemble"].into_iter();
@@ -120,15 +121,11 @@ fn by_measurements(configurations: &Table, rows: &[usize]) -> ChartSpec {
     }
 }
 
-/// Returns the noise of a configuration as text, such as `noise of 10 % of full scale`.
+/// Returns the noise of a configuration as text, such as `noise 10 %`.
 pub(super) fn noise_words(configurations: &Table, row: usize) -> String {
-    let level = configurations.number("noise_std", row);
-    match (level, configurations.word("noise_unit", row)) {
-        (0.0, _) => "no noise".to_owned(),
-        (_, "full_scale") => format!("noise of {} % of full scale", short_number(100.0 * level)),
-        (_, "n") => format!("noise of {} N", short_number(level)),
-        (_, unit) => format!("noise of {} {unit}", short_number(level)),
-    }
+    let column = configurations.column("noise_std").map(|(column, _)| column);
+    let level = Value::Number(configurations.number("noise_std", row));
+    column.map_or_else(String::new, |column| column.phrase(&level))
 }
 
 /// Returns the settings of a configuration as text, such as `LMMSE, PCA, SBHE, m = 1024`.

@@ -20,9 +20,9 @@ pub struct ReconstructionConfiguration {
     /// Number of the configuration in sweep order, from 0.
     configuration: usize => Note: Linear;
     /// Noise standard deviation of each taxel's reading, in `noise_unit`.
-    noise_std: f64 => Condition "noise": Linear;
+    noise_std: f64 => Condition "noise" in "%": Share;
     /// Unit of `noise_std`: fraction of full scale, mm or N.
-    noise_unit: NoiseUnit => Condition "noise unit";
+    noise_unit: NoiseUnit => Note "noise unit";
     /// Ensemble from which the measurement matrix is drawn.
     ensemble: Ensemble => Choice named ENSEMBLES;
     /// Number m of measurements per frame.

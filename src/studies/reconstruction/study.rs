@@ -11,6 +11,7 @@ use crate::inputs::object_files::{load_objects, objects_content};
 use crate::random::Seed;
 use crate::report::study_content::Beyond;
 use crate::studies::found_and_cost;
+use crate::studies::recognition::charts::tables::set_noise_unit;
 use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
 use crate::studies::reconstruction::measured::measure_cells;
 use crate::studies::reconstruction::memory::memory;
@@ -187,6 +188,7 @@ fn read_tables(folder: &Path) -> Result<Vec<Table>> {
 
 /// Returns the tables in the order of their files, followed by a table of the error, its interval and the time of each configuration.
 fn with_both(mut tables: Vec<Table>) -> Vec<Table> {
+    tables.iter_mut().for_each(set_noise_unit);
     let (errors, pareto) = (&tables[0], &tables[3]);
     let time = errors.look_up(pareto, "configuration", "us_per_frame");
     let both = errors.with((BOTH, "Errors and times"), time);

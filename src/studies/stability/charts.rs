@@ -14,18 +14,14 @@ impl StabilityPlan {
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (configurations, joints) = (&tables[0], &tables[3]);
         let mut charts: Vec<ChartSpec> = Vec::new();
-        if let Some(methods) = tables.iter().find(|table| table.file == METHODS.name()) {
+        let methods = tables.iter().find(|table| table.file == METHODS.name());
+        if let Some(methods) = methods {
             for rows in methods.groups(&["part"], 0..methods.n_rows) {
-                let part = Value::Number(methods.number("part", rows[0]));
-                let mut all = 0..configurations.n_rows;
-                let row = all.find(|&row| configurations.has_setting("part", row, &part));
-                let scene = row.map_or("", |row| configurations.word("scene", row));
-                let mut of_part = of_part(methods, scene, &rows, &charts);
+                let mut of_part = of_part(methods, &rows, &charts);
                 let mut names = rows.iter().map(|&row| methods.word("method", row));
                 if names.any(|name| name.starts_with("MuJoCo")) {
-                    of_part
-                        .iter_mut()
-                        .for_each(|chart| chart.note += &format!(" {}", configurations.note));
+                    let note = format!(" {}", configurations.note);
+                    of_part.iter_mut().for_each(|chart| chart.note += &note);
                 }
                 charts.extend(of_part);
             }
@@ -34,22 +30,10 @@ impl StabilityPlan {
         charts
     }
 
-    /// Returns one sentence per part with the number of correct results of each method in the same scenes. A last sentence names the table of other programs if
-    /// it does not exist.
+    /// Returns the titles of the charts of times as sentences. A last sentence names the table of other programs if it does not exist.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
-        let methods = tables.iter().find(|table| table.file == METHODS.name());
-        let found = methods.into_iter().flat_map(|methods| {
-            let parts = methods.groups(&["part"], 0..methods.n_rows).into_iter();
-            parts.map(|rows| {
-                let part = methods.number("part", rows[0]);
-                let best = right_words(methods, &rows, MAX_LISTED);
-                let others = match rows.len().saturating_sub(MAX_LISTED) {
-                    0 => String::new(),
-                    n => format!("; {n} other methods are no better"),
-                };
-                format!("Part {part}, {best}{others}.")
-            })
-        });
+        let charts = self.charts(tables).into_iter();
+        let timed = charts.filter(|chart| chart.table != SCENES.name());
         let missing = self.peers.as_ref().filter(|path| !path.exists());
         let missing = missing.map(|path| {
             format!(
@@ -57,24 +41,16 @@ impl StabilityPlan {
                 path.display()
             )
         });
-        found.chain(missing).collect()
+        timed
+            .map(|chart| chart.title + ".")
+            .chain(missing)
+            .collect()
     }
 }
 
-/// Returns the numbers of correct results of the first methods as text, such as `right in the same 81 scenes: implicit Euler 81 in 34 µs, …`.
-fn right_words(methods: &Table, rows: &[usize], most: usize) -> String {
-    let n = methods.number("n_scenes", rows[0]);
-    let said = rows.iter().take(most).map(|&row| {
-        let [method, right, time] =
-            ["method", "n_right", "median_s"].map(|c| methods.words(c, row));
-        format!("{method} {right} in {time}")
-    });
-    let said: Vec<String> = said.collect();
-    format!("right of the same {n} scenes: {}", said.join("; "))
-}
-
-/// Returns the two charts of a part: correct results against time, and the outcomes of each method.
-fn of_part(methods: &Table, scene: &str, rows: &[usize], earlier: &[ChartSpec]) -> [ChartSpec; 2] {
+/// Returns the two charts of a part: correct results against time, and the outcomes of each method. A repeated scene has its number in the name.
+fn of_part(methods: &Table, rows: &[usize], earlier: &[ChartSpec]) -> [ChartSpec; 2] {
+    let scene = methods.word("scene", rows[0]);
     let what = match scene {
         "rest" => "A ball is let go on taxels",
         "press" => "A ball is pressed on taxels with 0.5 m/s, held, and taken off",
@@ -82,45 +58,43 @@ fn of_part(methods: &Table, scene: &str, rows: &[usize], earlier: &[ChartSpec]) 
         "stack_of_four" => "Four balls, one upon the other, are let go on taxels",
         _ => "A plunger is let go on SkinSim's taxels",
     };
+    let best = rows.iter().take(MAX_LISTED).map(|&row| {
+        let [method, right, time] =
+            ["method", "n_right", "median_s"].map(|c| methods.words(c, row));
+        format!("{method} {right} in {time}")
+    });
+    let best = best.collect::<Vec<_>>().join("; ");
+    let n = methods.number("n_scenes", rows[0]);
     let name = format!("stability_{scene}");
     let is_of_scene = |chart: &&ChartSpec| chart.name.starts_with(&name) && chart.front;
     let name = match earlier.iter().filter(is_of_scene).count() {
         0 => name,
         n => format!("{name}_{}", n + 1),
     };
-    let chart = |name: String, title: String, table: &'static str, axes: [&str; 2]| ChartSpec {
-        name,
-        title,
-        note: methods.note.clone(),
-        table,
-        shown: methods.shown("part", rows[0]).into_iter().collect(),
-        x: axes[0].to_owned(),
-        y: axes[1].to_owned(),
-        ..ChartSpec::default()
-    };
-    let best = right_words(methods, rows, MAX_LISTED);
+    let shown: Vec<Shown> = methods.shown("part", rows[0]).into_iter().collect();
     [
         ChartSpec {
             lines: vec!["method".to_owned()],
+            shown: shown.clone(),
             mark: Mark::Points,
             front: true,
-            ..chart(
+            ..methods.chart(
                 format!("{name}_time"),
-                format!("{what}; {best}"),
-                METHODS.name(),
-                ["median_s", "n_right"],
+                format!("{what}; right of the same {n} scenes: {best}"),
+                ("n_right", "median_s"),
             )
         },
         ChartSpec {
             panels: Some("method".to_owned()),
+            shown,
             mark: Mark::Tiles {
                 fill: "outcome".to_owned(),
             },
-            ..chart(
+            table: SCENES.name(),
+            ..methods.chart(
                 name,
                 format!("{what}: what is right, and what breaks"),
-                SCENES.name(),
-                ["step", "load"],
+                ("load", "step"),
             )
         },
     ]
@@ -172,34 +146,25 @@ fn joint_charts(joints: &Table) -> Vec<ChartSpec> {
 
 /// Returns the methods that are right on the largest array and its lightest taxels as text, the fastest first.
 fn largest_words(joints: &Table, rows: &[usize]) -> String {
-    let number = |column, row| joints.number(column, row);
-    let most = rows
-        .iter()
-        .map(|&row| number("joints", row))
-        .fold(0.0, f64::max);
-    let mut here: Vec<usize> = rows.to_vec();
-    here.retain(|&row| number("joints", row) == most);
-    let lightest = here
-        .iter()
-        .map(|&row| number("taxel_mass_kg", row))
-        .fold(f64::INFINITY, f64::min);
-    here.retain(|&row| {
-        number("taxel_mass_kg", row) == lightest && joints.word("outcome", row) == "right"
+    let number = |column| move |row: &usize| joints.number(column, *row);
+    let most = rows.iter().map(number("joints")).fold(0.0, f64::max);
+    let here = rows.iter().filter(|row| number("joints")(row) == most);
+    let masses = here.clone().map(number("taxel_mass_kg"));
+    let lightest = masses.fold(f64::INFINITY, f64::min);
+    let mut here: Vec<usize> = here.copied().collect();
+    here.retain(|row| {
+        number("taxel_mass_kg")(row) == lightest && joints.word("outcome", *row) == "right"
     });
-    here.sort_by(|&a, &b| number("time_s", a).total_cmp(&number("time_s", b)));
-    let said = here.iter().take(MAX_LISTED).map(|&row| {
-        format!(
-            "{} in {}",
-            joints.words("method", row),
-            joints.words("time_s", row)
-        )
-    });
-    let said: Vec<String> = said.collect();
-    let mass = here
-        .first()
-        .map_or_else(String::new, |&row| joints.words("taxel_mass_kg", row));
-    match said.is_empty() {
-        true => format!("nothing is right on {most}"),
-        false => format!("right on {most} of {mass}: {}", said.join(", ")),
+    here.sort_by(|a, b| number("time_s")(a).total_cmp(&number("time_s")(b)));
+    let words = |column: &str, row: usize| joints.words(column, row);
+    let said = here.iter().take(MAX_LISTED);
+    let said = said.map(|&row| format!("{} in {}", words("method", row), words("time_s", row)));
+    match here.first() {
+        None => format!("nothing is right on {most}"),
+        Some(&row) => format!(
+            "right on {most} of {}: {}",
+            words("taxel_mass_kg", row),
+            said.collect::<Vec<_>>().join(", ")
+        ),
     }
 }

@@ -116,6 +116,7 @@ fn of_part(
         let mut times: Vec<f64> = scenes.iter().map(|scene| scene.wall_s).collect();
         let score = MethodScore {
             part: scenes[0].part,
+            scene: configurations.word("scene", rows[0]).to_owned(),
             method: scenes[0].method.clone(),
             n_scenes: scenes.len(),
             n_right: scenes

@@ -164,6 +164,8 @@ row! {
 pub struct MethodScore {
     /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
     part: usize => Condition "part of the study": Linear;
+    /// Scene of the part, such as `rest`.
+    scene: String => Note;
     /// Method that simulates the contact, with its number of iterations if several are compared.
     method: String => Choice;
     /// Number of scenes that all methods of the part have computed.

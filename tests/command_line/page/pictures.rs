@@ -60,10 +60,7 @@ fn a_chart_has_its_ticks_at_the_ratios_of_the_study() {
     let made = tables_of(&tables(quickstart_cells(), 1, 24)).unwrap();
     let spec = charts(&made, None).swap_remove(0);
     assert_eq!(spec.name, "accuracy_by_ratio");
-    assert_eq!(
-        spec.title,
-        "Accuracy by compression, for each pitch and array size"
-    );
+    assert_eq!(spec.title, "Accuracy by compression");
     let svg = draw(&spec, &made).unwrap().svg(&spec.title);
     for text in [
         "4:1",

@@ -2,9 +2,12 @@
 
 use crate::stored::{frame, normal};
 use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::report::colours::heat;
 use bubbletouch::report::heat_map::ColourScale;
-use bubbletouch::report::recording::animation::{Playback, frame_note, write_animation};
+use bubbletouch::report::recording::animation::{
+    Playback, colour_scale, frame_note, write_animation,
+};
 use bubbletouch::report::recording::skin_picture::{Picture, SkinPicture};
 use bubbletouch::report::recording::{
     ForceKind, RecordedPatch, RecordingFile, RecordingHeader, RecordingWriter,
@@ -108,6 +111,7 @@ fn write(path: &Path) {
     let patches = vec![grid(), tube()];
     let header = RecordingHeader {
         patches: patches.clone(),
+        objects: vec!["ball".to_owned()],
         ..RecordingHeader::default()
     };
     let mut writer = RecordingWriter::create(path, header).unwrap();
@@ -120,7 +124,8 @@ fn write(path: &Path) {
             })
             .collect();
         let readings = values.iter().map(|v| normal(v, v, Pose::IDENTITY));
-        let now = frame(0.01 * k as f64, readings.collect(), &[]);
+        let ball = Pose::from_translation(DVec3::new(1e-3 * k as f64, 0.0, 0.02));
+        let now = frame(0.01 * k as f64, readings.collect(), &[ball]);
         writer.push(&now).unwrap();
     }
     writer.finish().unwrap();
@@ -167,8 +172,16 @@ fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
             speed: 0.5,
             fps: 10.0,
         };
-        let shown =
-            write_animation(&out, &mut file, patch, Quantity::Deflection, &playback).unwrap();
+        let mut film = |models: &[(String, Model)]| {
+            let what = (Quantity::Deflection, models);
+            write_animation(&out, &mut file, patch, what, &playback).unwrap()
+        };
+        film(&[]);
+        let (bare, _) = played(&out);
+        let radius = 8e-3;
+        let center = DVec3::ZERO;
+        let ball = SphereUnion::new(vec![Sphere { center, radius }]).unwrap();
+        let shown = film(&[("ball".to_owned(), ball.into())]);
         let frames: Vec<usize> = shown.iter().map(|shown| shown.frame).collect();
         assert_eq!(frames, [0, 5, 10, 15, 20, 25, 30, 35, 39]);
         let (pictures, seconds) = played(&out);
@@ -182,13 +195,30 @@ fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
         let skin = &file.header().patches[patch].clone();
         let skin = SkinPicture::new(skin, scale).unwrap();
         assert_eq!(pictures.len(), frames.len());
-        for (picture, &frame) in pictures.iter().zip(&frames) {
+        // The skin is at the top left, and the scene with the ball beside it; the strip is below.
+        let width = skin.size().0 + 640;
+        for ((picture, bare), &frame) in pictures.iter().zip(&bare).zip(&frames) {
             let values = file.frame(patch, Quantity::Deflection, frame).unwrap();
             let note = frame_note(file.time(), frame);
-            assert!(
-                *picture == skin.frame(&values, &note).unwrap().rgb,
-                "frame {frame}"
-            );
+            let rows = picture.chunks(3 * width).take(skin.size().1);
+            let left = rows.flat_map(|row| &row[..3 * skin.size().0]);
+            let wanted = skin.frame(&values, &note).unwrap().rgb;
+            assert!(left.eq(&wanted), "frame {frame}");
+            assert_ne!(picture, bare, "the ball is in frame {frame}");
         }
+        // The ball and the mark of the time move.
+        let height = pictures[0].len() / (3 * width);
+        for (from, to) in [(0, 640), (height - 200, height)] {
+            let left = if from == 0 { skin.size().0 } else { 0 };
+            let part = |picture: &[u8]| {
+                let rows = picture.chunks(3 * width).enumerate();
+                let rows = rows.filter(|(row, _)| (from..to).contains(row));
+                let right = rows.flat_map(|(_, row)| row[3 * left..].to_vec());
+                right.collect::<Vec<u8>>()
+            };
+            assert_ne!(part(&pictures[0]), part(&pictures[8]));
+        }
+        let scale_of_stills = colour_scale(&mut file, patch, Quantity::Deflection);
+        assert_eq!(scale_of_stills.unwrap(), scale);
     }
 }

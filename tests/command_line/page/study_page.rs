@@ -116,6 +116,34 @@ fn without_groups(svg: &str) -> String {
 }
 
 #[test]
+fn one_sentence_and_two_charts_side_by_side_are_on_the_first_screen() {
+    let mut shown = charts();
+    shown.retain(|chart| ["lines", "front"].contains(&&chart.name[..]));
+    assert_eq!(shown.len(), 2);
+    let (_folder, page) = written(&tables(), &shown);
+    let html = std::fs::read_to_string(&page).unwrap();
+    let place = |text: &str| html.find(text).unwrap_or_else(|| panic!("{text}"));
+    assert!(place("The first is best") < place("<figure"));
+    assert!(html.rfind("</figure>").unwrap() < place("Others follow."));
+    let Some(browser) = Browser::start() else {
+        return;
+    };
+    browser.resize(1400, 900);
+    browser.open(&page);
+    let of_figure = |number: usize, what: &str| {
+        browser.count(&format!(
+            "return Math.round(document.querySelectorAll('#charts figure')[{number}].getBoundingClientRect().{what})"
+        ))
+    };
+    assert_eq!(of_figure(0, "top"), of_figure(1, "top"));
+    assert!(of_figure(0, "right") <= of_figure(1, "left"));
+    assert!(of_figure(0, "bottom") <= 900 && of_figure(1, "bottom") <= 900);
+    // On a narrow screen they stand one below the other.
+    browser.resize(900, 900);
+    assert!(of_figure(0, "bottom") <= of_figure(1, "top"));
+}
+
+#[test]
 fn series_are_hidden_by_mouse_and_keyboard_and_marks_are_read_by_arrow_keys() {
     let Some((_folder, browser)) = opened(&tables(), &charts()) else {
         return;

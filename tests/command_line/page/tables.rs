@@ -247,7 +247,6 @@ fn equal_tables_give_equal_bytes_in_every_file() {
             "robustness.csv",
             "accuracy_by_noise.svg",
             "pareto_prediction.svg",
-            "accuracy_by_noise_per_classifier.svg",
             "confusion.svg",
             "report.html",
         ]

@@ -4,7 +4,7 @@ use super::MarkAbout;
 use crate::report::chart::series;
 
 pub(super) const ABOUT: MarkAbout = MarkAbout {
-    draw: |view| Ok(series::draw(view)),
+    draw: series::draw,
     path: Some(|points| points.to_vec()),
     is_tiled: false,
 };

@@ -23,8 +23,6 @@ const OUTCOMES: [Rgb; 8] = [
     LINES[7],
     LINES[0],
 ];
-/// Number of tiles of outcomes above which tiles have no letters.
-const MANY_LETTERS: usize = 200;
 /// Largest number of panels side by side.
 const PANELS_ACROSS: usize = 4;
 const SIGN: u32 = 11;
@@ -36,7 +34,6 @@ struct Look<'a> {
     fill: Setting<'a>,
     /// Smallest and largest value of the tiles in the chart.
     ends: (f64, f64),
-    n_tiles: usize,
 }
 
 pub(super) const ABOUT: MarkAbout = MarkAbout {
@@ -53,7 +50,7 @@ fn draw(view: &View) -> Result<Drawing> {
     let look = Look::new(view, view.column(fill)?);
     let (across, down) = (view.x.n_levels, view.y.n_levels);
     let columns = view.panels.names.len().min(PANELS_ACROSS);
-    let is_many = across.min(down) >= MANY;
+    let is_many = across.min(down) >= MANY || across * columns >= MANY;
     let (margin, high) = if is_many { (4.0, 18.0) } else { (8.0, 22.0) };
     let signs = view
         .rows
@@ -61,7 +58,7 @@ fn draw(view: &View) -> Result<Drawing> {
         .map(|&row| text_width(&look.sign(row), f64::from(SIGN)));
     let ticks = view.x.ticks.iter().filter(|_| !view.x.is_words);
     let ticks = ticks.map(|tick| text_width(&tick.label, TICK));
-    let widest = signs.chain(ticks).fold(14.0, f64::max) + margin;
+    let widest = signs.chain(ticks).fold(9.0, f64::max) + margin;
     let most = 640.0 / (across * columns) as f64;
     let size = (widest.max(most.min(64.0)), high);
     let panel = (size.0 * across as f64, size.1 * down as f64);
@@ -125,7 +122,6 @@ impl<'a> Look<'a> {
         Self {
             fill,
             ends: (low, high),
-            n_tiles: view.places.len(),
         }
     }
 
@@ -160,48 +156,18 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Returns the text on the tile of a table row.
+    /// Returns the text on the tile of a table row: a number; an outcome has its colour alone.
     fn sign(&self, row: usize) -> String {
         match self.fill.data.value(row) {
-            None => String::new(),
             Some(Value::Number(number)) => self.fill.column.tick(number),
-            Some(Value::Word(outcome)) => self.sign_of(&outcome),
+            _ => String::new(),
         }
-    }
-
-    /// Returns the letter of an outcome; empty in a chart of many tiles.
-    fn sign_of(&self, outcome: &str) -> String {
-        match self.n_tiles > MANY_LETTERS {
-            true => String::new(),
-            false => self.letter(outcome),
-        }
-    }
-
-    /// Returns the shortest prefix (one to three letters) of an outcome's name that no previous outcome has.
-    fn letter(&self, outcome: &str) -> String {
-        let Data::Words { levels, .. } = self.fill.data else {
-            return String::new();
-        };
-        let start = |level: &str, n: usize| {
-            let word = self.fill.column.word(level).to_lowercase();
-            word.chars().take(n).collect::<String>()
-        };
-        let before = levels.iter().take_while(|level| *level != outcome);
-        let is_free = |n: &usize| {
-            before
-                .clone()
-                .all(|level| start(level, *n) != start(outcome, *n))
-        };
-        start(outcome, (1..3).find(is_free).unwrap_or(3))
     }
 
     fn legend(&self, view: &View) -> Vec<LegendEntry> {
         let column = self.fill.column;
-        let tile = |text: String, colour: Rgb, sign: String| {
-            LegendEntry::new(text, move |drawing, area| {
-                drawing.area(area, colour);
-                draw_sign(drawing, area, colour, &sign);
-            })
+        let tile = |text: String, colour: Rgb| {
+            LegendEntry::new(text, move |drawing, area| drawing.area(area, colour))
         };
         let mut entries = vec![LegendEntry::title(format!("{}:", column.title()))];
         match self.fill.data {
@@ -212,15 +178,13 @@ impl<'a> Look<'a> {
                 };
                 entries.extend((0..levels.len()).filter(is_shown).map(|code| {
                     let colour = self.outcome_colour(code);
-                    let letter = self.sign_of(&levels[code]);
-                    tile(column.word(&levels[code]), colour, letter)
+                    tile(column.word(&levels[code]), colour)
                 }));
             }
             Data::Numbers(_) => {
                 let (low, high) = self.ends;
                 for end in [low, high] {
-                    let colour = tint(self.part(end));
-                    entries.push(tile(column.tick(end), colour, String::new()));
+                    entries.push(tile(column.tick(end), tint(self.part(end))));
                 }
             }
         }

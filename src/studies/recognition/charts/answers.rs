@@ -3,7 +3,6 @@
 use crate::report::advice::{Candidate, Candidates};
 use crate::report::csv_tables::{CAPPED_FITS, LIMITS_FILE, MISSED_TOUCHES};
 use crate::report::study_folder::words_of;
-use crate::report::swept::{Setting, Swept, without};
 use crate::report::terminal::paragraph;
 use crate::studies::recognition::charts::chance::ChanceLevels;
 use crate::studies::recognition::charts::filled::filled;
@@ -34,7 +33,6 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
         sentences.push(diagonal.to_owned());
     }
     sentences.extend(missed(tables));
-    sentences.extend(effects(configurations).unwrap_or_default());
     sentences.extend(remarks(tables));
     sentences
 }
@@ -175,47 +173,6 @@ fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// Returns a sentence on the effect of each setting: the mean accuracy at each of its values. The mean extends over those combinations of other settings that
-/// were run with all values.
-fn effects(configurations: &Table) -> Option<Vec<String>> {
-    let rows: Vec<usize> = (0..configurations.n_rows).collect();
-    let swept = Swept::new(configurations, &rows);
-    let accuracy = configurations.numbers("accuracy")?;
-    let effect = |setting: &Setting| {
-        let levels = setting.levels(&rows);
-        let alike = swept.groups(&without(&swept.free, setting), &rows);
-        let complete = alike.iter().filter(|rows| rows.len() == levels.len());
-        let n_complete = complete.clone().count();
-        let complete: Vec<usize> = complete.flatten().copied().collect();
-        let mean = |&level: &usize| {
-            let is_at = |row: &&usize| setting.data.key(**row) == setting.data.key(level);
-            let at_level = complete.iter().filter(is_at);
-            let sum: f64 = at_level.map(|&row| accuracy[row]).sum();
-            sum / n_complete as f64
-        };
-        let said = |level: &usize| format!("{:.2} ({})", mean(level), setting.label(*level));
-        let name = &setting.column.words;
-        (n_complete > 0).then(|| match levels.len() > MAX_LISTED {
-            true => {
-                // The ends of a range are numbers, or the words with the lowest and the highest accuracy.
-                let mut ends = levels.clone();
-                match setting.is_number() {
-                    true => ends.retain(|&level| setting.position(level).is_some()),
-                    false => ends.sort_by(|a, b| mean(a).total_cmp(&mean(b))),
-                }
-                let [first, last] = [0, ends.len() - 1].map(|end| said(&ends[end]));
-                let n = ends.len();
-                format!("Mean accuracy by {name}, {n} values: from {first} to {last}.")
-            }
-            false => {
-                let said: Vec<String> = levels.iter().map(said).collect();
-                format!("Mean accuracy by {name}: {}.", said.join(", "))
-            }
-        })
-    };
-    Some(swept.free.iter().filter_map(effect).collect())
-}
-
 /// Returns the accuracy of an answer that is always the same object, if objects have unequal numbers of test rows; `None` if they are about equal.
 fn always_one(tables: &[Table]) -> Option<String> {
     let confusion = filled(tables, "confusion.csv")?;
@@ -256,52 +213,4 @@ fn remarks(tables: &[Table]) -> Vec<String> {
         n_needed.map(|(_, n)| format!("No p-values where trials are too few: {n} are needed.")),
     ];
     said.into_iter().flatten().collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::row;
-    use crate::table::File;
-
-    const BITS: &[(&str, &str)] = &[("0", "none")];
-
-    row! {
-    /// Row of a test table: a configuration and its accuracy.
-    pub struct Swept {
-        /// Setting of test touches that is absent in the base configuration.
-        noise: Option<f64> => Condition: Linear;
-        /// Setting with a named number.
-        bits: usize => Condition in "bits": Linear named BITS;
-        /// Setting with words.
-        features: String => Choice;
-        /// Accuracy of the configuration.
-        accuracy: f64 => Value(More): Share;
-    } }
-
-    #[test]
-    fn the_range_of_a_setting_has_numbers_at_its_ends() {
-        let row = |noise, bits, features: &str, accuracy| Swept {
-            noise,
-            bits,
-            features: features.to_owned(),
-            accuracy,
-        };
-        let noises = (0..9).rev().map(|step| {
-            let noise = f64::from(step);
-            row(Some(noise), 0, "raw", 0.9 - 0.1 * noise)
-        });
-        let bits = (1..10).map(|bits| row(None, bits, "raw", 0.05 * bits as f64));
-        let words =
-            (1..9).map(|n| row(None, 0, &format!("kind {n}"), 0.1 * f64::from((n * 5) % 9)));
-        let base = row(None, 0, "raw", 0.91);
-        let rows = std::iter::once(base).chain(noises).chain(bits).chain(words);
-        let table = File::new(CONFIGURATIONS, "", "").table(&rows.collect::<Vec<_>>());
-        let expected = [
-            "Mean accuracy by noise, 9 values: from 0.90 (0) to 0.10 (8).",
-            "Mean accuracy by bits, 9 values: from 0.05 (1 bit) to 0.45 (9 bits).",
-            "Mean accuracy by features, 9 values: from 0.10 (kind 2) to 0.91 (raw).",
-        ];
-        assert_eq!(effects(&table.unwrap()).unwrap(), expected);
-    }
 }

@@ -17,7 +17,7 @@ use crate::report::swept::{Setting, Swept};
 use crate::row;
 use crate::statistics::p_status::CONFIDENCE;
 use crate::studies::recognition::charts::chance::ChanceLevels;
-use crate::table::{Data, File, Role, Table};
+use crate::table::{Column, Data, File, Role, Table};
 use rand_distr::{Beta, Distribution};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -97,7 +97,7 @@ const MIN_VALUES: usize = 3;
 const ZERO_DECADES: f64 = 0.5;
 
 /// Ratio of the largest to the smallest positive value of a condition above which its chart axis is logarithmic.
-const LOG_RATIO: f64 = 16.0;
+pub(super) const LOG_RATIO: f64 = 16.0;
 
 /// Mean accuracy of a design at each value of a condition, in ascending order of the values.
 struct Curve {
@@ -344,50 +344,59 @@ fn both_sides(
     sides.into_iter().flatten().collect()
 }
 
-/// Returns a sentence on the values of all conditions at which half of the accuracy above chance is lost, from the first to the last design that loses it, and on
-/// the conditions in which no design does. Returns `None` if the study drives no condition.
+/// Maximum number of conditions that a sentence lists; a chart marks the values of more conditions.
+const MAX_LISTED: usize = 3;
+
+/// Returns the values of a condition at which half of the accuracy above chance is lost, from the first to the last design that loses it: one text per direction,
+/// such as `18–21 mm`, and none if no design loses it. Returns `None` if the table lacks the condition.
+pub(super) fn breaks(robustness: &Table, condition: &Column) -> Option<Vec<String>> {
+    let rows = 0..robustness.n_rows;
+    let own = rows.filter(|&row| robustness.word("condition", row) == condition.name);
+    let directions = robustness.groups(&["direction"], own);
+    let words = |rows: &Vec<usize>| {
+        let at = rows.iter();
+        let at = at.map(|&row| robustness.number("half_accuracy_at", row));
+        let mut at: Vec<f64> = at.filter(|at| at.is_finite()).collect();
+        at.sort_by(f64::total_cmp);
+        let two_digits = |&number: &f64| format!("{number:.1e}").parse().unwrap_or(number);
+        let [low, high] = [at.first()?, at.last()?].map(two_digits);
+        let range = match condition.number_words(high) {
+            high_words if low < high => format!("{}–{high_words}", condition.tick(low)),
+            one => one,
+        };
+        Some(match (at.len(), rows.len()) {
+            (n, all) if n < all => format!("{range} ({n} of {all} designs)"),
+            _ => range,
+        })
+    };
+    (!directions.is_empty()).then(|| directions.iter().filter_map(words).collect())
+}
+
+/// Returns a sentence on the conditions in which half of the accuracy above chance is lost, with their values if they are few, and on the conditions in which no
+/// design loses it. Returns `None` if the study drives no condition.
 pub(super) fn robustness_words(tables: &[Table]) -> Option<String> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     let (summary, table) = (of("summary.csv")?, of(ROBUSTNESS.name())?);
-    let (mut breaks, mut never) = (Vec::new(), Vec::new());
+    let (mut lost, mut never) = (Vec::new(), Vec::new());
     for rows in table.groups(&["condition"], 0..table.n_rows) {
         let (column, _) = summary.column(table.word("condition", rows[0]))?;
-        let n_before = breaks.len();
-        for rows in table.groups(&["direction"], rows.iter().copied()) {
-            let at = rows
-                .iter()
-                .map(|&row| table.number("half_accuracy_at", row));
-            let mut at: Vec<f64> = at.filter(|at| at.is_finite()).collect();
-            at.sort_by(f64::total_cmp);
-            let (Some(&low), Some(&high)) = (at.first(), at.last()) else {
-                continue;
-            };
-            let two_digits = |number: f64| format!("{number:.1e}").parse().unwrap_or(number);
-            let [low, high] = [low, high].map(|end| column.number_words(two_digits(end)));
-            let designs = match (at.len(), rows.len()) {
-                (n, all) if n < all => format!(" ({n} of {all} designs)"),
-                _ => String::new(),
-            };
-            breaks.push(match low == high {
-                true => format!("{} {low}{designs}", column.words),
-                false => format!("{} {low} to {high}{designs}", column.words),
-            });
-        }
-        if breaks.len() == n_before {
-            never.push(&column.words[..]);
+        match &breaks(table, column)?[..] {
+            [] => never.push(&column.words[..]),
+            at => lost.push(format!("{} {}", column.words, at.join(" and "))),
         }
     }
+    let said = match lost.len() {
+        0 => "kept".to_owned(),
+        n if n > MAX_LISTED => format!("lost in {n} of {} settings", n + never.len()),
+        _ => format!("lost at {}", lost.join(", ")),
+    };
     let never = match &never.join(", ")[..] {
         "" => String::new(),
         words => format!("; never with {words}"),
     };
-    Some(match breaks.is_empty() {
-        true => format!("Half of the accuracy above chance is kept{never}."),
-        false => {
-            let breaks = breaks.join(", ");
-            format!("Half of the accuracy above chance is lost at {breaks}{never}.")
-        }
-    })
+    Some(format!(
+        "Half of the accuracy above chance is {said}{never}."
+    ))
 }
 
 #[cfg(test)]

@@ -1,30 +1,19 @@
-//! Page sections that only recognition studies have: sample touches, settings, and the limits that were reached.
+//! Page sections that only recognition studies have: settings, and the limits that were reached.
 
-use crate::error::Result;
 use crate::report::csv_tables::LIMITS_FILE;
-use crate::report::page::{Section, definition, touches_html};
+use crate::report::page::{Section, definition};
 use crate::report::pictures::drawing::escape;
-use crate::report::pictures::snapshots::Snapshots;
 use crate::report::swept::Swept;
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::CONFIGURATIONS;
 use crate::table::{Table, short_number};
 
-/// Returns the page sections about sample touches, settings, and the number of times that each limit of the simulation or training was reached.
-///
-/// # Errors
-/// If a sample touch cannot be drawn.
-pub fn sections(
-    settings: &[(String, String)],
-    gallery: &[Snapshots],
-    tables: &[Table],
-) -> Result<Vec<Section>> {
-    let touches: String = gallery.iter().map(touches_html).collect::<Result<_>>()?;
-    Ok(vec![
-        Section::new("touches", "Sample touches", touches),
+/// Returns the page sections about settings, and the number of times that each limit of the simulation or training was reached.
+pub fn sections(settings: &[(String, String)], tables: &[Table]) -> Vec<Section> {
+    vec![
         Section::new("settings", "Settings", settings_html(settings, tables)),
         Section::new("limits", "Limits", limits_html(tables)),
-    ])
+    ]
 }
 
 /// Returns the study's description as HTML, followed by every setting with its values.
@@ -49,7 +38,7 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     format!("<dl>{html}</dl>")
 }
 
-/// Returns HTML that lists how often each limit of the simulation and of the solver was reached.
+/// Returns HTML that lists the limits of the simulation and of the solver that were reached, with their counts.
 fn limits_html(tables: &[Table]) -> String {
     let Some(table) = filled(tables, LIMITS_FILE) else {
         return String::new();
@@ -60,6 +49,9 @@ fn limits_html(tables: &[Table]) -> String {
         let [what, meaning] = ["limit", "meaning"].map(|name| escape(table.word(name, row)));
         format!("<li><b>{count} of {of}</b> {what} ({share} %). {meaning}</li>")
     };
-    let items: String = (0..table.n_rows).map(item).collect();
-    format!("<ul>{items}</ul>")
+    let reached = (0..table.n_rows).filter(|&row| table.number("count", row) > 0.0);
+    match reached.map(item).collect::<String>() {
+        items if items.is_empty() => "<p>No limit was reached.</p>".to_owned(),
+        items => format!("<ul>{items}</ul>"),
+    }
 }

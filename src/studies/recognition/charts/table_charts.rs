@@ -10,11 +10,14 @@ use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
 use crate::studies::recognition::charts::chance::ChanceLevels;
 use crate::studies::recognition::charts::filled::filled;
+use crate::studies::recognition::charts::robustness::{LOG_RATIO, ROBUSTNESS, breaks};
 use crate::studies::recognition::charts::tables::{
     CHANCE, CHANGED, CHANGED_TO, CONFIGURATIONS, OVER_FOLDS, OVER_TRIAL, SELECTED_TAXELS,
     UNCHANGED, note_of_groups,
 };
-use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
+use crate::table::{
+    Along, At, ChartSpec, Column, Dot, Mark, Role, Rule, Scale, Shown, Table, Value,
+};
 use std::cmp::Reverse;
 
 /// Maximum number of charts of selected taxels; further combinations of settings are only in the table.
@@ -47,8 +50,15 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
         rules: chance(configurations, confusion).into_iter().collect(),
         ..ChartSpec::default()
     };
-    let mut charts = accuracy_charts(configurations, &chart);
-    charts.splice(0..0, change_chart(configurations, &chart));
+    let robustness = filled(tables, ROBUSTNESS.name());
+    let mut charts = accuracy_charts(configurations, &chart, robustness);
+    // If most settings break recognition, the places where they do are the answer; otherwise the losses are.
+    let all = charts.iter().flat_map(|chart| &chart.parts);
+    let all: Vec<&ChartSpec> = all.flat_map(|(_, parts)| parts).collect();
+    let n_broken = all.iter().filter(|part| !part.dots.is_empty()).count();
+    if 2 * n_broken <= all.len() {
+        charts.splice(0..0, change_chart(configurations, &chart));
+    }
     let mut others: Vec<ChartSpec> = time_charts(configurations, &chart, pareto);
     let first = others.len().min(1);
     charts.splice(
@@ -78,8 +88,12 @@ fn chance(configurations: &Table, confusion: Option<&Table>) -> Option<Rule> {
     Some(Rule::at(Along::Y, chance.accuracy, chance.words()))
 }
 
-/// Returns accuracy charts that together show every configuration. If signal settings vary one at a time, each has its own chart, with the setting along x.
-fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
+/// Returns accuracy charts that together show every configuration. If settings vary one at a time, each has its own small chart, with the setting along x.
+fn accuracy_charts(
+    configurations: &Table,
+    chart: &ChartSpec,
+    robustness: Option<&Table>,
+) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..configurations.n_rows).collect();
     let signal = Swept::new(configurations, &all).one_at_a_time;
     if signal.is_empty() {
@@ -109,7 +123,87 @@ fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> 
         };
         charts_along(configurations, &chart, Some(*setting), &rows)
     };
-    signal.iter().flat_map(charts_of).collect()
+    let charts: Vec<ChartSpec> = signal.iter().flat_map(charts_of).collect();
+    match charts.len() < MANY || charts.iter().any(|chart| chart.panels.is_some()) {
+        true => charts,
+        false => vec![sheet(configurations, chart, charts, robustness)],
+    }
+}
+
+/// Returns a chart of small charts, one for each setting that is changed alone: settings of test touches alone first, and in each group the costliest first.
+/// Their notes and dots show where the designs lose half of their accuracy above chance.
+fn sheet(
+    configurations: &Table,
+    chart: &ChartSpec,
+    mut parts: Vec<ChartSpec>,
+    robustness: Option<&Table>,
+) -> ChartSpec {
+    let numbers = configurations.numbers("configuration").unwrap_or_default();
+    let n_rows = robustness.map_or(0, |table| table.n_rows);
+    for part in &mut parts {
+        let Some((column, _)) = configurations.column(&part.x) else {
+            continue;
+        };
+        part.title = column.title().trim_start_matches("test ").to_owned();
+        part.x_is = log_axis(column, configurations.numbers(&part.x).unwrap_or_default());
+        let breaks = robustness.and_then(|table| breaks(table, column));
+        part.note = match breaks.as_deref() {
+            None => String::new(),
+            Some([]) => "never breaks".to_owned(),
+            Some(at) => format!("breaks at {}", at.join(", ")),
+        };
+        let dot = |row: usize| {
+            let table = robustness.filter(|table| table.word("condition", row) == part.x)?;
+            let number = |column: &str| table.number(column, row);
+            let row = numbers.iter().position(|n| *n == number("configuration"))?;
+            let at = (number("half_accuracy_at"), number("half_accuracy"));
+            at.0.is_finite().then_some(Dot { row, at })
+        };
+        part.dots = (0..n_rows).filter_map(dot).collect();
+    }
+    let least = |part: &ChartSpec| {
+        let words = configurations
+            .column(&part.x)
+            .map(|(column, _)| &column.words);
+        let rows = 0..configurations.n_rows;
+        let own = rows.filter(|&row| words.is_some_and(|w| w == configurations.word(CHANGED, row)));
+        let accuracy = own.map(|row| configurations.number("accuracy", row));
+        accuracy.fold(f64::INFINITY, f64::min)
+    };
+    parts.sort_by(|a, b| least(a).total_cmp(&least(b)));
+    let lines = parts
+        .first()
+        .map_or_else(Vec::new, |part| part.lines.clone());
+    let (tests, others) = parts
+        .into_iter()
+        .partition(|part| part.x.starts_with("test_"));
+    let mut groups = vec![
+        ("Only in test touches", tests),
+        ("In training touches", others),
+    ];
+    groups.retain(|(_, parts): &(_, Vec<_>)| !parts.is_empty());
+    if let [(heading, _)] = &mut groups[..] {
+        *heading = "";
+    }
+    ChartSpec {
+        name: "accuracy_by_setting".to_owned(),
+        title: "Accuracy by each setting alone: where it breaks, half of the accuracy above chance is lost".to_owned(),
+        x: "configuration".to_owned(),
+        lines,
+        parts: groups,
+        ..chart.clone()
+    }
+}
+
+/// Returns a logarithmic axis for the values of a setting that extend over a large range; `None` for others.
+fn log_axis(column: &Column, values: &[f64]) -> Option<Column> {
+    let positive = values.iter().copied().filter(|&value| value > 0.0);
+    let least = positive.fold(f64::INFINITY, f64::min);
+    let is_wide = values.iter().any(|&value| value >= LOG_RATIO * least);
+    is_wide.then(|| Column {
+        scale: Scale::Log,
+        ..column.clone()
+    })
 }
 
 /// Rows of a study in which single settings are changed, for the design that is most accurate without a change.
@@ -155,7 +249,7 @@ impl Changes {
 /// Returns a chart with one row for each setting that is changed alone, sorted by the accuracy that it costs at most: the accuracy at each of its values.
 /// Returns `None` for other studies.
 fn change_chart(configurations: &Table, chart: &ChartSpec) -> Option<ChartSpec> {
-    let Changes { shown, base, drawn } = Changes::new(configurations)?;
+    let Changes { shown, base, .. } = Changes::new(configurations)?;
     let accuracy = |row: usize| configurations.number("accuracy", row);
     let [low, high] = configurations.interval(configurations.column("accuracy")?.0, base)?;
     let words = format!("unchanged, {:.2}, and its 95 % interval", accuracy(base));
@@ -163,28 +257,17 @@ fn change_chart(configurations: &Table, chart: &ChartSpec) -> Option<ChartSpec> 
     let mut rules: Vec<Rule> = [accuracy(base), low, high]
         .map(|at| rule(at, &words))
         .into();
-    let settings = configurations.groups(&[CHANGED], drawn.iter().copied());
-    let n_below = |bound: f64| {
-        let is_below = |rows: &&Vec<usize>| rows.iter().any(|&row| accuracy(row) < bound);
-        settings.iter().filter(is_below).count()
-    };
-    let mut title = format!(
-        "Each setting changed alone, the costliest at the top: {} of {} leave the interval of the unchanged study",
-        n_below(low),
-        settings.len() - 1
-    );
-    if let Some(Rule {
+    if let Some(&Rule {
         at: At::Value(chance),
         ..
     }) = chart.rules.first()
     {
         let half = 0.5 * (chance + accuracy(base));
         rules.push(rule(half, "half of the accuracy above chance is lost"));
-        title += &format!(", {} lose half of the accuracy above chance", n_below(half));
     }
     Some(ChartSpec {
         name: "accuracy_by_change".to_owned(),
-        title,
+        title: "Accuracy with each setting changed alone, the costliest at the top".to_owned(),
         x: "accuracy".to_owned(),
         y: CHANGED.to_owned(),
         label: Some(CHANGED_TO.to_owned()),
@@ -195,9 +278,8 @@ fn change_chart(configurations: &Table, chart: &ChartSpec) -> Option<ChartSpec> 
     })
 }
 
-/// Returns charts whose x axis is the given setting; if none is given, the main setting of the study. If lines and panels show settings and no other setting
-/// remains, a second chart exchanges the two. The effects of both settings can then be read from lines within one panel. If only lines show a setting of
-/// numbers, a second chart has it along x.
+/// Returns charts whose x axis is the given setting; if none is given, the main setting of the study. If only lines show a setting of numbers and no other setting
+/// remains, a second chart has it along x.
 fn charts_along(
     configurations: &Table,
     chart: &ChartSpec,
@@ -224,7 +306,6 @@ fn charts_along(
         _ => &[],
     };
     let parts = [folded, &parts].concat();
-    let used = [used, folded].concat();
     let with_parts = |one: Option<String>| one.into_iter().chain(parts.iter().map(name_of));
     let n_along = x.map_or(0, |x| x.levels(rows).len());
     let x = x.map_or_else(|| "ratio".to_owned(), |x| name_of(&x));
@@ -233,7 +314,7 @@ fn charts_along(
         let here = here.filter_map(|name| configurations.shown(name, rows[0]));
         ChartSpec {
             name: format!("accuracy_by_{}{}", word(&x), name_ending(fixed, rows[0])),
-            title: title(configurations, &x, (&used, fixed), rows[0]),
+            title: title(configurations, &x, fixed, rows[0]),
             shown: chart.shown.iter().cloned().chain(here).collect(),
             x: x.clone(),
             lines: with_parts(lines.clone()).collect(),
@@ -246,23 +327,15 @@ fn charts_along(
         .first()
         .is_some_and(|one| one.is_number() && one.applies(rows));
     let is_whole = fixed.is_empty() && parts.is_empty();
-    let exchanged = match (panels, lines) {
-        (Some(panels), lines) if is_whole => Some(ChartSpec {
-            name: format!("{}_per_{}", charts[0].name, word(&panels)),
-            lines: vec![panels],
-            panels: lines,
-            ..charts[0].clone()
-        }),
-        (None, Some(lines)) if is_whole && is_axis && n_along <= LINES.len() => Some(ChartSpec {
+    if is_whole && is_axis && n_along <= LINES.len() && panels.is_none() {
+        charts.extend(lines.map(|lines| ChartSpec {
             name: format!("accuracy_by_{}", word(&lines)),
-            title: title(configurations, &lines, (&[], &[]), rows[0]),
+            title: title(configurations, &lines, &[], rows[0]),
             x: lines,
             lines: vec![x],
             ..charts[0].clone()
-        }),
-        _ => None,
-    };
-    charts.extend(exchanged);
+        }));
+    }
     charts
 }
 
@@ -270,30 +343,15 @@ fn name_of(setting: &Setting) -> String {
     setting.column.name.to_string()
 }
 
-/// Returns the title of a chart, such as `Accuracy by compression, for each pitch and array size (noise 10 %)`.
-fn title(
-    configurations: &Table,
-    x: &str,
-    (used, fixed): (&[Setting], &[Setting]),
-    row: usize,
-) -> String {
-    let along = configurations
-        .column(x)
-        .map_or(x, |(column, _)| &column.words);
-    let mut title = format!("Accuracy by {along}");
-    let each = used.iter().map(|one| match &one.column.words[..] {
-        "features" => "kind of features",
-        words => words,
-    });
-    let used: Vec<&str> = each.collect();
-    if !used.is_empty() {
-        title += &format!(", for each {}", used.join(" and "));
-    }
+/// Returns the title of a chart, such as `Accuracy by compression (noise 10 %)`; its legend and panels name the other settings.
+fn title(configurations: &Table, x: &str, fixed: &[Setting], row: usize) -> String {
+    let column = configurations.column(x);
+    let along = column.map_or(x, |(column, _)| &column.words);
     let fixed: Vec<String> = fixed.iter().map(|one| one.phrase(row)).collect();
-    if !fixed.is_empty() {
-        title += &format!(" ({})", fixed.join(", "));
+    match &fixed.join(", ")[..] {
+        "" => format!("Accuracy by {along}"),
+        fixed => format!("Accuracy by {along} ({fixed})"),
     }
-    title
 }
 
 /// Returns a column name in the form that the file names of charts use.
@@ -315,7 +373,8 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
     let parts = fixed.iter().map(|setting| {
         let value = match setting.data.value(row) {
             Some(Value::Number(number)) => setting.column.tick(number),
-            _ => setting.label(row),
+            Some(Value::Word(word)) => word,
+            None => setting.label(row),
         };
         let value: String = value.chars().map(plain).collect();
         format!("_{}_{value}", word(&setting.column.name))
@@ -447,6 +506,7 @@ fn selected_charts(selected: &Table) -> Vec<ChartSpec> {
             lines: method.as_ref().map(name_of).into_iter().collect(),
             panels: condition.as_ref().map(name_of),
             mark: Mark::Points,
+            square: true,
             ..selected.chart(
                 format!("selected_taxels{}", name_ending(&fixed, rows[0])),
                 title,

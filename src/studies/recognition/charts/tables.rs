@@ -275,13 +275,25 @@ fn predictions(path: &Path, csv: Vec<u8>) -> Result<Table> {
     PREDICTIONS.parse(columns, path, csv)
 }
 
-/// Sets the unit of the noise column and the meaning of an empty C, which depend on the rows of the table.
-fn say(table: &mut Table) {
+/// Sets the unit of the noise column, which depends on the rows of the table.
+pub(crate) fn set_noise_unit(table: &mut Table) {
     let unit = match (table.n_rows > 0).then(|| table.word("noise_unit", 0)) {
         Some("mm") => "mm",
         Some("n") => "N",
-        _ => "",
+        _ => return,
     };
+    let noise = table
+        .columns
+        .iter_mut()
+        .find(|column| column.name == "noise_std");
+    if let Some(column) = noise {
+        (column.unit, column.scale) = (unit.into(), Scale::Linear);
+    }
+}
+
+/// Sets the unit of the noise column and the meaning of an empty C, which depend on the rows of the table.
+fn say(table: &mut Table) {
+    set_noise_unit(table);
     let has_c = |row| {
         let kind = toml::Value::from(table.word("classifier", row)).try_into();
         kind.is_ok_and(ClassifierKind::has_c)
@@ -289,15 +301,10 @@ fn say(table: &mut Table) {
     // C is chosen if the classifier has a C and the column is empty.
     let is_chosen = |row| !table.number("c", row).is_nan() || has_c(row);
     let is_chosen = (0..table.n_rows).all(is_chosen);
-    for column in &mut table.columns {
-        match &column.name[..] {
-            "noise_std" if !unit.is_empty() => {
-                (column.unit, column.scale) = (unit.into(), Scale::Linear);
-            }
-            "c" if !is_chosen => column.names = &[],
-            _ => {}
-        }
-    }
+    let c = table.columns.iter_mut().find(|column| column.name == "c");
+    c.filter(|_| !is_chosen)
+        .into_iter()
+        .for_each(|c| c.names = &[]);
 }
 
 /// Returns a note that intervals are computed over held-out groups; `None` if single test rows are held out.

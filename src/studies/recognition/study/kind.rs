@@ -4,7 +4,7 @@ use crate::engine::work_items::{PendingItems, Scale, WorkItem};
 use crate::error::{Error, Result};
 use crate::inputs::keys::KeyAbout;
 use crate::report::page::Section;
-use crate::report::pictures::snapshots::{Snapshots, snapshots};
+use crate::report::pictures::snapshots::snapshots;
 use crate::report::study_content::{Beyond, NamedPicture};
 use crate::studies::recognition::charts;
 use crate::studies::recognition::frames::touch_set::Samples;
@@ -208,7 +208,7 @@ impl Study for RecognitionStudy {
     fn beyond(&self, tables: &[Table]) -> Result<Beyond> {
         Ok(Beyond {
             pictures: self.pictures(tables)?,
-            sections: self.sections(tables)?,
+            sections: self.sections(tables),
             ..Beyond::default()
         })
     }
@@ -220,17 +220,34 @@ impl RecognitionStudy {
     }
 
     pub(crate) fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        let shown = &self.samples()?.shown;
-        let picture = snapshots(shown)?;
-        Ok(vec![NamedPicture {
-            name: "snapshots".to_owned(),
-            title: shown.caption.clone(),
-            png: picture.png()?,
-            size: (picture.width / 2, picture.height / 2),
-        }])
+        let Samples { shown, each } = self.samples()?;
+        let each = each
+            .as_ref()
+            .filter(|each| each.frames.len() > shown.frames.len());
+        let sets = [("snapshots", Some(shown)), ("touches", each)];
+        let sets = sets
+            .into_iter()
+            .filter_map(|(name, set)| Some((name, set?)));
+        let pictures = sets.map(|(name, set)| {
+            let picture = snapshots(set)?;
+            let size = (picture.width / 2, picture.height / 2);
+            // Every object at full resolution would make the page twice as large.
+            let picture = if name == "touches" {
+                picture.halved()
+            } else {
+                picture
+            };
+            Ok(NamedPicture {
+                name: name.to_owned(),
+                title: set.caption.clone(),
+                png: picture.png()?,
+                size,
+            })
+        });
+        pictures.collect()
     }
 
-    pub(crate) fn sections(&self, tables: &[Table]) -> Result<Vec<Section>> {
+    pub(crate) fn sections(&self, tables: &[Table]) -> Vec<Section> {
         let mut settings: Vec<(String, String)> = Vec::new();
         let mut add = |name: &str, value: String| settings.push((name.to_owned(), value));
         let of_touches: Vec<_> = self
@@ -265,7 +282,7 @@ impl RecognitionStudy {
         }
         add("Trials", self.n_trials().to_string());
         add("Seed", of_spec(|spec| spec.seed.to_string()));
-        charts::sections(&settings, &gallery(self.samples()?), tables)
+        charts::sections(&settings, tables)
     }
 
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
@@ -308,11 +325,4 @@ fn split_words(spec: &StudySpec) -> String {
         Some(GroupSpec::Depth) => "depths that are never learned",
     };
     held_out.to_owned()
-}
-
-/// Returns the pictures that show a touch of every object. The sample pictures come first if they differ.
-fn gallery(Samples { shown, each }: &Samples) -> Vec<Snapshots> {
-    let is_like = |each: &Snapshots| each.caption == shown.caption;
-    let shown = Some(shown).filter(|_| !each.as_ref().is_some_and(is_like));
-    shown.into_iter().chain(each).cloned().collect()
 }
