@@ -6,7 +6,7 @@ use bubbletouch::Result;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::report::scene_files::SceneFiles;
 use bubbletouch::report::scene_summary::scene_table;
-use bubbletouch::scene::{FrameSink, ScenePlan, SceneSpec, Simulation, Stepping, Summary};
+use bubbletouch::scene::{FrameSink, ScenePlan, Simulation, Stepping, Summary};
 use bubbletouch::study::progress::{Progress, Silent};
 use std::path::PathBuf;
 use std::time::Instant;
