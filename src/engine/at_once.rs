@@ -114,7 +114,10 @@ mod tests {
             begun.fetch_add(1, Ordering::SeqCst);
             match task {
                 0 => Err(Error::input("task", task, "others")),
-                _ => Ok(std::thread::sleep(std::time::Duration::from_millis(1))),
+                _ => {
+                    std::thread::sleep(std::time::Duration::from_millis(1));
+                    Ok(())
+                }
             }
         });
         assert!(failed.is_err() && begun.into_inner() < 1000);
