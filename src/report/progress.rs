@@ -1,4 +1,4 @@
-//! Progress of a run: bars on a terminal, plain lines for other outputs, and JSON lines for other programs.
+//! Progress of a run: one line with a bar on a terminal, plain lines for other outputs, and JSON lines for other programs.
 //!
 //! ```text
 //! {"event":"stage","name":"recognise 32×32 at 2 mm","total":240}
@@ -9,7 +9,7 @@
 use crate::engine::progress::Progress;
 use crate::report::run_clock::RunClock;
 use crate::spelling::duration;
-use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -20,13 +20,13 @@ use std::{fmt, thread};
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Layout of a progress bar's line, in the notation of the library indicatif.
-const BAR: &str = "{prefix:>14} [{bar:32}] {pos}/{len}, {rate}, {left}";
+const BAR: &str = "{prefix:>14} [{bar:24}] {pos}/{len}, {rate}, {left}{msg}";
 
-/// Creates the progress listener that writes to standard error: bars on a terminal, otherwise plain lines.
+/// Creates the progress listener that writes to standard error: a bar on a terminal, otherwise plain lines.
 pub fn to_stderr() -> Box<dyn Progress> {
     let is_dumb = std::env::var("TERM").is_ok_and(|term| term == "dumb");
     match std::io::stderr().is_terminal() && !is_dumb {
-        true => Box::new(Bars::new(ProgressDrawTarget::stderr())),
+        true => Box::new(Bar::new(ProgressDrawTarget::stderr())),
         false => Box::new(Events::new(Form::Lines, std::io::stderr())),
     }
 }
@@ -65,94 +65,64 @@ impl Stage {
     }
 }
 
-/// Progress bars on a terminal: one for the current stage and one for all work items of the run.
-struct Bars {
-    screen: MultiProgress,
-    shown: Mutex<Shown>,
+/// Progress bar on a terminal: one line with the current stage and the number of finished work items.
+struct Bar {
+    bar: ProgressBar,
+    /// Numbers of finished and of all work items of the run.
+    items: Mutex<(usize, usize)>,
 }
 
-#[derive(Default)]
-struct Shown {
-    stage: Option<(Stage, ProgressBar)>,
-    run: Option<ProgressBar>,
-}
-
-impl Bars {
+impl Bar {
     fn new(target: ProgressDrawTarget) -> Self {
-        Self {
-            screen: MultiProgress::with_draw_target(target),
-            shown: Mutex::default(),
-        }
-    }
-
-    fn shown(&self) -> MutexGuard<'_, Shown> {
-        self.shown.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn bar(&self, name: &str, total: u64) -> ProgressBar {
         let style = ProgressStyle::with_template(BAR).expect("a valid template");
         let style = style.progress_chars("=> ").with_key("rate", write_rate);
         let style = style.with_key("left", write_left);
-        let bar = ProgressBar::new(total).with_style(style);
-        let bar = self.screen.add(bar.with_prefix(name.to_owned()));
-        bar.enable_steady_tick(INTERVAL);
-        bar
-    }
-
-    /// Prints a line above the progress bars. A closed standard error does not stop the run.
-    fn print(&self, line: &str) {
-        let _ = self.screen.println(line);
-    }
-
-    fn end_stage(&self, shown: &mut Shown) {
-        if let Some((stage, bar)) = shown.stage.take() {
-            bar.finish_and_clear();
-            self.screen.remove(&bar);
-            self.print(&stage.summary());
+        Self {
+            bar: ProgressBar::with_draw_target(Some(0), target).with_style(style),
+            items: Mutex::default(),
         }
+    }
+
+    fn items(&self) -> MutexGuard<'_, (usize, usize)> {
+        self.items.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Progress for Bars {
+impl Progress for Bar {
     fn stage(&self, name: &str, total: u64) {
-        let mut shown = self.shown();
-        self.end_stage(&mut shown);
-        shown.stage = Some((Stage::start(name, total), self.bar(name, total)));
+        self.bar.set_prefix(name.to_owned());
+        self.bar.set_length(total);
+        self.bar.reset();
+        self.bar.enable_steady_tick(INTERVAL);
     }
 
     fn advance(&self, n: u64) {
-        if let Some((stage, bar)) = &mut self.shown().stage {
-            stage.done += n;
-            bar.inc(n);
-        }
+        self.bar.inc(n);
     }
 
     fn expect(&self, n_items: usize) {
-        self.shown().run = Some(self.bar("work items", n_items as u64));
+        *self.items() = (0, n_items);
     }
 
     fn item_finished(&self) {
-        if let Some(bar) = &self.shown().run {
-            bar.inc(1);
-        }
+        let mut items = self.items();
+        items.0 += 1;
+        let (done, all) = *items;
+        self.bar
+            .set_message(format!("; {done} of {all} work items"));
     }
 
     fn finish(&self, message: &str) {
-        let mut shown = self.shown();
-        self.end_stage(&mut shown);
-        if let Some(bar) = shown.run.take() {
-            bar.finish_and_clear();
-            self.screen.remove(&bar);
-        }
+        self.bar.finish_and_clear();
         if !message.is_empty() {
-            self.print(message);
+            self.bar.println(message);
         }
     }
 }
 
-impl Drop for Bars {
+impl Drop for Bar {
     fn drop(&mut self) {
-        let _ = self.screen.clear();
+        self.bar.finish_and_clear();
     }
 }
 
@@ -328,27 +298,31 @@ mod tests {
     }
 
     #[test]
-    fn bars_show_count_rate_and_remaining_time_and_leave_a_line_per_stage() {
+    fn one_line_shows_stage_count_rate_remaining_time_and_work_items() {
         let written = Written::default();
         let target = ProgressDrawTarget::term_like(Box::new(written.clone()));
-        let bars = Bars::new(target);
-        bars.expect(2);
-        bars.stage("simulate", 4);
+        let bar = Bar::new(target);
+        bar.expect(2);
+        bar.stage("simulate", 4);
         thread::sleep(2 * INTERVAL);
-        bars.advance(1);
-        bars.item_finished();
+        bar.advance(1);
+        bar.item_finished();
         thread::sleep(2 * INTERVAL);
         let shown = written.text();
-        assert!(shown.contains("simulate [========>   "), "{shown}");
+        assert!(shown.contains("simulate [======>  "), "{shown}");
         assert!(shown.contains("] 1/4, "), "{shown}");
-        assert!(shown.contains("work items [================>  "), "{shown}");
+        assert!(shown.contains("; 1 of 2 work items"), "{shown}");
         assert!(shown.contains("0/4, 0.00/s, no rate yet"), "{shown}");
         assert!(shown.contains("s left"), "{shown}");
-        bars.finish("done");
+        bar.stage("learn", 2);
+        thread::sleep(2 * INTERVAL);
         let text = written.text();
-        assert!(text.contains("      simulate: 1 in 0."), "{text}");
+        assert!(text.contains("learn ["), "{text}");
+        assert!(!text.contains('\n'), "one line alone: {text}");
+        bar.finish("done");
+        let text = written.text();
         assert!(text.trim_end().ends_with("done"), "{text}");
-        drop(bars);
+        drop(bar);
         thread::sleep(2 * INTERVAL);
         assert_eq!(written.text(), text, "no bar is drawn later");
     }

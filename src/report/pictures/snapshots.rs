@@ -79,8 +79,12 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
         let style = TextStyle::new(13).align(Align::Middle);
         drawing.bold_text((middle, above - 10.0), &title, style);
         drawing.frame(area, Stroke::new(INK, 2.0));
-        draw_map_axis(&mut drawing, area, Side::Below, nx as f64 * pitch_mm);
-        if index % n_columns == 0 {
+        // In a picture of many frames, the first frame alone has axes.
+        let has_axes = n_columns == 4 || index == 0;
+        if has_axes {
+            draw_map_axis(&mut drawing, area, Side::Below, nx as f64 * pitch_mm);
+        }
+        if has_axes && index % n_columns == 0 {
             draw_map_axis(&mut drawing, area, Side::Left, ny as f64 * pitch_mm);
         }
         maps.push((cells, largest_of_blocks(frame, (block, block))));
