@@ -16,8 +16,6 @@ use ndarray::Array2;
 const MAX_CELLS: usize = 128;
 /// Maximum number of frames in a picture; a picture of more frames does not fit on a page.
 const MAX_FRAMES: usize = 120;
-/// Width of the frames side by side in a picture, pixels.
-const WIDTH: f64 = 768.0;
 
 /// Frames of several touches, which are drawn with a common colour scale.
 #[derive(Clone, Debug)]
@@ -42,7 +40,11 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
         frames, pitch_mm, ..
     } = set;
     let frames = &frames[..frames.len().min(MAX_FRAMES)];
-    let n_columns = if frames.len() > 8 { 8 } else { 4 };
+    let (n_columns, room) = if frames.len() > 8 {
+        (8, 80.0)
+    } else {
+        (4, 192.0)
+    };
     let sides = frames
         .iter()
         .map(|(_, frame)| frame.nrows().max(frame.ncols()));
@@ -52,7 +54,7 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
     let scale = ColourScale::over(frames.iter().flat_map(|(_, frame)| frame), set.quantity);
     let block = largest.div_ceil(MAX_CELLS);
     let n_cells = largest.div_ceil(block);
-    let side = whole_pixels(WIDTH / n_columns as f64, n_cells);
+    let side = whole_pixels(room, n_cells);
     let rows = frames.iter().map(|(_, frame)| frame.nrows());
     let n_rows = rows.max().unwrap_or(0).div_ceil(block);
     let (box_side, box_height) = (side * n_cells as f64, side * n_rows as f64);
