@@ -62,18 +62,15 @@ impl AuditData {
         if let Some(is_test) = &mut self.is_test {
             *is_test = order.iter().map(|&touch| is_test[touch]).collect();
         }
-        self.numbers = Some(match &self.numbers {
-            Some(numbers) => order.iter().map(|&touch| numbers[touch]).collect(),
-            None => order,
-        });
+        let in_file = order.iter().map(|&touch| self.number_in_file(touch));
+        self.numbers = Some(in_file.collect());
         self.is_in_order_of_time = true;
     }
 
     /// Returns the number of a touch in its file, from 0.
     pub fn number_in_file(&self, touch: usize) -> usize {
-        self.numbers
-            .as_ref()
-            .map_or(touch, |numbers| numbers[touch])
+        let numbers = self.numbers.as_ref();
+        numbers.map_or(touch, |numbers| numbers[touch])
     }
 
     /// Checks that frames, labels, groups and sessions belong together.
@@ -95,12 +92,9 @@ impl AuditData {
             ("is_test", self.is_test.as_ref().map(Vec::len)),
         ];
         for (name, length) in lists {
-            if let Some(length) = length
-                && length != n
-            {
-                let given = format!("{length} numbers");
+            if let Some(length) = length.filter(|&length| length != n) {
                 let allowed = format!("{n}, one for each touch");
-                return Err(Error::input(name, given, allowed));
+                return Err(Error::input(name, format!("{length} numbers"), allowed));
             }
         }
         let n_classes = self.classes.len();
@@ -125,8 +119,7 @@ const MIN_STEPS: f64 = 20.0;
 fn unwrapped(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     let steps = || times.windows(2).map(|pair| pair[1] - pair[0]);
     let longest = steps().fold(0.0, f64::max);
-    let n_back = steps().filter(|&step| step < 0.0).count();
-    if n_back == 0 || longest == 0.0 {
+    if longest == 0.0 || steps().all(|step| step >= 0.0) {
         return None;
     }
     // Counts at which clocks wrap around: 16 to 32 bits, and a minute, an hour and a day in microseconds; factors by which recordings convert them to other
@@ -137,11 +130,10 @@ fn unwrapped(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     let mut periods = factors.flat_map(|factor| counts.iter().map(move |count| factor * count));
     let is_explained = |period: &f64| {
         let mut back = steps().filter(|&step| step < 0.0);
-        back.all(|step| (0.0..=MAX_STEP * longest).contains(&(step + period)))
+        let ends = 0.0..=MAX_STEP * longest;
+        *period > MIN_STEPS * longest && back.all(|step| ends.contains(&(step + period)))
     };
-    let period = periods
-        .find(is_explained)
-        .filter(|period| MIN_STEPS * longest < *period)?;
+    let period = periods.find(is_explained)?;
     let mut n_wraps = 0.0;
     let mut continued = times.to_vec();
     for touch in 1..times.len() {
