@@ -231,7 +231,8 @@ fn a_plan_states_the_memory_of_a_run_within_a_fifth() {
         case.file("study.toml", &study);
         let planned = planned_mib(&case, "study.toml");
         let out = format!("of {name}");
-        case.succeeds(&[
+        // Large frames are freed while a reconstruction goes on. If freed memory does not return at once, its peak depends on the load of the machine.
+        let arguments = [
             "run",
             "study.toml",
             "--threads",
@@ -239,7 +240,13 @@ fn a_plan_states_the_memory_of_a_run_within_a_fifth() {
             "--quiet",
             "--out",
             &out,
-        ]);
+        ];
+        let mut run = case.command(&arguments);
+        if name == "reconstruction" {
+            run.env("MIMALLOC_PURGE_DELAY", "0");
+        }
+        let output = run.output().unwrap();
+        assert!(output.status.success(), "{output:?}");
         let Some(peak) = peak(&case.path(&out)) else {
             println!("SKIPPED: this system does not tell how much memory a process took");
             return;
