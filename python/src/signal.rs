@@ -107,7 +107,7 @@ impl Step {
             let (key, value): (String, f64) = (key.extract()?, value.extract()?);
             let place = known.iter().position(|strength| strength.key == key);
             let place = place.ok_or_else(|| bad_input(name, format!("`{key}`"), &keys))?;
-            if !(known[place].is_allowed)(value) {
+            if !known[place].is_allowed(value) {
                 return Err(bad_input(key, value, known[place].allowed));
             }
             values[place] = value;
