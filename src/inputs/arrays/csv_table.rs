@@ -147,7 +147,8 @@ impl Table {
             let mut below = self.column(column).skip(n_above).filter_map(number);
             below.any(|number| number.is_finite() && number.fract() != 0.0)
         };
-        (0..self.rows[0].1.len()).filter(has_fraction).count()
+        let n_columns = self.rows.first().map_or(0, |(_, cells)| cells.len());
+        (0..n_columns).filter(has_fraction).count()
     }
 
     /// Leaves out all other columns, with a note for each; `why` is the reason.

@@ -74,6 +74,12 @@ impl Layout {
             "" => others,
             more => format!("Also at {more}"),
         };
+        if let Some(first) = settings.first_mut()
+            && first.ends_with(',')
+        {
+            first.pop();
+            first.push('.');
+        }
         let caption = [format!("{others} {}", view.spec.note), view.omitted()];
         let caption = caption.iter().flat_map(|text| wrap(text, CAPTION, inner));
         let caption = caption.collect();
