@@ -1,4 +1,4 @@
-//! Descriptions of the keys of study files: range, axis, role, title, unit and scale of each key, from its declaration ([`params!`](super::params)).
+//! Descriptions of the keys of study files: range, axis, role, title, unit and scale of each key, from its declaration (the macro `params!`).
 
 use crate::inputs::range::Range;
 use crate::inputs::toml_value::is_at;
