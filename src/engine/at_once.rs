@@ -5,18 +5,17 @@
 
 use crate::error::Result;
 use std::cell::Cell;
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 thread_local! {
     /// Whether the thread works on a task.
     static IS_BUSY: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Tasks that remain, the function that works on a task, and the first error.
+/// Tasks that remain with the first error, and the function that works on a task.
 struct Queue<I, F> {
-    tasks: Mutex<I>,
+    left: Mutex<(I, Result<()>)>,
     run: F,
-    failed: Mutex<Result<()>>,
 }
 
 /// Runs all tasks, which begin in the given order. The number of tasks in memory is at most the number of threads; tasks within a task count with it, as
@@ -29,19 +28,22 @@ pub(crate) fn run_at_once<T: Send>(
     run: impl Fn(T) -> Result<()> + Sync,
 ) -> Result<()> {
     let queue = Queue {
-        tasks: Mutex::new(tasks.into_iter()),
+        left: Mutex::new((tasks.into_iter(), Ok(()))),
         run,
-        failed: Mutex::new(Ok(())),
     };
     rayon::scope(|scope| queue.work(scope));
-    queue.failed.into_inner().unwrap_or_else(|e| e.into_inner())
+    let left = queue.left.into_inner();
+    left.unwrap_or_else(PoisonError::into_inner).1
 }
 
 impl<T: Send, I: Iterator<Item = T> + Send, F: Fn(T) -> Result<()> + Sync> Queue<I, F> {
+    fn left(&self) -> MutexGuard<'_, (I, Result<()>)> {
+        self.left.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn next(&self) -> Option<T> {
-        let failed = self.failed.lock().unwrap_or_else(|e| e.into_inner());
-        let mut tasks = self.tasks.lock().unwrap_or_else(|e| e.into_inner());
-        failed.is_ok().then(|| tasks.next())?
+        let (tasks, ended) = &mut *self.left();
+        ended.is_ok().then(|| tasks.next())?
     }
 
     /// Works on tasks until none is left. Before each task, idle threads are asked for help.
@@ -54,9 +56,9 @@ impl<T: Send, I: Iterator<Item = T> + Send, F: Fn(T) -> Result<()> + Sync> Queue
                 }
             });
             if let Err(error) = (self.run)(task) {
-                let mut failed = self.failed.lock().unwrap_or_else(|e| e.into_inner());
-                if failed.is_ok() {
-                    *failed = Err(error);
+                let ended = &mut self.left().1;
+                if ended.is_ok() {
+                    *ended = Err(error);
                 }
             }
         }

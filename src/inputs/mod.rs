@@ -3,7 +3,6 @@
 pub mod arrays;
 pub(crate) mod check;
 pub mod content_hash;
-pub(crate) mod defaults;
 pub(crate) mod doc_comment;
 pub mod keys;
 pub mod layout_file;

@@ -5,8 +5,7 @@
 //! value that has several forms.
 
 use crate::engine::axis::Axis;
-use crate::files::file_path;
-use crate::files::{FilePath, SetName};
+use crate::files::{FilePath, SetName, file_path};
 use crate::inputs::doc_comment::plain;
 use crate::inputs::keys::KeyAbout;
 use crate::inputs::range::Range;
@@ -202,6 +201,15 @@ macro_rules! words {
             $($(#[doc = $doc])+ #[serde(rename = $word)] $variant,)*
         }
 
+        impl $name {
+            /// Returns the word in files.
+            pub const fn word(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word,)*
+                }
+            }
+        }
+
         $(impl Default for $name {
             fn default() -> Self {
                 Self::$default
@@ -287,6 +295,11 @@ macro_rules! named {
     };
 }
 pub(crate) use named;
+
+/// Returns whether a value is the default of its type, so that files omit it.
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
 
 /// Returns the path of a key, given the path of its table.
 pub(crate) fn joined(path: &str, name: &str) -> String {
@@ -672,6 +685,7 @@ mod tests {
             (4.0, &None, 0)
         );
         assert_eq!((found.inner.form, found.inner.n), (Form::Square, 2));
+        assert_eq!(found.inner.form.word(), "square");
         for (text, words) in [
             (
                 "length_m = 1.0",

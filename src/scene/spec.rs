@@ -23,7 +23,6 @@ params! {
         /// Number of frames per second of scene time, Hz, positive. Default: 100.
         output_hz: f64 = 100.0 => Positive;
         /// Duration of the scene, s. Default: until the last imposed motion ends.
-        #[serde(skip_serializing_if = "Option::is_none")]
         duration_s: Option<f64> => NotNegative;
         /// Gravitational acceleration in the world frame, m/s². Default: (0, 0, −9.81).
         gravity_m_per_s2: [f64; 3] = [0.0, 0.0, -9.81];
@@ -62,10 +61,8 @@ params! {
         name: String;
         /// Path of the robot's file, URDF or MJCF (MuJoCo), relative to the scene file. In MJCF each body is a link, and each site with a name is a link that is
         /// fixed to its body.
-        #[serde(skip_serializing_if = "Option::is_none")]
         file: Option<FilePath>;
         /// Another name of `file`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         urdf: Option<FilePath>;
         /// Folders of packages by their names, for meshes at `package://NAME/…`, such as `packages = { my_robot = "../my_robot" }`. Default: a package is searched in
         /// the folders above the robot's file.
@@ -77,10 +74,8 @@ params! {
         /// Pose of the robot's base, or its initial pose if it moves. Default: the world origin.
         at: PoseSpec = PoseSpec::default();
         /// Imposed motion of the robot's base. Default: no motion.
-        #[serde(skip_serializing_if = "Option::is_none")]
         motion: Option<MotionSpec>;
         /// Joint positions of the robot over time. A joint that is not listed stays at its default position: in URDF at 0 or at the nearest limit, in MJCF at `ref`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         joints: Option<JointsSpec>;
     }
 }

@@ -30,13 +30,10 @@ params! {
         #[serde(skip_serializing_if = "Vec::is_empty")]
         way_points: Vec<WayPointSpec> = Vec::new();
         /// Sinusoidal motion about the pose `at`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         oscillation: Option<OscillationSpec>;
         /// CSV file with a time and a pose in each row (way-points).
-        #[serde(skip_serializing_if = "Option::is_none")]
         csv: Option<FilePath>;
         /// Interpolation of the poses between way-points. Default: `cubic`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         interpolation: Option<Interpolation>;
     }
 }
@@ -88,10 +85,8 @@ params! {
     #[derive(Default)]
     pub struct JointsSpec {
         /// CSV file with a time and the joint positions in each row (way-points).
-        #[serde(skip_serializing_if = "Option::is_none")]
         csv: Option<FilePath>;
         /// Interpolation of the joint positions between way-points. Default: `cubic`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         interpolation: Option<Interpolation>;
         /// Times of the way-points since the start of the scene, s.
         #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -14,10 +14,8 @@ params! {
         /// Name of the object, unique in the scene.
         name: String;
         /// Name of a built-in object; the command `bubbletouch objects` lists them.
-        #[serde(skip_serializing_if = "Option::is_none")]
         object: Option<String>;
         /// TOML file of objects that contains the object named `object`. Default: the built-in objects.
-        #[serde(skip_serializing_if = "Option::is_none")]
         objects: Option<FilePath>;
         /// Parts of a solid in the frame of the object; replaces `object`. Each part is a table with the keys of `[[object.part]]` in a file of objects.
         #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -27,36 +25,26 @@ params! {
         #[serde(skip_serializing_if = "std::ops::Not::not")]
         centered: bool = false;
         /// CSV file of spheres with the columns x, y, z, r; replaces `object`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         spheres: Option<FilePath>;
         /// Mesh file (PLY, OBJ, STL, Collada or glTF) of the object; replaces `object`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         mesh: Option<FilePath>;
         /// Contact model of a mesh. Default: `mesh`, or `packed` in a scene with a free object.
-        #[serde(skip_serializing_if = "Option::is_none")]
         model: Option<ModelSpec>;
         /// Length unit of a mesh or of spheres. Default: metres. The size must then be between 0.1 mm and 10 m.
-        #[serde(skip_serializing_if = "Option::is_none")]
         unit: Option<LengthUnit>;
         /// Maximum distance between the spheres and the surface of a solid or packed mesh, mm. Default: 0.25, or a tenth of the finest pitch for a packed mesh.
-        #[serde(skip_serializing_if = "Option::is_none")]
         surface_error_mm: Option<f64> => Positive;
         /// Name of the robot that carries the object; `at` and `motion` are then in the frame of its link.
-        #[serde(skip_serializing_if = "Option::is_none")]
         robot: Option<String>;
         /// Name of the robot link that carries the object. Default: the base.
-        #[serde(skip_serializing_if = "Option::is_none")]
         link: Option<String>;
         /// Pose of the object in the world or on the link, or its initial pose if it moves. Default: the origin.
         at: PoseSpec = PoseSpec::default();
         /// Imposed motion of the object, which does not depend on contacts. Default: no motion.
-        #[serde(skip_serializing_if = "Option::is_none")]
         motion: Option<MotionSpec>;
         /// Force control in addition to `motion`: the object also moves along a line until the force on a patch reaches a target.
-        #[serde(skip_serializing_if = "Option::is_none")]
         press: Option<PressSpec>;
         /// Properties of a free object, whose pose follows from gravity and contacts; replaces `motion`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         free: Option<FreeSpec>;
     }
 }
@@ -66,10 +54,8 @@ params! {
     #[derive(Copy, Default)]
     pub struct FreeSpec {
         /// Mass of the object, kg, positive; required.
-        #[serde(skip_serializing_if = "Option::is_none")]
         mass_kg: Option<f64> => Positive;
         /// Centre of mass in the object frame, mm. Default: the centre of mass of a homogeneous solid.
-        #[serde(skip_serializing_if = "Option::is_none")]
         center_of_mass_mm: Option<[f64; 3]>;
     }
 }

@@ -27,13 +27,10 @@ params! {
         /// Name of the patch, unique in the scene.
         name: String;
         /// Name of the robot that carries the patch. Default: the patch is fixed in the world.
-        #[serde(skip_serializing_if = "Option::is_none")]
         robot: Option<String>;
         /// Name of the robot link that carries the patch. Default: the base.
-        #[serde(skip_serializing_if = "Option::is_none")]
         link: Option<String>;
         /// Name of the object that carries the patch, instead of a robot. A patch never touches the object that carries it.
-        #[serde(skip_serializing_if = "Option::is_none")]
         object: Option<String>;
         /// Pose of the patch on the link, on the object, or in the world. Default: the origin.
         at: PoseSpec = PoseSpec::default();
@@ -41,25 +38,18 @@ params! {
         layout: LayoutSpec;
         /// Radius of the spherical taxels, mm. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number per
         /// taxel, or a column of `taxels_csv`. Lists have the order of the layout (for a grid, row by row).
-        #[serde(skip_serializing_if = "Option::is_none")]
         taxel_radius_mm: Option<Numbers> => Positive;
         /// Stroke (maximum deflection) of the taxels, mm; required.
-        #[serde(skip_serializing_if = "Option::is_none")]
         stroke_mm: Option<Numbers> => Positive;
         /// Stiffness of the taxels along their axes, N/m. Default: 100.
-        #[serde(skip_serializing_if = "Option::is_none")]
         stiffness_n_per_m: Option<Numbers> => Positive;
         /// Damping coefficient of the taxels along their axes, N·s/m. Default: 0.
-        #[serde(skip_serializing_if = "Option::is_none")]
         damping_n_s_per_m: Option<Numbers> => NotNegative;
         /// Friction coefficient between taxels and objects. With friction, tangential springs hold the contacts until they slip. Default: no friction.
-        #[serde(skip_serializing_if = "Option::is_none")]
         friction: Option<Numbers> => NotNegative;
         /// Tangential stiffness of the taxels, N/m, used with `friction`. Default: the stiffness along the axes.
-        #[serde(skip_serializing_if = "Option::is_none")]
         shear_stiffness_n_per_m: Option<Numbers> => Positive;
         /// CSV file with one row per taxel. Its columns have the names of the keys above; only columns that differ between taxels are needed.
-        #[serde(skip_serializing_if = "Option::is_none")]
         taxels_csv: Option<FilePath>;
         /// Steps of the patch's signal chain (noise and sensor errors), in order. Default: none.
         #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -216,21 +206,16 @@ params! {
     /// Taxels on the outer surface of a triangle mesh, or of a link of the patch's robot.
     pub struct DrapedSpec {
         /// Mesh file of the surface; omitted if `on` or `region.link` is given.
-        #[serde(skip_serializing_if = "Option::is_none")]
         mesh: Option<FilePath>;
         /// Length unit of the mesh file. Default: metres. The size must then be between 0.1 mm and 10 m.
-        #[serde(skip_serializing_if = "Option::is_none")]
         unit: Option<LengthUnit>;
         /// Shapes of the patch's own link that form the surface, instead of a mesh file: `collision` or `visual`. The shapes include meshes of the robot's file.
-        #[serde(skip_serializing_if = "Option::is_none")]
         on: Option<ShapeRole>;
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64 => Positive;
         /// Part of the surface that carries taxels. Default: the whole outer surface.
-        #[serde(skip_serializing_if = "Option::is_none")]
         region: Option<Box<RegionSpec>>;
         /// Flat grid of taxels that is wrapped around the surface. Default: the taxels are distributed over the surface.
-        #[serde(skip_serializing_if = "Option::is_none")]
         grid: Option<Box<ProjectedGridSpec>>;
     }
 }
@@ -284,13 +269,10 @@ params! {
         /// Path of the layout file.
         path: FilePath;
         /// Mesh whose surface normals are the taxel axes, for files of points without normals.
-        #[serde(skip_serializing_if = "Option::is_none")]
         mesh: Option<FilePath>;
         /// Length unit of the mesh file. Default: metres.
-        #[serde(skip_serializing_if = "Option::is_none")]
         unit: Option<LengthUnit>;
         /// Name of the tactile sensor, if a robot's file contains several sensors.
-        #[serde(skip_serializing_if = "Option::is_none")]
         sensor: Option<String>;
     }
 }
@@ -301,28 +283,20 @@ params! {
     #[derive(Default)]
     pub struct RegionSpec {
         /// Smallest coordinates of a box in the mesh frame, mm, together with `box_max_mm`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         box_min_mm: Option<[f64; 3]>;
         /// Largest coordinates of the box in the mesh frame, mm, together with `box_min_mm`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         box_max_mm: Option<[f64; 3]>;
         /// Normal of a plane that bounds the region; its length is arbitrary, and it points to the side of the region.
-        #[serde(skip_serializing_if = "Option::is_none")]
         plane_normal: Option<[f64; 3]>;
         /// Point of the plane, mm, together with `plane_normal`. Default: the origin of the mesh.
-        #[serde(skip_serializing_if = "Option::is_none")]
         plane_point_mm: Option<[f64; 3]>;
         /// Name of the link of the patch's `robot` whose shapes replace a mesh file; this link carries the patch. The box and the plane are then in the link frame.
-        #[serde(skip_serializing_if = "Option::is_none")]
         link: Option<String>;
         /// Shapes of `link` that form the surface: `collision` or `visual`. Default: the collision shapes, or the visual ones if the link has no collision shapes.
-        #[serde(skip_serializing_if = "Option::is_none")]
         shapes: Option<ShapeRole>;
         /// Name of a group (`g`) or object (`o`) of an OBJ file that forms the region.
-        #[serde(skip_serializing_if = "Option::is_none")]
         group: Option<String>;
         /// Numbers of the first and last triangle of the region, counted from 0 in the order of the mesh file.
-        #[serde(skip_serializing_if = "Option::is_none")]
         triangles: Option<[usize; 2]>;
     }
 }

@@ -6,7 +6,7 @@ use crate::engine::work_items::{
 };
 use crate::error::{Error, Result};
 use crate::inputs::keys::KeyAbout;
-use crate::inputs::params::Described;
+use crate::inputs::params::{Described, keys_of};
 use crate::report::study_content::Beyond;
 use crate::studies::source::Source;
 use crate::table::{ChartSpec, Columns, File, FileAbout, Table};
@@ -188,7 +188,9 @@ pub trait Study: Send + Sized + Sync + 'static {
     type Rows: ItemRows;
 
     /// Returns the descriptions of all keys of the kind's study files, in the order of a file.
-    fn keys() -> Vec<KeyAbout>;
+    fn keys() -> Vec<KeyAbout> {
+        keys_of::<Self::Spec>().to_vec()
+    }
 
     /// Reads and checks a study, and loads its objects.
     ///

@@ -207,7 +207,6 @@ mod tests {
             /// Table.
             skin: Skin;
             /// Key that is no axis.
-            #[serde(skip_serializing_if = "Option::is_none")]
             report: Option<String> => Any, Note, Never;
         }
     }

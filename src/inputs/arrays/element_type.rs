@@ -1,6 +1,6 @@
 //! Element types of NumPy files, and decoding of the elements.
 
-use crate::encoding::decoded;
+use crate::encoding::utf8_or_latin1;
 use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::{ElementKind, Elements};
 
@@ -112,8 +112,7 @@ impl ElementType {
     /// Decodes a text and removes its zero padding.
     fn text(&self, bytes: &[u8]) -> String {
         if self.letter != 'U' {
-            let (text, _) = decoded("", bytes);
-            return text.trim_end_matches('\0').to_owned();
+            return utf8_or_latin1(bytes).trim_end_matches('\0').to_owned();
         }
         let letters = bytes.as_chunks::<4>().0.iter().map(|chunk| {
             let code = match self.is_big_endian {

@@ -94,15 +94,12 @@ impl SceneView {
         let mut film = Picture::blank(skin.width + VIEW, height + strip.height)?;
         film.rgb.fill(u8::MAX);
         film.paste(skin, [0, 0]);
-        let first: usize = self.bodies[..self.patch]
-            .iter()
-            .map(|(_, parts)| parts.len())
-            .sum();
-        let n_skins = recording.header().patches.len();
-        let n_skin: usize = self.bodies[..n_skins]
-            .iter()
-            .map(|(_, parts)| parts.len())
-            .sum();
+        let n_parts = |n_bodies: usize| -> usize {
+            let bodies = self.bodies[..n_bodies].iter();
+            bodies.map(|(_, parts)| parts.len()).sum()
+        };
+        let first = n_parts(self.patch);
+        let n_skin = n_parts(recording.header().patches.len());
         let colour = |_: usize, hit: &Hit| match hit.part.checked_sub(first) {
             Some(taxel) if taxel < values.len() => scale.colour(values[taxel]),
             _ if hit.part < n_skin => BARE,

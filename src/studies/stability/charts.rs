@@ -31,9 +31,8 @@ impl StabilityPlan {
     }
 
     /// Returns the titles of the charts of times as sentences. A last sentence names the table of other programs if it does not exist.
-    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
-        let charts = self.charts(tables).into_iter();
-        let timed = charts.filter(|chart| chart.table != SCENES.name());
+    pub(crate) fn answers(&self, charts: &[ChartSpec]) -> Vec<String> {
+        let timed = charts.iter().filter(|chart| chart.table != SCENES.name());
         let missing = self.peers.as_ref().filter(|path| !path.exists());
         let missing = missing.map(|path| {
             format!(
@@ -42,7 +41,7 @@ impl StabilityPlan {
             )
         });
         timed
-            .map(|chart| chart.title + ".")
+            .map(|chart| format!("{}.", chart.title))
             .chain(missing)
             .collect()
     }

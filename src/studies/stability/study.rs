@@ -4,8 +4,6 @@ use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::{Scale, Stage};
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
-use crate::inputs::keys::KeyAbout;
-use crate::inputs::params::keys_of;
 use crate::inputs::units::millimetres;
 use crate::studies::source::Source;
 use crate::studies::stability::common::with_common;
@@ -58,10 +56,6 @@ impl Study for StabilityPlan {
 
     type Spec = StabilityStudySpec;
     type Rows = Vec<StabilityRow>;
-
-    fn keys() -> Vec<KeyAbout> {
-        keys_of::<StabilityStudySpec>().to_vec()
-    }
 
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a ball is what touches")?;
@@ -148,9 +142,10 @@ impl Study for StabilityPlan {
     }
 
     fn findings(&self, tables: &[Table]) -> Findings {
+        let charts = self.charts(tables);
         Findings {
-            charts: self.charts(tables),
-            answers: self.answers(tables),
+            answers: self.answers(&charts),
+            charts,
         }
     }
 }

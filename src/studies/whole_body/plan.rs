@@ -3,7 +3,6 @@
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::inputs::check::Check;
-use crate::inputs::keys::KeyAbout;
 use crate::inputs::params::keys_of;
 use crate::inputs::units::MM;
 use crate::scene::{Movement, ObjectSpec, PlannedRobot, Reader};
@@ -81,11 +80,6 @@ pub struct Aim {
     pub from: DVec3,
     /// Motion of the object in the frame of the link.
     pub motion: Oscillation,
-}
-
-/// Returns the descriptions of all keys of a whole-body study.
-pub fn whole_body_keys() -> Vec<KeyAbout> {
-    keys_of::<WholeBodyStudySpec>().to_vec()
 }
 
 impl WholeBodyPlan {

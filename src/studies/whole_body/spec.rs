@@ -63,7 +63,6 @@ params! {
         name: String => Unchecked, Subject, Never;
         /// Constant joint positions of the robot, given by the keys of `[robots.joints]` of a scene file with a single time. A joint that is not listed is at 0, or
         /// at its limit nearest to 0.
-        #[serde(skip_serializing_if = "Option::is_none")]
         joints: Option<JointsSpec> => Unchecked, Condition, Never;
         /// Object that touches the skin, with the keys of `[[objects]]` in a scene file. The key `link` is a link of the covered robot. The key `motion` can only
         /// be an oscillation; by default, the object does not move.

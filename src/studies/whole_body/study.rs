@@ -6,7 +6,6 @@ use crate::engine::work_items::shared::Shared;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::inputs::keys::KeyAbout;
 use crate::inputs::object_files::file_content;
 use crate::inputs::units::MM;
 use crate::objects::SphereUnion;
@@ -16,7 +15,6 @@ use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::studies::whole_body::drive::{Drive, Posture};
 use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
 use crate::studies::whole_body::objects::of_scene;
-use crate::studies::whole_body::plan::whole_body_keys;
 use crate::studies::whole_body::plan::{BodySize, ScenePlan, WholeBodyPlan};
 use crate::studies::whole_body::recognition::learn;
 use crate::studies::whole_body::rows::{
@@ -69,10 +67,6 @@ impl Study for WholeBodyPlan {
 
     type Spec = WholeBodyStudySpec;
     type Rows = WholeBodyRows;
-
-    fn keys() -> Vec<KeyAbout> {
-        whole_body_keys()
-    }
 
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a whole body is touched by the objects that its study names")?;

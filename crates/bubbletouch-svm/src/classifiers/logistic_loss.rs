@@ -126,8 +126,14 @@ impl<'a> LogisticLoss<'a> {
                 kronecker = Some(new);
                 n_products = 0;
             }
-            let diagonal = Preconditioner::diagonal(&p, weights, penalties);
-            let preconditioner = kronecker.as_ref().unwrap_or(&diagonal);
+            let diagonal;
+            let preconditioner = match &kronecker {
+                Some(kronecker) => kronecker,
+                None => {
+                    diagonal = Preconditioner::diagonal(&p, weights, penalties);
+                    &diagonal
+                }
+            };
             let least = [tolerance, SINGLE_PRECISION].map(|part| part * point.value);
             let NewtonStep {
                 step,

@@ -20,8 +20,8 @@ use ndarray::Array1;
 use rand::Rng;
 use rayon::prelude::*;
 
-/// Maximum number of touches of each object, or of each kind of human touch, that are simulated to estimate the size of a frame. With a larger value, plans take longer; with a smaller value,
-/// the estimate of the memory is less accurate.
+/// Maximum number of touches of each object, or of each kind of human touch, that are simulated to estimate the size of a frame. With a larger value, plans take
+/// longer; with a smaller value, the estimate of the memory is less accurate.
 pub(super) const SAMPLED_TOUCHES: usize = 4;
 
 impl TouchSet for Vec<TouchedObject> {

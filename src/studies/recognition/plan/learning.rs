@@ -286,12 +286,12 @@ impl Check<'_> {
             ),
         ];
         if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-            let given = format!("given beside split = {:?}", recognition.split.name());
+            let given = format!("given beside split = {:?}", recognition.split.word());
             let allowed = "no such key: the split says what is held out";
             return Err(self.error(&format!("recognition.{key}"), given, allowed));
         }
         if !spec.places_objects() {
-            let given = recognition.split.name();
+            let given = recognition.split.word();
             let allowed = "\"random\": only touches that a study places have a known pose";
             return Err(self.error("recognition.split", given, allowed));
         }

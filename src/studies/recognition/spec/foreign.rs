@@ -46,13 +46,10 @@ params! {
         /// another version.
         command: Vec<String>;
         /// Name of the classifier in tables and charts. Default: the name of the first file among the arguments, without its ending.
-        #[serde(skip_serializing_if = "Option::is_none")]
         name: Option<String>;
         /// Version of what the command runs beside its files, such as a library. Another version is computed again.
-        #[serde(skip_serializing_if = "Option::is_none")]
         version: Option<String>;
         /// Maximum time of one call of the command, s. Default: no limit.
-        #[serde(skip_serializing_if = "Option::is_none")]
         time_limit_s: Option<f64>;
     }
 }

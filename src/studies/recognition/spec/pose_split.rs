@@ -42,18 +42,6 @@ words! {
 const BLOCK: [TouchAxis; 3] = [TouchAxis::OffsetX, TouchAxis::OffsetY, TouchAxis::Yaw];
 
 impl PoseSplit {
-    /// Returns the name of the split rule in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Random => "random",
-            Self::LeaveOneYawOut => "leave_one_yaw_out",
-            Self::HalfOfYaws => "half_of_yaws",
-            Self::OppositeBlocks => "opposite_blocks",
-            Self::UnseenTilt => "unseen_tilt",
-            Self::UnseenDepth => "unseen_depth",
-        }
-    }
-
     /// Returns a phrase that describes which touches are held out for testing.
     pub fn words(self) -> &'static str {
         match self {
@@ -152,7 +140,7 @@ impl PoseSplit {
         let refused = |given: String| {
             let allowed = format!(
                 "at least two listed values, of which {:?} can hold some out",
-                self.name()
+                self.word()
             );
             Error::input("key recognition.split", given, allowed)
         };

@@ -5,7 +5,7 @@ use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::{TableContent, is_member};
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
-use crate::inputs::params::words;
+use crate::inputs::params::{is_default, words};
 use crate::inputs::range::Range::{Any, Count, NotNegative, Positive, Unchecked};
 use crate::inputs::units::MAX_FRAMES;
 use crate::studies::recognition::spec::recorded_sensor::{
@@ -21,53 +21,44 @@ sensor_spec! {
     pub struct RecordedSpec {
         /// File with the frames. Its shape is (n, rows, columns), (n, F, rows, columns) for F frames per touch, or (n, taxels) without rows and columns.
         /// Any numeric type of up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
-        #[serde(skip_serializing_if = "is_empty")]
+        #[serde(skip_serializing_if = "is_default")]
         frames: PathBuf = PathBuf::new() => Unchecked, Condition, Axes;
         /// File with the tangential forces of a skin that reads shear, newtons: two forces across the axis of each taxel. The array has the axes of `frames` plus
         /// an axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
-        #[serde(skip_serializing_if = "Option::is_none")]
         shear: Option<PathBuf> => Unchecked, Condition, Axes;
         /// File of the class of every touch: integers or texts, shape (n,), or entries 0 and 1, shape (n, classes).
-        #[serde(skip_serializing_if = "is_empty")]
+        #[serde(skip_serializing_if = "is_default")]
         labels: PathBuf = PathBuf::new() => Unchecked, Condition, Axes;
         /// File with the group of every touch, such as its grasp or day, shape (n,). A split never divides a group.
         groups: Option<PathBuf> => Unchecked, Condition, Axes;
         /// Archive `.npz` with the split of each trial t: arrays `train_t` and `test_t` of touch numbers from 0, or of a bool for each touch. Touches in neither
         /// array are not used. Replaces `test_fraction` and `folds`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         splits: Option<PathBuf> => Unchecked, Condition, Axes;
         /// Number F of frames to which each touch is resampled, at least 1. Frames are interpolated linearly at F instants, evenly spaced from the first to
         /// the last frame. If F is 1, the last frame is used. Default: all frames.
-        #[serde(skip_serializing_if = "Option::is_none")]
         resampled_frames: Option<usize> => Count(1, MAX_FRAMES), Choice, Axes;
         /// Sensors that recorded the same touches, instead of `frames`. Their readings are joined to one frame, each with its own zero and full scale.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         sensors: Vec<RecordedSensorSpec> = Vec::new() => Unchecked, Condition, Axes;
         /// Sensors whose readings the study uses: `all` (default), a name of `sensors`, several names joined by `+`, or a list of names.
-        #[serde(skip_serializing_if = "Option::is_none")]
         sensor: Option<SensorChoice> => Any, Choice, Axes;
         /// File with the tangential forces of the separate test set, newtons, in the format of `shear`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         shear_test: Option<PathBuf> => Unchecked, Condition, Axes;
         /// File with the classes of the separate test set, in the format of `labels`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         labels_test: Option<PathBuf> => Unchecked, Condition, Axes;
         /// File with the groups of the separate test set, in the format of `groups`. The interval of the accuracy is computed over these groups.
-        #[serde(skip_serializing_if = "Option::is_none")]
         groups_test: Option<PathBuf> => Unchecked, Condition, Axes;
         /// Names of the classes, in the order of their numbers from 0.
         names: Option<Vec<String>> => Unchecked, Condition, Axes;
         /// File with the press depth of each touch, metres, shape (n,). Together with `speed_mm_per_s`, it determines the time between the frames of a touch.
-        #[serde(skip_serializing_if = "Option::is_none")]
         depths: Option<PathBuf> => Unchecked, Condition, Axes;
         /// Speed of the skin towards the object when it was read, mm/s, at least 0; the speed affects the damper force. Default: 0.
-        #[serde(skip_serializing_if = "is_zero")]
+        #[serde(skip_serializing_if = "is_default")]
         speed_mm_per_s: f64 = 0.0 => NotNegative, Condition, Axes;
         /// Time between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.
-        #[serde(skip_serializing_if = "Option::is_none")]
         frame_interval_s: Option<f64> => Positive, Condition, Axes;
         /// Rule that determines the preceding touch of each touch, for sensor errors with memory. Values: `random` (default) or `none`.
-        #[serde(skip_serializing_if = "is_usual")]
+        #[serde(skip_serializing_if = "is_default")]
         previous_touch: PreviousTouch = PreviousTouch::default() => Any, Condition, Axes;
     }
     unread {
@@ -86,27 +77,6 @@ words! {
         /// No touch precedes any touch of the recording.
         None = "none",
     }
-}
-
-#[expect(clippy::ptr_arg, reason = "serde hands over the field")]
-fn is_empty(path: &PathBuf) -> bool {
-    path.as_os_str().is_empty()
-}
-
-#[expect(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde hands over the field"
-)]
-fn is_zero(number: &f64) -> bool {
-    *number == 0.0
-}
-
-#[expect(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde hands over the field"
-)]
-fn is_usual(touch: &PreviousTouch) -> bool {
-    *touch == PreviousTouch::default()
 }
 
 impl RecordedSpec {
@@ -135,7 +105,7 @@ impl RecordedSpec {
         let files = [
             (
                 "labels",
-                Some(&mut self.labels).filter(|path| !is_empty(path)),
+                Some(&mut self.labels).filter(|path| !is_default(*path)),
             ),
             ("groups", self.groups.as_mut()),
             ("splits", self.splits.as_mut()),

@@ -2,9 +2,8 @@
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
-use crate::inputs::defaults::is_default;
 use crate::inputs::keys::{AxisPlace, KeyAbout};
-use crate::inputs::params::{Described, empty_table, key_schema, params, unknown};
+use crate::inputs::params::{Described, empty_table, is_default, key_schema, params, unknown};
 use crate::inputs::range::Range::{self, Any, Unchecked};
 use crate::inputs::sensor_errors::{
     NOISES, TestSensor, all_strengths, noise_words, strength_keys, strength_words,

@@ -2,13 +2,11 @@
 
 use crate::engine::work_items::{PendingItems, Scale, WorkItem};
 use crate::error::{Error, Result};
-use crate::inputs::keys::KeyAbout;
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::snapshots;
 use crate::report::study_content::{Beyond, NamedPicture};
 use crate::studies::recognition::charts;
 use crate::studies::recognition::frames::touch_set::Samples;
-use crate::studies::recognition::spec::keys::recognition_keys;
 use crate::studies::recognition::spec::pose_split::{GroupSpec, PoseSplit};
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::studies::recognition::study::load::load_study;
@@ -76,10 +74,6 @@ impl Study for RecognitionStudy {
     const SUMMARY: Option<fn(&[Table], usize) -> String> = Some(charts::words);
     type Spec = StudySpec;
     type Rows = RecognitionRows;
-
-    fn keys() -> Vec<KeyAbout> {
-        recognition_keys().to_vec()
-    }
 
     fn load(source: &Source) -> Result<Self> {
         load_study(source)
