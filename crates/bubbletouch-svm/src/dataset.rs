@@ -1,6 +1,7 @@
 //! Labelled measurements as a linfa data set, with validity checks.
 
 use linfa::DatasetBase;
+use linfa::dataset::Label;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView1, ArrayView2, Axis, Data, Ix2};
 
 use crate::{Error, Result};
@@ -32,7 +33,83 @@ pub fn rows(data: &Dataset, indices: &[usize]) -> Result<Dataset> {
         ));
     }
     let features = data.records.select(Axis(0), indices);
-    dataset(features, data.targets.select(Axis(0), indices))
+    let selected = dataset(features, data.targets.select(Axis(0), indices))?;
+    Ok(match data.weights() {
+        Some(weights) => selected.with_weights(indices.iter().map(|&row| weights[row]).collect()),
+        None => selected,
+    })
+}
+
+/// Training rows whose classes are numbered from 0.
+#[derive(Clone, Copy)]
+pub(crate) struct LabelledRows<'a> {
+    /// Features, shape n_rows × m.
+    pub features: ArrayView2<'a, f64>,
+    /// Number of the class of each row.
+    pub labels: ArrayView1<'a, usize>,
+    /// Weight of each row; empty if all weights are 1.
+    pub weights: &'a [f32],
+}
+
+impl<'a> From<&'a Dataset> for LabelledRows<'a> {
+    fn from(data: &'a Dataset) -> Self {
+        Self {
+            features: data.records.view(),
+            labels: data.targets.view(),
+            weights: data.weights().unwrap_or_default(),
+        }
+    }
+}
+
+impl LabelledRows<'_> {
+    /// Checks that there is one label and one weight per row, and that all weights are positive.
+    ///
+    /// # Errors
+    /// If the numbers of labels, weights and rows differ, or a weight is not above 0; the error names the row.
+    pub fn check(&self) -> Result<()> {
+        let n_rows = self.features.nrows();
+        check_labels(n_rows, self.labels)?;
+        if ![0, n_rows].contains(&self.weights.len()) {
+            let given = format!("{} of {n_rows} rows", self.weights.len());
+            return Err(Error::input("weights", given, "one per row is needed"));
+        }
+        let is_wrong = |weight: &f32| !(*weight > 0.0 && weight.is_finite());
+        match self.weights.iter().position(is_wrong) {
+            None => Ok(()),
+            Some(row) => Err(Error::input(
+                format!("weights, row {row}"),
+                self.weights[row],
+                "a finite number above 0 is allowed; leave rows of weight 0 out",
+            )),
+        }
+    }
+}
+
+/// Checks that the rows have no weights, for methods that do not use them.
+///
+/// # Errors
+/// If the data set has weights.
+pub(crate) fn check_unweighted(data: &Dataset) -> Result<()> {
+    match data.weights() {
+        None => Ok(()),
+        Some(weights) => Err(Error::input(
+            "weights",
+            format!("{} weights of rows", weights.len()),
+            "no weights are allowed here; SvmParams::train uses them",
+        )),
+    }
+}
+
+/// Returns the distinct labels, ascending, and the position of each row's label among them.
+pub(crate) fn numbered<L: Label>(labels: ArrayView1<L>) -> (Vec<L>, Array1<usize>) {
+    let mut classes = labels.to_vec();
+    classes.sort_unstable();
+    classes.dedup();
+    let numbers = labels
+        .iter()
+        .map(|label| classes.partition_point(|class| class < label));
+    let numbers = numbers.collect();
+    (classes, numbers)
 }
 
 /// Checks that the features are not empty and all finite.
@@ -100,7 +177,7 @@ pub fn all_finite(values: &[f64]) -> bool {
 ///
 /// # Errors
 /// If the number of labels differs from the number of rows.
-pub fn check_labels(n_rows: usize, labels: ArrayView1<usize>) -> Result<()> {
+pub fn check_labels<L>(n_rows: usize, labels: ArrayView1<L>) -> Result<()> {
     if labels.len() == n_rows {
         return Ok(());
     }

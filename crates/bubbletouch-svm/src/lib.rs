@@ -61,6 +61,7 @@
 //! | `screening` | one-vs-one linear problems → their solutions from the rows near the margins |
 //! | `training` | a data set → all binary problems of a path of C |
 //! | [`predict`] | solved problems and rows → decision values and labels |
+//! | [`probabilities`] | decision values of held-out rows → probabilities of the classes |
 //! | [`cross_validation`] | candidates of C and γ → the best ones |
 //! | [`linear_svm`], [`classifiers`] | a data set → linear SVMs and other classifiers |
 //! | [`audit`] | labelled rows → nearest rows, scores of held-out rows, permutation tests |
@@ -74,6 +75,23 @@
 //! | [`linear_svm::LinearSvmParams`] | dual coordinate descent, one-vs-rest, regularised bias (LIBLINEAR's problem) | spread of projected gradients ≤ `tolerance`, or `max_passes` | n · m |
 //!
 //! The module [`classifiers`] contains other kinds of classifiers with exactly reproducible results, and states how they differ from linfa's classifiers.
+//!
+//! # From linfa-svm
+//!
+//! | linfa-svm | this crate |
+//! |---|---|
+//! | `Svm::<_, Pr>::params()`, `Svm::<_, bool>::params()` | [`SvmParams`]; labels are of any type that linfa supports, for two or more classes |
+//! | `.pos_neg_weights(c₊, c₋)` | `c`, and weights of rows ([`DatasetBase::with_weights`](linfa::DatasetBase::with_weights)) or [`class_weight`] |
+//! | `.linear_kernel()` | [`Kernel::Linear`](kernel::Kernel::Linear), the default |
+//! | `.gaussian_kernel(ε)` | [`Kernel::Rbf`](kernel::Kernel::Rbf) with γ = 1 / ε |
+//! | `.polynomial_kernel(c₀, d)` | [`Kernel::Polynomial`](kernel::Kernel::Polynomial) with γ = 1 |
+//! | `.eps(ε)` | `tolerance` |
+//! | `.shrinking(true)` | always |
+//! | `Pr` by Platt scaling of training rows | [`probabilities`], of held-out rows; the order of the classes is ascending |
+//! | `MultiClassModel` of `one_vs_all` | [`Multiclass`]: one-vs-one or one-vs-rest |
+//! | ν-SVM, one-class SVM, regression, own kernels | absent |
+//!
+//! The feature `linfa-svm` adds linfa-svm's solver to the [`classifiers`], for comparisons.
 //!
 //! # Sources
 //!
@@ -106,6 +124,7 @@ pub mod linear_svm;
 mod multiclass;
 pub mod precision;
 pub mod predict;
+pub mod probabilities;
 pub(crate) mod row_statistics;
 pub mod saved;
 pub mod scaling;

@@ -1,17 +1,10 @@
 //! Features in single or double precision (`f32`, `f64`).
 
-use std::borrow::Cow;
+use ndarray::{ArrayBase, CowArray, Data, Ix2};
 
-use linfa::DatasetBase;
-use ndarray::{Array1, Array2, ArrayBase, CowArray, Data, Ix2};
-
-use crate::dataset::Dataset;
-
-/// Floating-point type of features: `f32` or `f64`. Models are trained and evaluated in `f64`.
+/// Floating-point type of features: `f32` or `f64`. Features of both types are read as `f64`; the precision of kernel values depends on the parameters and not on
+/// this type (see the table of solvers on the [front page](crate)).
 pub trait Precision: linfa::Float {
-    /// Returns the data set in `f64`; `f32` features are converted, `f64` features are borrowed.
-    fn double(data: &DatasetBase<Array2<Self>, Array1<usize>>) -> Cow<'_, Dataset>;
-
     /// Returns the features (n_rows × m) in `f64`: `f32` features are converted, and `f64` features are borrowed.
     fn double_features<D: Data<Elem = Self>>(
         features: &ArrayBase<D, Ix2>,
@@ -19,10 +12,6 @@ pub trait Precision: linfa::Float {
 }
 
 impl Precision for f64 {
-    fn double(data: &Dataset) -> Cow<'_, Dataset> {
-        Cow::Borrowed(data)
-    }
-
     fn double_features<D: Data<Elem = Self>>(
         features: &ArrayBase<D, Ix2>,
     ) -> CowArray<'_, f64, Ix2> {
@@ -31,11 +20,6 @@ impl Precision for f64 {
 }
 
 impl Precision for f32 {
-    fn double(data: &DatasetBase<Array2<Self>, Array1<usize>>) -> Cow<'_, Dataset> {
-        let features = data.records.mapv(f64::from);
-        Cow::Owned(DatasetBase::new(features, data.targets.clone()))
-    }
-
     fn double_features<D: Data<Elem = Self>>(
         features: &ArrayBase<D, Ix2>,
     ) -> CowArray<'_, f64, Ix2> {
@@ -45,9 +29,10 @@ impl Precision for f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::svm_params::SvmParams;
+    use linfa::DatasetBase;
     use linfa::traits::{Fit, Predict};
+    use ndarray::{Array1, Array2};
 
     #[test]
     fn single_precision_gives_the_model_of_the_same_numbers_in_double_precision() {

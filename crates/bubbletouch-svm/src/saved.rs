@@ -22,7 +22,22 @@ use crate::linear_svm::LinearSvm;
 use crate::predict::svm_model::SvmModel;
 
 /// Version of the data. A change of the fields of a model needs another version, because older data cannot be read any more.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
+
+/// Checks the version of data that were read.
+///
+/// # Errors
+/// If the data have another version.
+pub(crate) fn check_version(version: u32) -> crate::Result<()> {
+    match version == VERSION {
+        true => Ok(()),
+        false => Err(crate::Error::input(
+            "saved model",
+            format!("version {version}"),
+            format!("version {VERSION} is needed; train and save the model anew"),
+        )),
+    }
+}
 
 /// Model of each kind of classifier that can be saved.
 #[derive(Serialize, Deserialize)]

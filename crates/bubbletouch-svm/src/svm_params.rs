@@ -3,12 +3,13 @@
 use std::borrow::Cow;
 
 use linfa::DatasetBase;
+use linfa::dataset::{AsSingleTargets, Label};
 use linfa::traits::Fit;
-use ndarray::{Array1, Array2, ArrayView1};
+use ndarray::{ArrayBase, ArrayView1, Data, Ix2};
 use serde::{Deserialize, Serialize};
 
 use crate::class_weight::ClassWeight;
-use crate::dataset::{Dataset, check_labels, distinct};
+use crate::dataset::{Dataset, LabelledRows, numbered};
 use crate::gram::sorted::Sorted;
 use crate::kernel::{Kernel, KernelFunction};
 use crate::multiclass::Multiclass;
@@ -57,8 +58,6 @@ pub struct SvmParams {
     pub class_weight: ClassWeight,
     /// Stopping tolerance, above 0: the largest violation of the optimality (KKT) conditions, in units of the decision value. LIBSVM's default is 1e-3.
     pub tolerance: f64,
-    /// Solver that trains the binary classifiers.
-    pub solver: Solver,
     /// Maximum size of the kernel values in memory at one time, bytes. If the kernel values do not fit, rows are computed on demand and the most recent rows
     /// are cached. Training is then slower, with equal solutions.
     pub memory_bytes: usize,
@@ -73,28 +72,22 @@ impl Default for SvmParams {
             c: 1.0,
             class_weight: ClassWeight::Uniform,
             tolerance: 1e-3,
-            solver: Solver::Smo,
             memory_bytes: DEFAULT_MEMORY_BYTES,
         }
     }
 }
 
-/// Training rows with their class labels, the kernel, and the centre that is subtracted from the rows.
-type Sorting<'a> = (
-    &'a Dataset,
-    &'a [usize],
-    KernelFunction,
-    ArrayView1<'a, f64>,
-);
+/// Training rows with the number of classes, the kernel, and the centre that is subtracted from the rows.
+type Sorting<'r, 'c> = (LabelledRows<'r>, usize, KernelFunction, ArrayView1<'c, f64>);
 
 impl SvmParams {
-    /// Trains an SVM on labelled rows. The result is deterministic.
+    /// Trains an SVM on labelled rows. The result is deterministic. If the data set has weights, the penalty of a row is C times its weight.
     ///
     /// The binary problems are in ascending order of classes: for one-vs-one (0, 1), (0, 2), …, (1, 2), …
     ///
     /// # Errors
-    /// If C, the tolerance or a kernel parameter is out of range, or the [`Solver`] does not support the parameters. If the data are empty, or a feature is NaN
-    /// or infinite (the error names row and column). If the number of labels differs from the number of rows, or there is a single class.
+    /// If C, the tolerance or a kernel parameter is out of range. If the data are empty, or a feature is NaN or infinite (the error names row and column). If the
+    /// number of labels or weights differs from the number of rows, a weight is not above 0, or there is a single class.
     pub fn train(&self, data: &Dataset) -> Result<SvmModel> {
         let mut models = self.train_path(data, &[self.c])?;
         Ok(models.swap_remove(0))
@@ -106,18 +99,32 @@ impl SvmParams {
     /// # Errors
     /// If a parameter is out of range, or the data cannot be used for training.
     pub fn train_path(&self, data: &Dataset, path: &[f64]) -> Result<Vec<SvmModel>> {
+        let (classes, labels) = numbered(data.targets.view());
+        let rows = LabelledRows {
+            labels: labels.view(),
+            ..LabelledRows::from(data)
+        };
+        self.train_rows(rows, &classes, path)
+    }
+
+    /// Trains one model for each C in `path`. `classes` contains the label of each class.
+    fn train_rows<L: Label>(
+        &self,
+        rows: LabelledRows,
+        classes: &[L],
+        path: &[f64],
+    ) -> Result<Vec<SvmModel<L>>> {
         self.check(path)?;
-        let statistics = RowStatistics::new(data.records.view())?;
-        check_labels(data.records.nrows(), data.targets.view())?;
-        let classes = distinct(data.targets.view());
+        let statistics = RowStatistics::new(rows.features)?;
+        rows.check()?;
         if classes.len() < 2 {
             return Err(Error::input(
                 "labels",
-                format!("the single class {}", classes[0]),
+                format!("the single class {:?}", classes[0]),
                 "at least two classes are needed",
             ));
         }
-        let kernel = self.kernel.resolve(data.records.view(), &statistics)?;
+        let kernel = self.kernel.resolve(rows.features, &statistics)?;
         let mut ascending = path.to_vec();
         ascending.sort_by(f64::total_cmp);
         ascending.dedup();
@@ -127,7 +134,9 @@ impl SvmParams {
             tolerance: self.tolerance,
             memory: self.memory_bytes,
         };
-        let trained = self.train_smo((data, &classes, kernel, centre.view()), goal);
+        let trained = self.train_smo((rows, classes.len(), kernel, centre.view()), goal);
+        let label = |model: SvmModel| model.with_classes(classes.to_vec());
+        let trained: Vec<SvmModel<L>> = trained.into_iter().map(label).collect();
         if ascending == path {
             return Ok(trained);
         }
@@ -136,21 +145,23 @@ impl SvmParams {
     }
 
     fn train_smo(&self, sorting: Sorting, goal: Goal) -> Vec<SvmModel> {
-        let (data, classes, kernel, centre) = sorting;
-        let n_rows = data.records.nrows();
+        let (rows, n_classes, kernel, centre) = sorting;
+        let n_rows = rows.features.nrows();
+        let numbers: Vec<usize> = (0..n_classes).collect();
         if !self.needs_double(n_rows, kernel, goal.path, (0.0, 1.0)) {
-            let sorted =
-                Sorted::<f32>::new(data, classes, kernel, centre).weighted(self.class_weight);
+            let sorted = Sorted::<f32>::new(rows, &numbers, kernel, centre)
+                .weighted(self.class_weight, rows.weights);
             if !self.needs_double(n_rows, kernel, goal.path, sorted.farthest_and_heaviest()) {
                 return self.solve_sorted(sorted, goal);
             }
         }
-        let sorted = Sorted::<f64>::new(data, classes, kernel, centre).weighted(self.class_weight);
+        let sorted = Sorted::<f64>::new(rows, &numbers, kernel, centre)
+            .weighted(self.class_weight, rows.weights);
         self.solve_sorted(sorted, goal)
     }
 
     /// Returns whether kernel values must be computed in f64, depending on the number of rows, the tolerance and the penalty. The largest squared distance of a
-    /// row from the centre is `farthest`, and the largest weight of a class is `heaviest`.
+    /// row from the centre is `farthest`, and the largest weight of a row is `heaviest`.
     pub(crate) fn needs_double(
         &self,
         n_rows: usize,
@@ -198,6 +209,7 @@ impl SvmParams {
             multiclass: self.multiclass,
             is_linear: self.kernel == Kernel::Linear,
             n_features,
+            has_row_weights: false,
             ranges: &ranges,
         };
         let stored = match self.scalar_bytes(n_rows) {
@@ -239,21 +251,30 @@ impl SvmParams {
                 ));
             }
         }
-        if self.solver == Solver::CoordinateDescent {
-            return Err(Error::input(
-                "solver",
-                "coordinate_descent",
-                "smo solves the dual problem of a kernel; coordinate_descent is for linear SVMs, one-vs-rest",
-            ));
-        }
         Ok(())
     }
 }
 
-impl<F: Precision> Fit<Array2<F>, Array1<usize>, Error> for SvmParams {
-    type Object = SvmModel;
+/// Trains on arrays and views of `f32` or `f64`, with labels of any type that linfa supports: `usize`, `bool`, texts.
+impl<F, D, T, L> Fit<ArrayBase<D, Ix2>, T, Error> for SvmParams
+where
+    F: Precision,
+    D: Data<Elem = F>,
+    T: AsSingleTargets<Elem = L>,
+    L: Label,
+{
+    type Object = SvmModel<L>;
 
-    fn fit(&self, dataset: &DatasetBase<Array2<F>, Array1<usize>>) -> Result<SvmModel> {
-        self.train(&F::double(dataset))
+    /// Trains an SVM; weights of rows multiply C, as in [`train`](SvmParams::train).
+    fn fit(&self, dataset: &DatasetBase<ArrayBase<D, Ix2>, T>) -> Result<SvmModel<L>> {
+        let (classes, labels) = numbered(dataset.targets.as_single_targets());
+        let features = F::double_features(&dataset.records);
+        let rows = LabelledRows {
+            features: features.view(),
+            labels: labels.view(),
+            weights: dataset.weights().unwrap_or_default(),
+        };
+        let mut models = self.train_rows(rows, &classes, &[self.c])?;
+        Ok(models.swap_remove(0))
     }
 }

@@ -53,6 +53,7 @@ pub(crate) struct KernelStorage<'a> {
     pub multiclass: Multiclass,
     pub is_linear: bool,
     pub n_features: usize,
+    pub has_row_weights: bool,
     /// Range of each class's rows, sorted by class.
     pub ranges: &'a [Range<usize>],
 }
@@ -75,6 +76,7 @@ impl KernelStorage<'_> {
         let whole = match self.multiclass {
             Multiclass::OneVsOne => {
                 let is_worth_screening = self.is_linear
+                    && !self.has_row_weights
                     && self.n_features >= SCREENING_FROM_FEATURES
                     && n_rows >= SCREENING_FROM_ROWS * self.ranges.len();
                 let most = NearMargin::<T>::most_bytes(self.ranges, self.n_features);
@@ -100,6 +102,7 @@ impl<T: SolverScalar> Sorted<T> {
             multiclass,
             is_linear: self.kernel() == KernelFunction::Linear,
             n_features: self.centre().len(),
+            has_row_weights: self.has_row_weights(),
             ranges: self.ranges(),
         }
     }
@@ -195,16 +198,13 @@ impl<T: SolverScalar> Sorted<T> {
         let n_first = self.ranges()[a].len();
         let mut labels = vec![1.0; n_first];
         labels.resize(gram.len(), -1.0);
-        let mut limits = vec![self.weights()[a]; n_first];
-        limits.resize(gram.len(), -self.weights()[b]);
+        let rows = self.pair_rows(a, b);
+        let limits = labels.iter().zip(&rows);
+        let limits: Vec<f64> = limits
+            .map(|(label, &row)| label * self.weights()[row])
+            .collect();
         let sides = (self.classes()[a], Some(self.classes()[b]));
-        self.solve(
-            gram,
-            (&labels, &limits, &self.pair_rows(a, b)),
-            sides,
-            goal,
-            problems,
-        );
+        self.solve(gram, (&labels, &limits, &rows), sides, goal, problems);
     }
 
     /// Solves one binary problem for each class, which separates the class from all others. Returns, for each C of the path, one problem per class.
@@ -233,11 +233,8 @@ impl<T: SolverScalar> Sorted<T> {
         for (range, &class) in self.ranges().iter().zip(self.classes()) {
             let mut labels = vec![-1.0; rows.len()];
             labels[range.clone()].fill(1.0);
-            let mut limits = labels.clone();
-            for (range, weight) in self.ranges().iter().zip(self.weights()) {
-                let limits = limits[range.clone()].iter_mut();
-                limits.for_each(|limit| *limit *= weight);
-            }
+            let limits = labels.iter().zip(self.weights());
+            let limits: Vec<f64> = limits.map(|(label, weight)| label * weight).collect();
             let sides = (class, None);
             self.solve(gram, (&labels, &limits, &rows), sides, goal, problems);
             // Restores the order of the training rows, which is common to all these problems.

@@ -6,8 +6,10 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use linfa::DatasetBase;
+use linfa::dataset::AsSingleTargets;
 use linfa::traits::{Fit, PredictInplace};
-use ndarray::{Array1, Array2};
+use ndarray::{Array1, Array2, ArrayBase, Data, Ix2};
 use serde::{Deserialize, Serialize};
 
 use crate::class_model::ClassModel;
@@ -16,9 +18,10 @@ use crate::classifiers::ClassifierKind;
 use crate::classifiers::parameters::{Parameter, Parameters};
 use crate::classifiers::trained_classifier::Model;
 use crate::cross_validation::choice::{Candidates, Chosen, choose, choose_c};
-use crate::dataset::{Dataset, rows};
+use crate::dataset::{Dataset, check_unweighted, rows};
 use crate::kernel::Gamma;
 use crate::linear_svm::LinearSvmParams;
+use crate::precision::Precision;
 use crate::scaling::{FittedScaling, Scaling};
 use crate::split::Split;
 use crate::split::stratified_k_fold;
@@ -238,6 +241,7 @@ impl Classifier {
 
     /// Returns the fitted scaling and the scaled training rows, which are borrowed if the scaling changes nothing.
     fn scaled<'a>(&self, training: &'a Dataset) -> Result<(FittedScaling, Cow<'a, Dataset>)> {
+        check_unweighted(training)?;
         let scaling = self.scaling.fit(training.records.view())?;
         if scaling.changes_nothing() {
             return Ok((scaling, Cow::Borrowed(training)));
@@ -288,7 +292,6 @@ impl Classifier {
             c,
             class_weight: self.class_weight,
             tolerance: self.tolerance,
-            solver: self.solver,
             memory_bytes: self.memory_bytes,
         })
     }
@@ -355,12 +358,20 @@ impl Classifier {
     }
 }
 
-impl Fit<Array2<f64>, Array1<usize>, Error> for Classifier {
+impl<F, D, T> Fit<ArrayBase<D, Ix2>, T, Error> for Classifier
+where
+    F: Precision,
+    D: Data<Elem = F>,
+    T: AsSingleTargets<Elem = usize>,
+{
     type Object = TrainedClassifier;
 
-    /// Trains the classifier with the random seed 0.
-    fn fit(&self, training: &Dataset) -> Result<TrainedClassifier> {
-        self.train(training, &0_u64)
+    /// Trains the classifier with the random seed 0. Weights of rows are refused.
+    fn fit(&self, training: &DatasetBase<ArrayBase<D, Ix2>, T>) -> Result<TrainedClassifier> {
+        let features = F::double_features(&training.records).into_owned();
+        let labels = training.targets.as_single_targets().to_owned();
+        let owned = Dataset::new(features, labels).with_weights(training.weights.clone());
+        self.train(&owned, &0_u64)
     }
 }
 

@@ -87,14 +87,14 @@ impl ClassifierKind {
 /// Declares the kinds of classifiers. Each line contains a variant, the file that describes it, and its documentation. The name of the file is the name of the
 /// classifier in a study.
 macro_rules! classifiers {
-    ($($name:ident $file:ident $doc:literal;)*) => {
-        $(pub mod $file;)*
+    ($($(#[$cfg:meta])? $name:ident $file:ident $doc:literal;)*) => {
+        $($(#[$cfg])? pub mod $file;)*
 
         /// Kind of classifier, for example a linear SVM; studies may compare several kinds.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
         #[serde(rename_all = "snake_case")]
         pub enum ClassifierKind {
-            $(#[doc = $doc] $name,)*
+            $($(#[$cfg])? #[doc = $doc] $name,)*
             /// Classifier from outside of this crate; see [foreign].
             #[serde(untagged)]
             Foreign(foreign::Foreign),
@@ -105,26 +105,26 @@ macro_rules! classifiers {
             fn deserialize<D: serde::Deserializer<'de>>(names: D) -> Result<Self, D::Error> {
                 use serde::de::Error;
                 match &*String::deserialize(names)? {
-                    $(stringify!($file) => Ok(Self::$name),)*
+                    $($(#[$cfg])? stringify!($file) => Ok(Self::$name),)*
                     "decision_tree" => Err(D::Error::custom(
                         "`decision_tree` exists no more; random_forest (n_trees = 1 grows one tree)",
                     )),
-                    other => Err(D::Error::unknown_variant(other, &[$(stringify!($file)),*])),
+                    other => Err(D::Error::unknown_variant(other, &[$($(#[$cfg])? stringify!($file)),*])),
                 }
             }
         }
 
         impl ClassifierKind {
             /// All kinds of classifiers of this crate, in the order of their declaration.
-            pub const ALL: &[Self] = &[$(Self::$name),*];
+            pub const ALL: &[Self] = &[$($(#[$cfg])? Self::$name),*];
 
             /// Names of all kinds of classifiers of this crate: the name in a study file and the common name in words.
-            pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
+            pub const NAMES: &[(&str, &str)] = &[$($(#[$cfg])? (stringify!($file), $file::ABOUT.words)),*];
 
             /// Returns the descriptor of the kind of classifier.
             pub const fn about(self) -> &'static ClassifierAbout {
                 match self {
-                    $(Self::$name => &$file::ABOUT,)*
+                    $($(#[$cfg])? Self::$name => &$file::ABOUT,)*
                     Self::Foreign(foreign) => foreign.about(),
                 }
             }

@@ -30,6 +30,6 @@ classifiers! {
     NearestCentroid nearest_centroid "The class whose mean is nearest: [nearest centroid](nearest_centroid).";
     NaiveBayes naive_bayes "Gaussian [naive Bayes](naive_bayes).";
     RandomForest random_forest "A [random forest](random_forest).";
-    LinfaSvm linfa_svm "The [linear SVM of the crate linfa-svm](linfa_svm).";
-    LinfaRbfSvm linfa_rbf_svm "The [SVM with a Gaussian kernel of the crate linfa-svm](linfa_rbf_svm).";
+    #[cfg(feature = "linfa-svm")] LinfaSvm linfa_svm "The [linear SVM of the crate linfa-svm](linfa_svm).";
+    #[cfg(feature = "linfa-svm")] LinfaRbfSvm linfa_rbf_svm "The [SVM with a Gaussian kernel of the crate linfa-svm](linfa_rbf_svm).";
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::Result;
 use crate::class_model::{ClassModel, normalise};
 use crate::cross_validation::choice::Chosen;
+use crate::precision::Precision;
 use crate::predict::svm_model::SvmModel;
 use crate::scaling::FittedScaling;
 
@@ -182,13 +183,15 @@ impl TrainedClassifier {
     }
 }
 
-impl<D: Data<Elem = f64>> PredictInplace<ArrayBase<D, Ix2>, Array1<usize>> for TrainedClassifier {
+impl<F: Precision, D: Data<Elem = F>> PredictInplace<ArrayBase<D, Ix2>, Array1<usize>>
+    for TrainedClassifier
+{
     /// Writes the predicted labels into `targets`.
     ///
     /// # Panics
     /// If the features are invalid or `targets` has a wrong length. The method `labels` returns an error instead.
     fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<usize>) {
-        match self.labels(features.view()) {
+        match self.labels(F::double_features(features).view()) {
             Ok(labels) => targets.assign(&labels),
             Err(error) => panic!("{error}"),
         }

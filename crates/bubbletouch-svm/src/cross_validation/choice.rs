@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use crate::cross_validation::grid::Grid;
-use crate::dataset::{Dataset, check_labels, distinct, rows};
+use crate::dataset::{Dataset, LabelledRows, check_labels, check_unweighted, distinct, rows};
 use crate::gram::sorted::Sorted;
 use crate::kernel::{Gamma, Kernel, KernelFunction};
 use crate::row_statistics::RowStatistics;
@@ -55,7 +55,7 @@ pub struct Chosen {
 ///
 /// # Errors
 /// If there are no candidates or folds, or a candidate is out of range. If a fold has a single class or contains a row beyond the training rows. If a model
-/// cannot be trained, or the matrix exceeds the memory limit.
+/// cannot be trained, the rows have weights, or the matrix exceeds the memory limit.
 pub fn choose(
     params: &SvmParams,
     training: &Dataset,
@@ -66,6 +66,7 @@ pub fn choose(
     params.check(&path)?;
     let statistics = RowStatistics::new(training.records.view())?;
     check_labels(training.records.nrows(), training.targets.view())?;
+    check_unweighted(training)?;
     check_folds(training, folds)?;
     let kernels = kernels(params, (training, &statistics), &candidates.gamma_scales)?;
     let goal = Goal {
@@ -250,7 +251,7 @@ fn on_one_matrix(
     };
     let data = (training, centre.view());
     if !needs_double((0.0, 1.0)) {
-        let sorted = by_fold::<f32>(data, folds, kernels[0]).weighted(params.class_weight);
+        let sorted = by_fold::<f32>(data, folds, kernels[0]).weighted(params.class_weight, &[]);
         if !needs_double(sorted.farthest_and_heaviest()) {
             return grid(params, &sorted, folds, kernels, goal);
         }
@@ -270,7 +271,8 @@ fn by_fold<T: SolverScalar>(
     for (number, fold) in folds.iter().enumerate() {
         fold.test.iter().for_each(|&row| fold_of[row] = number);
     }
-    Sorted::within_classes(training, &classes, kernel, centre, |row| fold_of[row])
+    let rows = LabelledRows::from(training);
+    Sorted::within_classes(rows, &classes, kernel, centre, |row| fold_of[row])
 }
 
 fn grid<T: SolverScalar>(

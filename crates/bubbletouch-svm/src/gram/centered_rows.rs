@@ -70,6 +70,11 @@ impl<T: Scalar> CenteredRows<T> {
         Self { values, norms }
     }
 
+    /// Returns whether the rows have this number of features, and each row has a norm.
+    pub fn fits(&self, n_features: usize) -> bool {
+        self.values.dim() == (self.norms.len(), n_features)
+    }
+
     /// Returns the rows projected onto k directions (k × m), shape n × k.
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
         let mut values = Array2::zeros((self.len(), directions.nrows()));

@@ -6,7 +6,7 @@ use ndarray::{Array1, ArrayView1, ArrayView2};
 
 use crate::binary_problem::BinaryProblem;
 use crate::class_weight::ClassWeight;
-use crate::dataset::Dataset;
+use crate::dataset::LabelledRows;
 use crate::gram::centered_rows::CenteredRows;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
@@ -30,8 +30,10 @@ pub(crate) struct Sorted<T> {
     /// Range of each class's rows in the sorted order.
     ranges: Vec<Range<usize>>,
     classes: Vec<usize>,
-    /// Weight of each class in training.
+    /// Weight of each sorted row in training.
     weights: Vec<f64>,
+    /// Whether rows of one class have different weights.
+    has_row_weights: bool,
     kernel: KernelFunction,
     centre: Array1<f64>,
     /// Largest squared distance between a row and the centre.
@@ -44,23 +46,24 @@ pub(crate) struct Sorted<T> {
 impl<T: Scalar> Sorted<T> {
     /// Sorts rows by class and centres them; the order within a class is preserved.
     pub fn new(
-        data: &Dataset,
+        rows: LabelledRows,
         classes: &[usize],
         kernel: KernelFunction,
         centre: ArrayView1<f64>,
     ) -> Self {
-        Self::within_classes(data, classes, kernel, centre, |_| 0)
+        Self::within_classes(rows, classes, kernel, centre, |_| 0)
     }
 
     /// Sorts rows by class and by the given key within each class, and subtracts the centre.
     pub fn within_classes(
-        data: &Dataset,
+        LabelledRows {
+            features, labels, ..
+        }: LabelledRows,
         classes: &[usize],
         kernel: KernelFunction,
         centre: ArrayView1<f64>,
         key: impl Fn(usize) -> usize,
     ) -> Self {
-        let labels = data.targets.view();
         let mut order: Vec<usize> = (0..labels.len()).collect();
         order.sort_by_key(|&row| (labels[row], key(row)));
         let start = |class: usize| order.partition_point(|&row| labels[row] < class);
@@ -72,7 +75,7 @@ impl<T: Scalar> Sorted<T> {
         for (at, &row) in order.iter().enumerate() {
             place[row] = at;
         }
-        let rows = order.iter().map(|&row| data.records.row(row));
+        let rows = order.iter().map(|&row| features.row(row));
         let (mut centre_products, mut farthest) = (Vec::new(), 0.0_f64);
         let points = CenteredRows::of_rows_and(rows, centre, |moved| {
             farthest = farthest.max(moved.norm);
@@ -83,9 +86,10 @@ impl<T: Scalar> Sorted<T> {
         Self {
             points,
             farthest,
+            weights: vec![1.0; order.len()],
+            has_row_weights: false,
             order,
             place,
-            weights: vec![1.0; classes.len()],
             ranges,
             classes: classes.to_vec(),
             kernel,
@@ -94,11 +98,24 @@ impl<T: Scalar> Sorted<T> {
         }
     }
 
-    /// Sets the weights of the classes in training.
-    pub fn weighted(self, class_weight: ClassWeight) -> Self {
-        let sizes = self.ranges.iter().map(Range::len);
+    /// Sets the weights of the rows in training: the weight of the class times the weight of the row, in the order of the data. Without row weights, the list is
+    /// empty.
+    pub fn weighted(self, class_weight: ClassWeight, row_weights: &[f32]) -> Self {
+        let of_class = class_weight.of_sizes(self.ranges.iter().map(Range::len));
+        let mut weights = vec![1.0; self.order.len()];
+        for (range, weight) in self.ranges.iter().zip(of_class) {
+            weights[range.clone()].fill(weight);
+        }
+        if !row_weights.is_empty() {
+            let own = self.order.iter().map(|&row| f64::from(row_weights[row]));
+            weights
+                .iter_mut()
+                .zip(own)
+                .for_each(|(weight, own)| *weight *= own);
+        }
         Self {
-            weights: class_weight.of_sizes(sizes).to_vec(),
+            weights,
+            has_row_weights: !row_weights.is_empty(),
             ..self
         }
     }
@@ -112,6 +129,7 @@ impl<T: Scalar> Sorted<T> {
             ranges: self.ranges.clone(),
             classes: self.classes.clone(),
             weights: self.weights.clone(),
+            has_row_weights: self.has_row_weights,
             kernel: self.kernel,
             centre: Array1::zeros(directions.nrows()),
             farthest: self.farthest,
@@ -149,7 +167,7 @@ impl<T: Scalar> Sorted<T> {
         self.centre.view()
     }
 
-    /// Returns the largest squared distance between a row and the centre, and the largest weight of a class in training.
+    /// Returns the largest squared distance between a row and the centre, and the largest weight of a row in training.
     pub fn farthest_and_heaviest(&self) -> (f64, f64) {
         let weights = self.weights.iter().copied();
         (self.farthest, weights.fold(0.0, f64::max))
@@ -179,9 +197,14 @@ impl<T: Scalar> Sorted<T> {
         &self.classes
     }
 
-    /// Returns the weight of each class in training.
+    /// Returns the weight of each sorted row in training.
     pub fn weights(&self) -> &[f64] {
         &self.weights
+    }
+
+    /// Returns whether rows of one class have different weights.
+    pub fn has_row_weights(&self) -> bool {
+        self.has_row_weights
     }
 
     /// Returns the classes, each with the range of its rows in the sorted order.

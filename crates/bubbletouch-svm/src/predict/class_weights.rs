@@ -41,6 +41,15 @@ impl<V: Scalar> ClassWeights<V> {
         }
     }
 
+    /// Returns whether the parts have consistent sizes within these numbers of support vectors and problems.
+    pub fn fits(&self, n_vectors: usize, n_problems: usize) -> bool {
+        let Range { start, end } = self.vectors;
+        start <= end
+            && end <= n_vectors
+            && self.problems.iter().all(|&problem| problem < n_problems)
+            && self.coefficients.dim() == (self.problems.len(), end - start)
+    }
+
     /// Creates the coefficients of all training rows of one class.
     pub fn new<T: Scalar>(
         sorted: &Sorted<T>,

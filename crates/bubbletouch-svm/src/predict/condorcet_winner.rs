@@ -379,11 +379,13 @@ mod tests {
             (i as f64 * 0.7 + j as f64 * (1.0 + i as f64 * 0.01)).sin() + 0.3
         });
         let winners = Pairs::new(&weights, &rho).condorcet_winners(rows.view());
-        let classes: Vec<usize> = (0..N_CLASSES).collect();
-        let voting = Voting::new(&classes, Multiclass::OneVsOne);
+        let voting = Voting {
+            n_classes: N_CLASSES,
+            multiclass: Multiclass::OneVsOne,
+        };
         for (row, winner) in rows.rows().into_iter().zip(&winners) {
             let values = values(&weights, &rho, &row.to_vec());
-            let elected = voting.labels(values.view().insert_axis(ndarray::Axis(0)))[0];
+            let elected = voting.winners(values.view().insert_axis(ndarray::Axis(0)))[0];
             let pairs = Multiclass::OneVsOne.problems(N_CLASSES);
             let lost = pairs.iter().zip(&values).any(|(&(first, second), &value)| {
                 (value <= 0.0 && first == elected) || (value > 0.0 && second == Some(elected))
@@ -391,7 +393,7 @@ mod tests {
             assert_eq!(*winner, (!lost).then_some(elected));
         }
         assert!(winners.iter().any(|winner| winner.is_none()));
-        for class in classes {
+        for class in 0..N_CLASSES {
             assert!(winners.contains(&Some(class)), "{class} is never elected");
         }
     }

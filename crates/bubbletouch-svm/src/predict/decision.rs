@@ -15,6 +15,7 @@ use crate::linalg::scalar::Scalar;
 use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
+use crate::{Error, Result};
 
 /// Number of rows for which decision values are computed together. With a smaller value, packing the support vectors dominates the time. With a larger
 /// value, the kernel values take more memory; with this value, they take 10 MB for 5,000 support vectors.
@@ -22,7 +23,7 @@ const BLOCK_ROWS: usize = 512;
 
 /// Decision functions `Σ y_i a_i K(x_i, x) − ρ` of all binary problems.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "T: Scalar", from = "SavedFunctions<T>")]
+#[serde(bound = "T: Scalar", try_from = "SavedFunctions<T>")]
 pub(crate) struct DecisionFunctions<T> {
     /// Centre that is subtracted from support vectors and from all rows to be classified (m values).
     #[serde(with = "crate::saved")]
@@ -66,8 +67,17 @@ struct SavedFunctions<T> {
     sums: Sums<T>,
 }
 
-impl<T: Scalar> From<SavedFunctions<T>> for DecisionFunctions<T> {
-    fn from(saved: SavedFunctions<T>) -> Self {
+impl<T: Scalar> TryFrom<SavedFunctions<T>> for DecisionFunctions<T> {
+    type Error = Error;
+
+    fn try_from(saved: SavedFunctions<T>) -> Result<Self> {
+        if !saved.fits() {
+            return Err(Error::input(
+                "decision functions",
+                "parts of different sizes",
+                "the data that serialisation wrote are needed",
+            ));
+        }
         let SavedFunctions {
             centre,
             rho,
@@ -76,7 +86,22 @@ impl<T: Scalar> From<SavedFunctions<T>> for DecisionFunctions<T> {
         if let Sums::Support(support) = &mut sums {
             support.pairs = pairs_of(&support.weights, &rho);
         }
-        Self { centre, rho, sums }
+        Ok(Self { centre, rho, sums })
+    }
+}
+
+impl<T: Scalar> SavedFunctions<T> {
+    /// Returns whether the sizes of all parts are consistent.
+    fn fits(&self) -> bool {
+        let shape = (self.rho.len(), self.centre.len());
+        match &self.sums {
+            Sums::Hyperplanes(normals) => normals.dim() == shape,
+            Sums::Support(support) => {
+                let n = support.vectors.len();
+                support.vectors.fits(shape.1)
+                    && support.weights.iter().all(|class| class.fits(n, shape.0))
+            }
+        }
     }
 }
 
@@ -134,6 +159,15 @@ impl<T: Scalar> DecisionFunctions<T> {
             }
         };
         Self { centre, rho, sums }
+    }
+
+    /// Returns whether there are this number of decision functions, classes and features.
+    pub fn fit(&self, [n_problems, n_classes, n_features]: [usize; 3]) -> bool {
+        let fits_classes = match &self.sums {
+            Sums::Hyperplanes(_) => true,
+            Sums::Support(support) => support.weights.len() == n_classes,
+        };
+        fits_classes && (self.rho.len(), self.centre.len()) == (n_problems, n_features)
     }
 
     /// Returns the decision values of all binary problems for each row of features, n_rows × n_problems.

@@ -6,11 +6,11 @@
 
 use std::borrow::Cow;
 
+use linfa::dataset::Label;
 use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
 use serde::{Deserialize, Serialize};
 
-use crate::Result;
 use crate::binary_problem::BinaryProblem;
 use crate::dataset::check_width;
 use crate::gram::sorted::Sorted;
@@ -19,15 +19,76 @@ use crate::multiclass::Multiclass;
 use crate::precision::Precision;
 use crate::predict::decision::DecisionFunctions;
 use crate::predict::voting::Voting;
+use crate::saved::{VERSION, check_version};
 use crate::training::Trained;
+use crate::{Error, Result};
 
-/// Trained SVM for two or more classes.
+/// Trained SVM for two or more classes, with labels of type `L`. The data of serde (see [`saved`](crate::saved)) contain all that prediction needs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SvmModel {
+#[serde(
+    bound(deserialize = "L: Label + Deserialize<'de>"),
+    try_from = "SavedSvm<L>"
+)]
+pub struct SvmModel<L = usize> {
+    /// Version of the data of serde.
+    version: u32,
+    classes: Vec<L>,
     voting: Voting,
     problems: Vec<BinaryProblem>,
     n_features: usize,
     decision: Decision,
+}
+
+/// Fields of [`SvmModel`] as they are read.
+#[derive(Deserialize)]
+struct SavedSvm<L> {
+    version: u32,
+    classes: Vec<L>,
+    voting: Voting,
+    problems: Vec<BinaryProblem>,
+    n_features: usize,
+    decision: Decision,
+}
+
+impl<L: Label> TryFrom<SavedSvm<L>> for SvmModel<L> {
+    type Error = Error;
+
+    fn try_from(saved: SavedSvm<L>) -> Result<Self> {
+        let SavedSvm {
+            version,
+            classes,
+            voting,
+            problems,
+            n_features,
+            decision,
+        } = saved;
+        check_version(version)?;
+        let n_problems = voting.multiclass.problems(voting.n_classes).len();
+        let sizes = [n_problems, voting.n_classes, n_features];
+        let is_whole = classes.len() == voting.n_classes
+            && classes.len() >= 2
+            && classes.is_sorted_by(|a, b| a < b)
+            && problems.len() == n_problems
+            && match &decision {
+                Decision::Single(functions) => functions.fit(sizes),
+                Decision::Double(functions) => functions.fit(sizes),
+            };
+        match is_whole {
+            true => Ok(Self {
+                version,
+                classes,
+                voting,
+                problems,
+                n_features,
+                decision,
+            }),
+            false => Err(Error::input(
+                "saved SVM",
+                "parts of different sizes",
+                "the data that serialisation wrote are needed",
+            )),
+        }
+    }
 }
 
 /// Decision functions of all binary problems, in the precision in which they were trained.
@@ -50,7 +111,7 @@ impl From<DecisionFunctions<f64>> for Decision {
 }
 
 impl SvmModel {
-    /// Creates a model from its training rows and its solved binary problems.
+    /// Creates a model whose labels are the numbers of the classes, from its training rows and its solved binary problems.
     pub(crate) fn new<T: Scalar>(
         sorted: Cow<Sorted<T>>,
         multiclass: Multiclass,
@@ -60,16 +121,45 @@ impl SvmModel {
         Decision: From<DecisionFunctions<T>>,
     {
         Self {
+            version: VERSION,
             n_features: sorted.centre().len(),
-            voting: Voting::new(sorted.classes(), multiclass),
+            classes: sorted.classes().to_vec(),
+            voting: Voting {
+                n_classes: sorted.classes().len(),
+                multiclass,
+            },
             decision: DecisionFunctions::new(sorted, &problems, normals).into(),
             problems,
         }
     }
 
+    /// Returns the model with other labels of its classes.
+    pub(crate) fn with_classes<L>(self, classes: Vec<L>) -> SvmModel<L> {
+        SvmModel {
+            version: self.version,
+            classes,
+            voting: self.voting,
+            problems: self.problems,
+            n_features: self.n_features,
+            decision: self.decision,
+        }
+    }
+}
+
+impl<L: Clone> SvmModel<L> {
     /// Returns the class labels of the training rows, ascending. Every predicted label is one of them.
-    pub fn classes(&self) -> &[usize] {
-        self.voting.classes()
+    pub fn classes(&self) -> &[L] {
+        &self.classes
+    }
+
+    /// Returns the strategy that combines the binary problems.
+    pub fn multiclass(&self) -> Multiclass {
+        self.voting.multiclass
+    }
+
+    /// Returns the number of features of a row.
+    pub fn n_features(&self) -> usize {
+        self.n_features
     }
 
     /// Returns the solved binary problems, in the order of the columns of the decision values.
@@ -99,22 +189,27 @@ impl SvmModel {
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.
-    pub fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
+    pub fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<L>> {
         check_width(&features, self.n_features)?;
-        let between = (self.classes().len(), self.voting.multiclass());
+        let between = (self.voting.n_classes, self.voting.multiclass);
         let winners = match &self.decision {
             Decision::Single(functions) => functions.winners(features, between),
             Decision::Double(functions) => functions.winners(features, between),
         };
-        Ok(winners
+        Ok(self.of_numbers(winners))
+    }
+
+    /// Returns the labels of classes, given the numbers of the classes.
+    fn of_numbers(&self, numbers: impl IntoIterator<Item = usize>) -> Array1<L> {
+        let labels = numbers
             .into_iter()
-            .map(|winner| self.classes()[winner])
-            .collect())
+            .map(|number| self.classes[number].clone());
+        labels.collect()
     }
 
     /// Returns the predicted label for each row of decision values (n_rows × n_problems). A row may be the sum over several touches of one object.
-    pub fn labels_of_values(&self, values: ArrayView2<f64>) -> Array1<usize> {
-        self.voting.labels(values)
+    pub fn labels_of_values(&self, values: ArrayView2<f64>) -> Array1<L> {
+        self.of_numbers(self.voting.winners(values))
     }
 
     /// Returns one value per class (n_rows × n_classes) for decision values, or sums of them (n_rows × n_problems).
@@ -123,22 +218,25 @@ impl SvmModel {
     }
 }
 
-impl<F: Precision, D: Data<Elem = F>> PredictInplace<ArrayBase<D, Ix2>, Array1<usize>>
-    for SvmModel
+impl<F, D, L> PredictInplace<ArrayBase<D, Ix2>, Array1<L>> for SvmModel<L>
+where
+    F: Precision,
+    D: Data<Elem = F>,
+    L: Label,
 {
     /// Writes the predicted labels into `targets`.
     ///
     /// # Panics
     /// If the number of columns differs from training, a feature is not finite, or `targets` has a wrong length. linfa's trait cannot return an error. The
     /// method `labels` returns errors instead.
-    fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<usize>) {
+    fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<L>) {
         match self.labels(F::double_features(features).view()) {
             Ok(labels) => targets.assign(&labels),
             Err(error) => panic!("{error}"),
         }
     }
 
-    fn default_target(&self, features: &ArrayBase<D, Ix2>) -> Array1<usize> {
-        Array1::zeros(features.nrows())
+    fn default_target(&self, features: &ArrayBase<D, Ix2>) -> Array1<L> {
+        Array1::default(features.nrows())
     }
 }

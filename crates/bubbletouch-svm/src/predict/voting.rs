@@ -1,6 +1,6 @@
 //! Combination of the decision values of all binary problems into one predicted class.
 
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
+use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
 use serde::{Deserialize, Serialize};
 
 use crate::linalg::scalar::Scalar;
@@ -10,37 +10,18 @@ use crate::multiclass::Multiclass;
 /// pair is positive. One-vs-rest has one value per class.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Voting {
-    classes: Vec<usize>,
-    multiclass: Multiclass,
+    /// Number of classes.
+    pub n_classes: usize,
+    /// Multi-class strategy.
+    pub multiclass: Multiclass,
 }
 
 impl Voting {
-    /// Creates the voting rule for the given class labels, ascending.
-    pub fn new(classes: &[usize], multiclass: Multiclass) -> Self {
-        Self {
-            classes: classes.to_vec(),
-            multiclass,
-        }
-    }
-
-    /// Returns the class labels in ascending order.
-    pub fn classes(&self) -> &[usize] {
-        &self.classes
-    }
-
-    /// Returns the multi-class strategy.
-    pub fn multiclass(&self) -> Multiclass {
-        self.multiclass
-    }
-
-    /// Returns the predicted label for each row of decision values, shape n_rows × n_problems.
-    pub fn labels(&self, values: ArrayView2<f64>) -> Array1<usize> {
+    /// Returns the number of the predicted class for each row of decision values, shape n_rows × n_problems.
+    pub fn winners(&self, values: ArrayView2<f64>) -> Vec<usize> {
         let mut votes = Vec::new();
-        values
-            .rows()
-            .into_iter()
-            .map(|row| self.label(row, &mut votes))
-            .collect()
+        let rows = values.rows().into_iter();
+        rows.map(|row| self.winner(row, &mut votes)).collect()
     }
 
     /// Returns one value per class for each row of decision values: the value of the class for one-vs-rest, otherwise its votes and a part below 1/3 that orders
@@ -49,7 +30,7 @@ impl Voting {
         if self.multiclass == Multiclass::OneVsRest {
             return values.to_owned();
         }
-        let n = self.classes.len();
+        let n = self.n_classes;
         let (mut scores, mut sums) = (Array2::zeros((values.nrows(), n)), vec![0.0; n]);
         for (row, mut scores) in values.outer_iter().zip(scores.outer_iter_mut()) {
             sums.fill(0.0);
@@ -66,18 +47,17 @@ impl Voting {
         scores
     }
 
-    /// Returns the predicted label for one row of decision values, using `votes` as temporary memory.
-    fn label(&self, values: ArrayView1<f64>, votes: &mut Vec<u32>) -> usize {
-        let winner = match self.multiclass {
+    /// Returns the number of the predicted class for one row of decision values, using `votes` as temporary memory.
+    fn winner(&self, values: ArrayView1<f64>, votes: &mut Vec<u32>) -> usize {
+        match self.multiclass {
             Multiclass::OneVsRest => first_maximum(values),
             _ => {
                 votes.clear();
-                votes.resize(self.classes.len(), 0);
+                votes.resize(self.n_classes, 0);
                 count(values, votes);
                 first_maximum(votes.iter().copied())
             }
-        };
-        self.classes[winner]
+        }
     }
 }
 
@@ -199,7 +179,11 @@ mod tests {
             [1.0 - 0.5 / 4.5, 1.0 + 1.5 / 7.5, 1.0 - 1.0 / 6.0],
             [0.0 - 0.75 / 5.25, 1.0 + 0.25 / 3.75, 2.0 + 0.5 / 4.5]
         ];
-        let found = Voting::new(&[0, 1, 2], Multiclass::OneVsOne).class_scores(values.view());
+        let voting = Voting {
+            n_classes: 3,
+            multiclass: Multiclass::OneVsOne,
+        };
+        let found = voting.class_scores(values.view());
         assert!(
             (found - expected)
                 .iter()
@@ -209,13 +193,17 @@ mod tests {
 
     #[test]
     fn ties_go_to_the_lowest_class() {
-        let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsOne);
+        let voting = |multiclass| Voting {
+            n_classes: 3,
+            multiclass,
+        };
         // A cycle: one vote for each class.
         let values = array![[1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [0.0, 0.0, 0.0]];
-        assert_eq!(voting.labels(values.view()), array![2, 5, 9]);
-        let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsRest);
+        let one_vs_one = voting(Multiclass::OneVsOne).winners(values.view());
+        assert_eq!(one_vs_one, [0, 1, 2]);
         let values = array![[0.5, 0.5, -1.0], [-3.0, -2.0, -2.0]];
-        assert_eq!(voting.labels(values.view()), array![2, 5]);
+        let one_vs_rest = voting(Multiclass::OneVsRest).winners(values.view());
+        assert_eq!(one_vs_rest, [0, 1]);
     }
 
     #[test]
@@ -228,10 +216,12 @@ mod tests {
             for (&problem, column) in problems.iter().zip(values.columns()) {
                 counter.take(problem, &column.mapv(|v| v + 0.3).to_vec(), 0.3);
             }
-            let classes = [10, 11, 12, 13, 14];
-            let expected = Voting::new(&classes, multiclass).labels(values.view());
-            let winners: Vec<usize> = counter.winners().iter().map(|at| classes[*at]).collect();
-            assert_eq!(winners, expected.to_vec(), "{multiclass:?}");
+            let voting = Voting {
+                n_classes: 5,
+                multiclass,
+            };
+            let expected = voting.winners(values.view());
+            assert_eq!(counter.winners(), expected, "{multiclass:?}");
         }
     }
 }

@@ -57,7 +57,7 @@ impl<'a, T: SolverScalar> Classes<'a, T> {
 
     /// Returns the weights of the two given classes in training.
     fn weights(&self, classes: [usize; 2]) -> [f64; 2] {
-        classes.map(|class| self.sorted.weights()[class])
+        self.starts(classes).map(|row| self.sorted.weights()[row])
     }
 
     /// Returns the numbers of rows of the two given classes.

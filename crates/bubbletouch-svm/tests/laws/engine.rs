@@ -9,7 +9,7 @@ use bubbletouch_svm::dataset::{Dataset, dataset, rows};
 use bubbletouch_svm::kernel::{Gamma, Kernel};
 use bubbletouch_svm::predict::svm_model::SvmModel;
 use bubbletouch_svm::split::Split;
-use bubbletouch_svm::{BinaryProblem, Multiclass, Solver, SvmParams};
+use bubbletouch_svm::{BinaryProblem, Multiclass, SvmParams};
 use linfa::DatasetBase;
 use linfa::traits::Fit;
 use linfa_svm::Svm;
@@ -762,7 +762,7 @@ fn a_choice_for_a_problem_that_training_would_refuse_is_refused() {
     let data = clouds(&[20, 20], 4, 1.0, 19);
     let folds = folds(&data.targets, 2);
     let params = SvmParams {
-        solver: Solver::CoordinateDescent,
+        tolerance: 0.0,
         ..SvmParams::default()
     };
     let expected = params.train(&data).unwrap_err().to_string();

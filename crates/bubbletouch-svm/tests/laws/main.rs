@@ -9,6 +9,9 @@ mod inseparable;
 mod libsvm;
 mod limits;
 mod linear;
+#[cfg(feature = "linfa-svm")]
 mod linfa;
+mod pipelines;
+mod probabilities;
 mod svm;
 mod svm_conditions;
