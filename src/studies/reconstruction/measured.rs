@@ -131,7 +131,7 @@ fn statistics(
         };
         let (low, high) = (|e: &Extremes| e.low, |e: &Extremes| e.high);
         Ok(EnsembleStatistics {
-            ensemble: projection.ensemble(),
+            ensemble: projection.ensemble().expect("a study draws its matrix"),
             measurements: projection.n_measurements(),
             ratio: projection.n_taxels() as f64 / projection.n_measurements() as f64,
             dictionary: dictionary.basis(),

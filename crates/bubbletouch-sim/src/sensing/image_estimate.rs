@@ -150,7 +150,7 @@ pub(super) mod tests {
         readings: Readings,
         n_frames: usize,
     ) -> ImageEstimate {
-        if projection.ensemble() == Ensemble::Identity {
+        if projection.ensemble() == Some(Ensemble::Identity) {
             return ImageEstimate::of_frames(readings.untouched);
         }
         let prior = ImagePrior::learned(GRID, readings, n_frames, &Seed::new(2)).unwrap();

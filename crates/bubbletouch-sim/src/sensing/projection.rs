@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Projection {
-    pub(super) ensemble: Ensemble,
+    pub(super) ensemble: Option<Ensemble>,
     pub(super) n_taxels: usize,
     pub(super) n_measurements: usize,
     pub(super) operator: Arc<dyn Operator>,
@@ -49,7 +49,7 @@ impl Projection {
             }
         };
         Ok(Self {
-            ensemble,
+            ensemble: Some(ensemble),
             n_taxels: n,
             n_measurements: ensemble.n_measurements(m, n),
             operator: operator.into(),
@@ -82,7 +82,7 @@ impl Projection {
             Source::Drawn(_) | Source::Adaptive(_) => unreachable!("returned above"),
         };
         Ok(Self {
-            ensemble,
+            ensemble: Some(ensemble),
             n_taxels: n,
             n_measurements: ensemble.n_measurements(m, n),
             operator: operator.into(),
@@ -103,15 +103,33 @@ impl Projection {
         }
         let hadamard = ScrambledHadamard::new(m, n, block, &seed.named("sbhe"));
         Ok(Self {
-            ensemble: Ensemble::Sbhe,
+            ensemble: Some(Ensemble::Sbhe),
             n_taxels: n,
             n_measurements: m,
             operator: Arc::new(hadamard),
         })
     }
 
-    /// Returns the ensemble of the projection.
-    pub fn ensemble(&self) -> Ensemble {
+    /// Creates the projection of an operator from outside of this crate. The operator maps frames of `n_taxels` values to `n_measurements` values.
+    ///
+    /// # Errors
+    /// If there are no taxels, or not 1 to `n_taxels` measurements.
+    pub fn from_operator(
+        operator: impl Operator + 'static,
+        n_taxels: usize,
+        n_measurements: usize,
+    ) -> Result<Self> {
+        check_size((1, n_taxels), n_measurements)?;
+        Ok(Self {
+            ensemble: None,
+            n_taxels,
+            n_measurements,
+            operator: Arc::new(operator),
+        })
+    }
+
+    /// Returns the ensemble of the projection; `None` for [`from_operator`](Self::from_operator).
+    pub fn ensemble(&self) -> Option<Ensemble> {
         self.ensemble
     }
 

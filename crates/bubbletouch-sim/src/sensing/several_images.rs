@@ -44,7 +44,7 @@ impl Projection {
         };
         let images: Vec<Self> = shares(k, m).enumerate().map(image).collect::<Result<_>>()?;
         Ok(Self {
-            ensemble,
+            ensemble: Some(ensemble),
             n_taxels: k * n,
             n_measurements: images.iter().map(Self::n_measurements).sum(),
             operator: Arc::new(SeveralImages {

@@ -103,6 +103,43 @@ impl Chain {
         Self::prepared(&steps, patch, Quantity::Force, true)
     }
 
+    /// Adds an effect from outside of this crate, such as an own sensor error, as the last step.
+    ///
+    /// ```
+    /// use bubbletouch_sim::random::Seed;
+    /// use bubbletouch_sim::signal::{Chain, Effect, SignalWorkspace, TouchRead};
+    /// use bubbletouch_sim::world::{Grid, Patch, Taxel};
+    ///
+    /// /// Readings below a threshold, metres, are 0.
+    /// #[derive(Debug)]
+    /// struct DeadZone(f64);
+    ///
+    /// impl Effect for DeadZone {
+    ///     fn apply(&self, frames: &mut [f64], _: &TouchRead, _: &mut [f64]) {
+    ///         frames.iter_mut().filter(|value| **value < self.0).for_each(|value| *value = 0.0);
+    ///     }
+    /// }
+    ///
+    /// let grid = Grid { nx: 2, ny: 1, pitch: 2e-3 };
+    /// let taxel = Taxel { radius: 1e-3, stiffness: 200.0, damping: 0.0, stroke: 5e-3 };
+    /// let chain = Chain::new(&[], &Patch::grid(grid, taxel)?)?.then(DeadZone(1e-4));
+    /// let mut frame = vec![2e-3, 5e-5];
+    /// chain.apply(&mut frame, None, &Seed::new(2018), &mut SignalWorkspace::default());
+    /// assert_eq!(frame, [2e-3, 0.0]);
+    /// # Ok::<(), bubbletouch_sim::Error>(())
+    /// ```
+    pub fn then(mut self, effect: impl Effect + 'static) -> Self {
+        let is_effect = |step: &&Prepared| matches!(step, Prepared::Effect { .. });
+        let n_effects = self.steps.iter().filter(is_effect).count() as u64;
+        let remembers = effect.remembers();
+        let step = self.prepare_effect(Box::new(effect), n_effects);
+        self.steps.push(step);
+        if remembers {
+            self.n_remembering = self.steps.len();
+        }
+        self
+    }
+
     /// Returns the full scale of the output frames: the stroke in metres, or the force at the stroke in newtons.
     pub fn full_scale(&self) -> f64 {
         self.quantity.full_scale(&self.taxel)

@@ -81,6 +81,11 @@ pub trait Effect: Debug + Send + Sync {
         0
     }
 
+    /// Returns whether the readings of a touch depend on the frames before it.
+    fn remembers(&self) -> bool {
+        false
+    }
+
     /// Applies the effect to frames of n_taxels values each, in the order of time, without allocating memory.
     fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]);
 }

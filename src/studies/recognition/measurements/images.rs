@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::random::Seed;
-use crate::sensing::{ImageEstimate, ImagePrior, Projection, Readings};
+use crate::sensing::{Ensemble, ImageEstimate, ImagePrior, Projection, Readings};
 use crate::studies::recognition::measurements::tilted_copies::TiltedCopies;
 use crate::studies::recognition::plan::listed_taxels::SensorImage;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
@@ -37,7 +37,8 @@ impl Images {
         readings: Readings,
         seed: &Seed,
     ) -> Result<Self> {
-        let is_whole = |projection: &Projection| projection.ensemble().gives_frames();
+        let is_whole =
+            |projection: &Projection| projection.ensemble().is_some_and(Ensemble::gives_frames);
         let (sensors, n_training) = (array.images(), readings.training.nrows());
         // Shifting an image by rows and columns gives additional training images.
         let n_frames = match (array.is_image(), n_training < LEARNED_FRAMES) {

@@ -290,7 +290,7 @@ fn sensed_by(
             untouched: untouched.view(),
         };
         let n_values = projection.n_measurements();
-        let is_served = |m: &usize| projection.ensemble().is_prefix_nested() || *m == n_values;
+        let is_served = |m: &usize| inputs.ensemble.is_prefix_nested() || *m == n_values;
         let counts = inputs.counts_of_images().into_iter().filter(is_served);
         let projections = counts.map(|m| match m == n_values {
             true => Ok(projection.clone()),
