@@ -200,6 +200,7 @@ def test_indexes_of_pandas_are_equal_or_refused() -> None:
         ({"groups": groups}, "^recorded.groups: another index than recorded.frames"),
         ({"frames_test": frames[::-1], "labels_test": labels}, "^recorded.labels_test: another index than recorded.frames_test"),
         ({"frames_test": frames[[2, 1, 0]], "labels_test": LABELS}, "^recorded.frames_test: other columns than recorded.frames"),
+        ({"zero": pd.Series([0.0, 0.0, 0.1], index=[2, 1, 0])}, "^recorded.zero: other columns than recorded.frames"),
         ({"frames": frames.assign(time=0.5)}, r"^recorded.frames: columns of several kinds: `#` \(3\), `time`; a data frame of those"),
         ({"frames": [frames, frames[[2, 1, 0]]]}, "^recorded.frames, touch 1: other columns than those of touch 0, or in another order"),
         ({"frames": None, "sensors": [{"name": "a", "frames": frames[::-1]}]}, r"recorded\.labels: another index than recorded\.sensors\[1\]\.frames"),

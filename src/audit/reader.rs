@@ -166,6 +166,7 @@ impl AuditFiles {
         spec.place.is_of_command |= is_given;
         let shape = spec.shape_of("frames")?;
         let (mut frames, mut is_test, mut lists) = (Vec::new(), Vec::new(), [None, None, None]);
+        let mut columns = None;
         for end in ["", "_test"] {
             let is_set = !end.is_empty();
             if is_set && spec.frames_test.is_none() {
@@ -175,7 +176,10 @@ impl AuditFiles {
             let place = spec.file_of(&key("frames")).unwrap_or(&spec.frames);
             let own = spec.shape_of(&key("frames"))?;
             check_shape((&own, place), (&shape, &spec.frames))?;
-            let mut readings = own.arrange(spec.read_array(&key("frames"))?.into_numbers()?);
+            let array = spec.read_array(&key("frames"))?;
+            array.check_columns_of(columns.as_deref(), &spec.frames.display().to_string())?;
+            columns.clone_from(&array.columns);
+            let mut readings = own.arrange(array.into_numbers()?);
             if let Some(path) = spec.file_of(&key("lengths")) {
                 let lengths = lengths_of_file((path, &key("lengths")), &own, place)?;
                 // Frames after the end of a touch are padding.

@@ -7,7 +7,7 @@
 //! | 3 | `labels.npy` | written by the program: one label for each test row |
 
 use crate::inputs::arrays::file_array::FileArray;
-use crate::learning::classifiers::foreign::{ForeignClassifier, ForeignModel};
+use crate::learning::classifiers::foreign::{ForeignClassifier, ForeignModel, ForeignParameters};
 use bubbletouch_svm::dataset::Dataset;
 use bubbletouch_svm::{Error, Result};
 use ndarray::{Array1, Array2, ArrayView2};
@@ -16,6 +16,7 @@ use std::env::consts::EXE_SUFFIX;
 use std::fs::File;
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
+use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -46,13 +47,44 @@ struct CommandModel {
 }
 
 impl ForeignClassifier for CommandClassifier {
+    /// Puts each value in the place of `{name}` in the words of the command.
+    fn with(&self, parameters: &ForeignParameters) -> Result<Arc<dyn ForeignClassifier>> {
+        let mut changed = self.clone();
+        for (name, value) in parameters {
+            let place = format!("{{{name}}}");
+            if !self.command.iter().any(|word| word.contains(&place)) {
+                let allowed = format!("{place} in a word of its command, which the value replaces");
+                return Err(Error::input(
+                    self.place(),
+                    format!("parameter {name}"),
+                    allowed,
+                ));
+            }
+            let text = value
+                .as_str()
+                .map_or_else(|| value.to_string(), str::to_owned);
+            for word in &mut changed.command {
+                *word = word.replace(&place, &text);
+            }
+        }
+        Ok(Arc::new(changed))
+    }
+
     fn check(&self) -> Result<()> {
+        if let Some(name) = self.command.iter().find_map(|word| unset_parameter(word)) {
+            let allowed = format!("a value of recognition.parameters.{}.{name}", self.name);
+            return Err(Error::input(
+                self.place(),
+                format!("{{{name}}} without a value"),
+                allowed,
+            ));
+        }
         let program = &self.command[0];
         if is_program(program) {
             return Ok(());
         }
         Err(Error::input(
-            format!("classifier {}", self.name),
+            self.place(),
             format!("{program} cannot be run: no such program"),
             "a program in one of the folders of PATH, or the path of a program",
         ))
@@ -91,11 +123,11 @@ impl CommandClassifier {
 
     fn error(&self, given: impl ToString) -> Error {
         let allowed = "exit code 0 and a file of one known label for each test row";
-        Error::input(
-            format!("classifier {}", self.name),
-            given.to_string(),
-            allowed,
-        )
+        Error::input(self.place(), given.to_string(), allowed)
+    }
+
+    fn place(&self) -> String {
+        format!("classifier {}", self.name)
     }
 
     /// Runs the program with three files as its last arguments.
@@ -133,6 +165,14 @@ impl CommandClassifier {
         let last: String = last.chars().take(MAX_LETTERS).collect();
         Err(self.error(format!("{program} ended with {status}: {last}")))
     }
+}
+
+/// Returns the name of a parameter if a word of a command is `{name}` or ends with `={name}`.
+fn unset_parameter(word: &str) -> Option<&str> {
+    let last = word.rsplit('=').next()?;
+    let name = last.strip_prefix('{')?.strip_suffix('}')?;
+    let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+    (!name.is_empty() && name.chars().all(is_letter)).then_some(name)
 }
 
 /// Returns whether the name of a program contains a folder, so that it is not searched in the folders of PATH.

@@ -4,6 +4,7 @@
 use crate::bad_input::refused;
 use crate::command::Case;
 use bubbletouch::study::write_integers;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 
@@ -108,6 +109,99 @@ fn a_command_is_a_classifier_of_a_study() {
         fs::read(case.path("out/summary.csv")).unwrap(),
         fs::read(case.path("elsewhere/summary.csv")).unwrap()
     );
+}
+
+/// Program that predicts the first object for each row if `alpha` is 1, and the second object otherwise.
+const SWEPT: &str = "{ command = [\"sh\", \"mine.sh\", \"first.npy\", \"--alpha={alpha}\"] }";
+
+fn case_of_alpha() -> Case {
+    let case = case_of_first_object();
+    write_integers(&case.path("second.npy"), [1; N_TEST]).unwrap();
+    case.file(
+        "mine.sh",
+        "echo $2 >> calls\nif [ $2 = --alpha=1 ]; then cp $1 $5; else cp second.npy $5; fi\n",
+    );
+    case
+}
+
+#[test]
+fn a_parameter_of_a_command_is_an_axis_with_a_column_of_its_name() {
+    let case = case_of_alpha();
+    let text = study(&format!("[\"nearest_centroid\", {SWEPT}]"))
+        + "[axes]\n\"recognition.parameters.mine.alpha\" = [1, 2.5]\n";
+    case.file("study.toml", &text);
+    case.succeeds(&["run", "study.toml", "--out", "out"]);
+    let calls = fs::read_to_string(case.path("calls")).unwrap();
+    let mut calls: Vec<&str> = calls.lines().collect();
+    calls.sort_unstable();
+    assert_eq!(
+        calls,
+        ["--alpha=1", "--alpha=1", "--alpha=2.5", "--alpha=2.5"]
+    );
+    let rows = |table: &str| -> Vec<BTreeMap<String, String>> {
+        let mut reader = csv::Reader::from_path(case.path(table)).unwrap();
+        reader.deserialize().map(Result::unwrap).collect()
+    };
+    // The program answers with the object that its value of alpha selects.
+    let answers = rows("out/confusion.csv");
+    let answers_of = |alpha: &str| -> BTreeSet<String> {
+        let of =
+            |row: &BTreeMap<String, String>| row["classifier"] == "mine" && row["alpha"] == alpha;
+        let row = rows("out/summary.csv").into_iter().find(of).unwrap();
+        let of = |one: &&BTreeMap<String, String>| {
+            one["configuration"] == row["configuration"] && one["count"] != "0"
+        };
+        answers
+            .iter()
+            .filter(of)
+            .map(|one| one["predicted"].clone())
+            .collect()
+    };
+    let (first, second) = (answers_of("1"), answers_of("2.5"));
+    assert_eq!((first.len(), second.len()), (1, 1));
+    assert_ne!(first, second);
+    // A continued run calls the program for new values alone.
+    case.file("study.toml", text.replace("[1, 2.5]", "[1, 2.5, 4]"));
+    case.succeeds(&["run", "study.toml", "--out", "out"]);
+    assert_eq!(n_calls(&case), 6);
+    case.succeeds(&["run", "out/study.toml", "--out", "elsewhere"]);
+    let bytes = |folder: &str| fs::read(case.path(folder).join("summary.csv")).unwrap();
+    assert_eq!(bytes("out"), bytes("elsewhere"));
+}
+
+#[test]
+fn a_parameter_that_no_classifier_of_your_own_has_is_refused() {
+    let case = case_of_alpha();
+    for (classifier, keys, words) in [
+        (
+            SWEPT,
+            "parameters.mine.beta = 1",
+            "key recognition.parameters.mine: classifier mine: parameter beta; {beta} in a word of its command",
+        ),
+        (
+            SWEPT,
+            "parameters.random_forest.n_trees = 3",
+            "key recognition.parameters.random_forest: given, but the study has no classifier or features of your own",
+        ),
+        (
+            SWEPT,
+            "parameters.mine = 3",
+            "study.toml:9:19: invalid type: integer `3`; expected a map",
+        ),
+        (
+            SWEPT,
+            "",
+            "classifier mine: {alpha} without a value; a value of recognition.parameters.mine.alpha",
+        ),
+        (
+            SWEPT,
+            "[axes]\n\"recognition.parameters.mine.{alpha,beta}\" = [1, 2]",
+            "parameter beta",
+        ),
+    ] {
+        case.file("study.toml", study(classifier) + keys + "\n");
+        refused(&case.run(&["run", "study.toml"]), 2, &[words]);
+    }
 }
 
 #[test]

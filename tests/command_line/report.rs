@@ -427,6 +427,33 @@ fn objects_that_changed_after_the_run_are_refused() {
 }
 
 #[test]
+fn built_in_objects_that_another_version_described_otherwise_are_named() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    case.succeeds(&["run", "study.toml", "--out", "found"]);
+    let path = case.path("found/manifest.json");
+    let mut manifest: serde_json::Value =
+        serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    let write = |manifest: &serde_json::Value| fs::write(&path, manifest.to_string()).unwrap();
+    manifest["source"] = "other".into();
+    write(&manifest);
+    let words =
+        "note: found: built-in objects that this version describes otherwise than the run: ";
+    let (_, said) = case.succeeds(&["verify", "found"]);
+    assert!(!said.contains(words), "{said}");
+    manifest["objects_sha256"]["mug"] = "0".into();
+    manifest["objects_sha256"]
+        .as_object_mut()
+        .unwrap()
+        .remove("banana");
+    write(&manifest);
+    for command in ["verify", "report"] {
+        let (_, said) = case.succeeds(&[command, "found"]);
+        assert!(said.contains(&format!("{words}banana, mug\n")), "{said}");
+    }
+}
+
+#[test]
 fn noise_in_mm_is_not_noise_in_full_scale() {
     let case = Case::new();
     let study = include_str!("../fixtures/kinds/reconstruction.toml");

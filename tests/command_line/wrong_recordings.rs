@@ -307,3 +307,63 @@ fn truncated_and_empty_files_are_refused_by_their_name() {
         "key recorded.labels: 1 class; at least two",
     );
 }
+
+#[test]
+fn classes_in_two_forms_of_unicode_and_columns_that_may_be_no_taxels_are_noted() {
+    let case = Case::new();
+    let line = |touch: usize| {
+        let [first, second] = [7, 5].map(|k| (touch * k % 11) as f64 / 11.0 + 0.01);
+        format!(
+            "{}.5,{first},{second},{}\n",
+            10 + touch * touch,
+            touch * 2 % 3
+        )
+    };
+    case.file("frames.csv", (0..N).map(line).collect::<String>());
+    let word = |touch: usize| ["caf\u{e9}\n", "cafe\u{301}\n", "pen\n"][touch % 3];
+    case.file("labels.csv", (0..N).map(word).collect::<String>());
+    let group = |touch: usize| ["s7\n", "S7\n", "8\n", "08\n", "9\n"][touch % 5];
+    case.file("groups.csv", (0..N).map(group).collect::<String>());
+    let audit = [
+        "audit",
+        "frames.csv",
+        "--labels",
+        "labels.csv",
+        "--groups",
+        "groups.csv",
+    ];
+    let (_, said) = case.succeeds(&audit);
+    let spellings = "note: the labels \"cafe\\u{301}\", \"café\" differ only by case, spaces, leading zeros or forms of Unicode, and count as 2 labels";
+    assert!(said.contains(spellings), "{said}");
+    let groups = "note: the groups \"08\", \"8\" differ only by case, spaces, leading zeros";
+    assert!(said.contains(groups), "{said}");
+    for words in [
+        "column 4 has few whole numbers and counts as a taxel; remove it if it is the class of each row",
+        "column 1 ascends from row to row and counts as a taxel; remove it if it is the time of each row",
+    ] {
+        assert!(
+            said.contains(&format!("note: frames.csv: {words}")),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn a_missing_label_is_no_class() {
+    let case = Case::new();
+    let line = |touch: usize| format!("{},{}\n", touch % 7, touch % 5);
+    case.file("frames.csv", (0..N).map(line).collect::<String>());
+    for missing in ["nan", "\"\"", "NaN"] {
+        let word = |touch: usize| match touch % 10 {
+            3 => missing.to_owned() + "\n",
+            k => ["mug\n", "pen\n"][k % 2].to_owned(),
+        };
+        case.file("labels.csv", (0..N).map(word).collect::<String>());
+        let said = case.run(&["audit", "frames.csv", "--labels", "labels.csv"]);
+        let given = format!(
+            "labels.csv, position 3: \"{}\"; one class for each touch",
+            missing.trim_matches('"')
+        );
+        refused(&said, 2, &[&given]);
+    }
+}

@@ -286,6 +286,26 @@ fn predictions_of_own_splits_name_the_touches_of_the_file() {
 }
 
 #[test]
+fn predictions_name_the_groups_as_their_file_does() {
+    let (case, recorded) = mixed();
+    let name = |touch: usize| format!("subject{}", (touch / 10 + 3) % 6);
+    let lines: String = (0..60).map(|touch| name(touch) + "\n").collect();
+    case.file("groups.csv", lines);
+    let recorded = recorded.replace("groups.npy", "groups.csv");
+    let study = planned(&case, &recorded, &format!("{SKIN}{REST}")).unwrap();
+    let tables = tables_of(&study.run(&Silent).unwrap()).unwrap();
+    let mut tables = tables.iter();
+    let predictions = tables
+        .find(|table| table.file == "predictions.csv")
+        .unwrap();
+    assert!(predictions.n_rows >= 10);
+    for row in 0..predictions.n_rows {
+        let touch: usize = predictions.word("touch", row).parse().unwrap();
+        assert_eq!(predictions.word("group", row), name(touch));
+    }
+}
+
+#[test]
 fn splits_that_do_not_fit_are_refused() {
     let (case, recorded) = mixed();
     let recorded = format!("{recorded}splits = \"FOLDER/splits.npz\"\n");

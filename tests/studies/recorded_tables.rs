@@ -61,7 +61,12 @@ fn audited(case: &Case, name: &str, columns: Option<&str>) -> bubbletouch::Resul
 }
 
 fn calibrated(case: &Case, name: &str, columns: Option<&str>) -> bubbletouch::Result<Array2<f64>> {
-    let files = RecordedSkinFiles {
+    let files = skin_files(case, name, columns);
+    files.read().map(|skin| skin.0.touched)
+}
+
+fn skin_files(case: &Case, name: &str, columns: Option<&str>) -> RecordedSkinFiles {
+    RecordedSkinFiles {
         frames: case.path(name),
         order: None,
         columns: columns.map(str::to_owned),
@@ -71,8 +76,7 @@ fn calibrated(case: &Case, name: &str, columns: Option<&str>) -> bubbletouch::Re
         zero: Some(0.0),
         full_scale: Some(1.0),
         stroke_mm: None,
-    };
-    files.read().map(|skin| skin.0.touched)
+    }
 }
 
 fn studied(keys: &str) -> bubbletouch::Result<Vec<TrialScore>> {
@@ -513,6 +517,14 @@ fn exports_and_decimal_commas_are_named_with_their_line_and_their_conversion() {
         "named.csv",
         comma(table("s0,s1,s2,s3", |_, cells| cells.to_owned())),
     );
+    let fixed = |touch: usize, sign: &str| {
+        let cells = readings(touch).map(|reading| format!("{sign}{:.3}", reading.abs()));
+        cells.join(",").replace('.', ",") + "\n"
+    };
+    let lines = |sign: &str| (0..N).map(|touch| fixed(touch, sign)).collect::<String>();
+    case.file("fixed.csv", lines(""));
+    case.file("signed.csv", lines("-"));
+    case.file("headed.csv", "s0,s1,s2,s3\n".to_owned() + &lines(""));
     case.file(
         "broken.csv",
         table("", |touch, cells| {
@@ -538,6 +550,13 @@ fn exports_and_decimal_commas_are_named_with_their_line_and_their_conversion() {
             "named.csv",
             "sep=';', decimal=\",\").to_csv(\"points.csv\", index=False)",
         ),
+        (
+            "fixed.csv",
+            ", commas between numbers and in numbers; decimal points, or semicolons between the columns",
+        ),
+        ("signed.csv", "`-1,0"),
+        ("headed.csv", "headed.csv, line "),
+        ("headed.csv", "commas between numbers and in numbers"),
         ("broken.csv", "broken.csv, line 8: `"),
     ] {
         let of_study = studied(&(key(&case, "frames", name) + &key(&case, "labels", "labels.npy")));
@@ -607,4 +626,61 @@ fn hidden_files_of_a_folder_are_no_sessions() {
         (after.frames, after.sessions),
         (before.frames, before.sessions)
     );
+}
+
+#[test]
+fn columns_in_another_order_than_those_of_the_frames_are_refused() {
+    let case = with_labels();
+    case.file(
+        "named.csv",
+        table("s0,s1,s2,s3", |_, cells| cells.to_owned()),
+    );
+    let turned = |_: usize, cells: &str| cells.split(',').rev().collect::<Vec<_>>().join(",");
+    case.file("turned.csv", table("s3,s2,s1,s0", turned));
+    case.file(
+        "numbered.csv",
+        table("0,1,2,3", |_, cells| cells.to_owned()),
+    );
+    case.file("zero.csv", "s3,s2,s1,s0\n0,0,0,0.1\n");
+    let frames = key(&case, "frames", "named.csv") + &key(&case, "labels", "labels.npy");
+    let of_study = |test: &str| {
+        let labels = key(&case, "labels_test", "labels.npy");
+        studied(&(frames.clone() + &key(&case, "frames_test", test) + &labels))
+    };
+    let of_audit = |test: &str| {
+        let given = RecordedSpec {
+            labels: case.path("labels.npy"),
+            frames_test: Some(case.path(test)),
+            labels_test: Some(case.path("labels.npy")),
+            ..RecordedSpec::default()
+        };
+        audited_with(&case, "named.csv", given)
+    };
+    let of_skin = |untouched: &str| {
+        let files = RecordedSkinFiles {
+            untouched: UntouchedFrames::File {
+                path: case.path(untouched),
+                times: vec![0.0..1.0],
+            },
+            ..skin_files(&case, "named.csv", None)
+        };
+        files.read()
+    };
+    // Numbers of columns are positions.
+    assert!(of_study("numbered.csv").is_ok() && of_audit("numbered.csv").is_ok());
+    assert!(of_skin("numbered.csv").is_ok());
+    let refusals = [
+        of_study("turned.csv").err(),
+        of_audit("turned.csv").err(),
+        of_skin("turned.csv").err(),
+        studied(&(frames + &key(&case, "zero", "zero.csv"))).err(),
+    ];
+    for said in refusals {
+        let said = said.unwrap().to_string();
+        let words = "csv: column `s3` in the place of `s0`; the columns of ";
+        assert!(
+            said.contains(words) && said.ends_with("named.csv, in their order"),
+            "{said}"
+        );
+    }
 }

@@ -14,19 +14,22 @@ Array = NDArray[Any]
 
 
 def check_frames(values: Mapping[str, Any]) -> None:
-    """Checks data frames and series that have a row for each touch, by the names of their keys: their indexes are equal, and the columns of frames are of one
-    family. A name that ends with `_test` belongs to the test set.
+    """Checks data frames and series by the names of their keys. Those with a row for each touch have equal indexes, and the columns of frames are of one family.
+    A name that ends with `_test` belongs to the test set. The zeros of taxels are named by the columns of the frames.
     """
     first: dict[str, tuple[str, Any]] = {}
     for name, value in values.items():
         index, columns = getattr(value, "index", None), getattr(value, "columns", None)
-        is_frames = name.split(".")[-1] in ("frames", "frames_test")
+        *sensor, key = name.split(".")
+        is_frames = key in ("frames", "frames_test")
         if is_frames and columns is not None and (families := _core.column_families([str(column) for column in columns])):
             given = f"columns of several kinds: {families[0]}"
             raise ValueError(f"{name}: {given}; a data frame of those that are readings, such as `{families[1]}`, or .to_numpy() for all")
         # The columns of all frames of a sensor have one order.
-        alike = [("other columns", name.removesuffix("_test"), columns)] if is_frames else []
-        alike += [("another index", "_test" if name.endswith("_test") else "", index)]
+        of_taxels = columns if is_frames or columns is not None else index
+        alike = [("other columns", ".".join(sensor), of_taxels)] if is_frames or key == "zero" else []
+        if key != "zero":
+            alike.append(("another index", "_test" if name.endswith("_test") else "", index))
         for what, group, own in alike:
             if not hasattr(own, "equals"):
                 continue

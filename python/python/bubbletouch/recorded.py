@@ -95,7 +95,7 @@ def with_files(table: Mapping[str, Any], folder: Path, files: dict[str, str], pl
         files[written[key]] = f"{place}.{key}"
 
     if place == "recorded":
-        check_frames(dict(_by_touch(table, place)))
+        check_frames(dict(_arrays_of(table, place)))
     for key, value in table.items():
         if key == "sensors":
             if isinstance(value, str) or not all(isinstance(sensor, Mapping) for sensor in value):
@@ -119,13 +119,13 @@ def with_files(table: Mapping[str, Any], folder: Path, files: dict[str, str], pl
     return written
 
 
-def _by_touch(table: Mapping[str, Any], place: str) -> Iterator[tuple[str, Any]]:
-    """Returns the keys and the values of the arrays that have a row for each touch."""
+def _arrays_of(table: Mapping[str, Any], place: str) -> Iterator[tuple[str, Any]]:
+    """Returns the keys and the values of the arrays, sensor after sensor."""
     sensors = table.get("sensors", ())
     for number, sensor in enumerate(() if isinstance(sensors, str) else sensors, 1):
         if isinstance(sensor, Mapping):
-            yield from _by_touch(sensor, f"{place}.sensors[{number}]")
-    yield from ((f"{place}.{key}", value) for key, value in table.items() if key in _ARRAYS and key != "zero")
+            yield from _arrays_of(sensor, f"{place}.sensors[{number}]")
+    yield from ((f"{place}.{key}", value) for key, value in table.items() if key in _ARRAYS)
 
 
 def with_paths(table: Mapping[str, Any], paths: Mapping[str, str]) -> dict[str, Any]:

@@ -5,6 +5,8 @@ use bubbletouch::kinds::{self, AnyStudy, Source};
 use bubbletouch::study::provenance::{Manifest, SOURCE};
 use bubbletouch::study::{file_content, is_built_in};
 use bubbletouch::{Error, Result};
+use bubbletouch_sim::text::note::note;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Checks the files of a result folder other than tables: charts, pictures and the page. Returns the number of files that are missing: they are drawn from the
@@ -41,8 +43,8 @@ fn check(path: &Path, hash: &str) -> Result<()> {
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// Loads the study of a result folder, with a limit of its memory in bytes, and checks that its objects are those of the run. Without a manifest, paths in it
-/// are relative to the folder.
+/// Loads the study of a result folder, with a limit of its memory in bytes, and checks that its objects are those of the run. Built-in objects of another version
+/// that differ are named in a note. Without a manifest, paths in it are relative to the folder.
 pub fn load_study(
     folder: &Path,
     manifest: Option<&Manifest>,
@@ -58,11 +60,16 @@ pub fn load_study(
     let objects = &study.identity().objects;
     let of_run = manifest.map_or(objects, |of| &of.objects_sha256);
     let is_same_version = manifest.is_none_or(|of| of.source == SOURCE);
-    for name in of_run.keys().chain(objects.keys()) {
+    let mut differing = Vec::new();
+    let names: BTreeSet<&String> = of_run.keys().chain(objects.keys()).collect();
+    for name in names {
         let given = match (of_run.get(name), objects.get(name)) {
             (before, now) if before == now => continue,
             // A built-in object belongs to the version of the program.
-            (_, Some(now)) if !is_same_version && is_built_in(name, now)? => continue,
+            (_, Some(now)) if !is_same_version && is_built_in(name, now)? => {
+                differing.push(&name[..]);
+                continue;
+            }
             (None, _) => "is not in the run",
             (_, None) => "is missing",
             _ => "was changed after the run",
@@ -70,6 +77,13 @@ pub fn load_study(
         let allowed = "the object that manifest.json names by its SHA-256";
         let place = format!("{}: object {name}", folder.display());
         return Err(Error::input(place, given, allowed));
+    }
+    if !differing.is_empty() {
+        note(format_args!(
+            "{}: built-in objects that this version describes otherwise than the run: {}",
+            folder.display(),
+            differing.join(", ")
+        ));
     }
     Ok(study)
 }

@@ -14,7 +14,7 @@ use crate::encoding::decoded;
 use crate::error::{Error, Result};
 use crate::inputs::arrays::column_names::{column_families, listed, matches};
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 
 /// Minimum number of consecutive integers that are a count of rows. With a smaller value, entries 0 and 1 of class columns are taken as an index.
@@ -90,6 +90,7 @@ impl Table {
             let note = "the lines end with a separator; no column follows it";
             table.notes.push(format!("{}: {note}", table.place));
         }
+        table.check_decimal_commas()?;
         table.check_widths()?;
         table.check_decimal_points()?;
         if table.has_header(n_rows) {
@@ -178,6 +179,37 @@ impl Table {
         }
     }
 
+    /// Adds a note for each column of few whole numbers beside readings with fractions, which may be the classes of the rows, and for a column that alone
+    /// ascends from row to row, which may be a time.
+    fn note_other_columns(&mut self) {
+        let ascends = |&column: &usize| {
+            let numbers = self
+                .column(column)
+                .map(|cell| number(cell).unwrap_or(f64::NAN));
+            self.rows.len() >= MIN_RUN && numbers.is_sorted_by(|a, b| a < b)
+        };
+        let ascending: Vec<usize> = (0..self.n_columns()).filter(ascends).collect();
+        let has_fractions = 2 * self.n_fractional(0) > self.n_columns();
+        let may_be_class = |&column: &usize| {
+            let mut cells = self.column(column);
+            let are_whole = has_fractions && cells.all(|cell| cell.parse::<u32>().is_ok());
+            let values = || self.column(column).collect::<HashSet<_>>().len();
+            are_whole && (2..=self.rows.len() / 2).contains(&values())
+        };
+        let classes = (0..self.n_columns()).filter(may_be_class);
+        let classes = classes.map(|column| (column, "has few whole numbers", "class of each row"));
+        let times = ascending.iter().filter(|_| ascending.len() == 1);
+        let times = times.map(|&column| (column, "ascends from row to row", "time of each row"));
+        let notes: Vec<String> = classes
+            .chain(times)
+            .map(|(column, what, other)| {
+                let (place, number) = (&self.place, column + 1);
+                format!("{place}: column {number} {what} and counts as a taxel; remove it if it is the {other}")
+            })
+            .collect();
+        self.notes.extend(notes);
+    }
+
     /// Leaves out the columns that are no data of the given content.
     ///
     /// # Errors
@@ -191,6 +223,7 @@ impl Table {
             self.keep(&self.without_index(), COUNTS);
             let families = self.names.as_deref().and_then(column_families);
             let Some((listed, largest)) = families else {
+                self.note_other_columns();
                 return Ok(self);
             };
             let given = format!("columns of several kinds: {listed}");
@@ -225,8 +258,11 @@ impl Table {
 
     /// Converts the cells to an array of numbers or, if a cell is no number, of texts. An empty cell among numbers is NaN. A single column with a whole number
     /// both with and without leading zeros, such as 007 and 7, contains texts.
-    pub fn into_array(self) -> FileArray {
+    pub fn into_array(mut self) -> FileArray {
         let shape = vec![self.rows.len(), self.n_columns()];
+        // Numbers in place of names are positions.
+        let columns = self.names.take();
+        let columns = columns.filter(|names| names.iter().any(|name| number(name).is_none()));
         let is_text = |cell: &&String| number(cell).is_none();
         let mut all = self
             .rows
@@ -245,6 +281,7 @@ impl Table {
                 shape,
                 kind: ElementKind::Text,
                 elements: Elements::Texts(cells.collect()),
+                columns,
                 refusal: text,
             };
         }
@@ -262,6 +299,7 @@ impl Table {
                 false => ElementKind::Float(f64::EPSILON),
             },
             elements: Elements::Numbers(numbers),
+            columns,
             refusal: None,
         }
     }
@@ -314,6 +352,43 @@ impl Table {
             }
         }
         Ok(())
+    }
+
+    /// Returns an error if commas stand both between numbers and before their decimals. Of each pair of columns, the second then has digits without a sign, and
+    /// it alone has leading zeros. Numbers without leading zeros in their decimals are not recognised.
+    fn check_decimal_commas(&self) -> Result<()> {
+        let below = &self.rows[usize::from(self.rows.len() > 1)..];
+        let n = below[0].1.len();
+        let is_padded = |cell: &str| cell.len() > 1 && cell.starts_with('0');
+        let (mut padded, mut first) = (BTreeSet::new(), None);
+        for (line, cells) in below {
+            for (from_end, cell) in cells.iter().rev().enumerate() {
+                // A table with an odd number of cells begins with an index.
+                let has_decimals = from_end % 2 == 0 && from_end + 1 < n;
+                let digits = cell.strip_prefix('-').filter(|_| !has_decimals);
+                let digits = digits.unwrap_or(cell);
+                let are_digits = !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
+                if !are_digits || cells.len() != n || !has_decimals && is_padded(digits) {
+                    return Ok(());
+                }
+                if is_padded(digits) {
+                    padded.insert(from_end);
+                    first.get_or_insert((line, &cells[n - 2 - from_end], cell));
+                }
+            }
+        }
+        match first {
+            Some((line, whole, decimals)) if self.separator == Some(',') && padded.len() > 1 => {
+                let place = format!("{}, line {line}", self.place);
+                let given = format!("`{whole},{decimals}`, commas between numbers and in numbers");
+                Err(Error::input(
+                    place,
+                    given,
+                    "decimal points, or semicolons between the columns",
+                ))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Removes the empty cell behind the last separator of all lines, and returns whether there is one. The first line may have a name in its place, which makes

@@ -33,6 +33,8 @@ pub struct FileArray {
     pub kind: ElementKind,
     /// Elements of the array in row-major order.
     pub elements: Elements,
+    /// Names of the columns of a table; `None` for other files and for a table without names.
+    pub columns: Option<Vec<String>>,
     /// Place, given and allowed content of the error of the first text in a table; `None` for other files.
     pub refusal: Option<[String; 3]>,
 }

@@ -87,6 +87,27 @@ impl FileArray {
         }
     }
 
+    /// Checks that the columns of a table have the names of the columns `first` of a file of frames at `place`, in their order. Tables without names, and tables
+    /// with another number of columns, are not compared.
+    ///
+    /// # Errors
+    /// If a name differs.
+    pub fn check_columns_of(&self, first: Option<&[String]>, place: &str) -> Result<()> {
+        let (own, first) = (
+            self.columns.as_deref().unwrap_or_default(),
+            first.unwrap_or_default(),
+        );
+        let differs = || own.iter().zip(first).find(|(own, first)| own != first);
+        match (own.len() == first.len()).then(differs).flatten() {
+            None => Ok(()),
+            Some((own, first)) => {
+                let given = format!("column `{own}` in the place of `{first}`");
+                let allowed = format!("the columns of {place}, in their order");
+                Err(Error::input(&self.place, given, allowed))
+            }
+        }
+    }
+
     /// Converts the elements of the array to numbers, with the shape of the array.
     ///
     /// # Errors

@@ -121,6 +121,7 @@ pub fn read(place: &str, reader: &mut dyn Read, length: u64) -> Result<FileArray
         shape: header.shape,
         kind: header.elements.kind,
         elements,
+        columns: None,
         refusal: None,
     })
 }

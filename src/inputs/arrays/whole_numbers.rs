@@ -3,9 +3,11 @@
 use crate::error::{Error, Result};
 use crate::inputs::arrays::csv_table::TableContent;
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
+use crate::note::note;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
+use unicode_normalization::UnicodeNormalization;
 
 /// Number below which f64 represents every integer exactly: 2⁵³. The number itself may be a rounded 2⁵³ + 1.
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
@@ -48,17 +50,29 @@ impl ClassLabels {
     }
 }
 
-/// Returns class names that differ only by case or spaces, such as `mug`, `Mug` and `mug `; `None` if there are none.
-pub fn spellings<'a>(classes: impl IntoIterator<Item = &'a str>) -> Option<Vec<&'a str>> {
-    let mut known: BTreeMap<String, Vec<&str>> = BTreeMap::new();
-    for class in classes {
-        let words: Vec<&str> = class.split_whitespace().collect();
-        known
-            .entry(words.concat().to_lowercase())
-            .or_default()
-            .push(class);
+/// Writes a note if classes or groups differ only by case, spaces, leading zeros or forms of Unicode, such as `mug`, `Mug` and `mug `, or é of one and of two
+/// code points. `what` is the word for them.
+pub fn note_spellings<'a>(what: &str, names: impl IntoIterator<Item = &'a str>) {
+    let mut known: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for name in names.into_iter().collect::<BTreeSet<_>>() {
+        let composed: String = name
+            .nfkc()
+            .filter(|letter| !letter.is_whitespace())
+            .collect();
+        let is_number = composed.bytes().all(|byte| byte.is_ascii_digit());
+        let key = composed
+            .trim_start_matches(|letter| is_number && letter == '0')
+            .to_lowercase();
+        // Combining accents are written as escapes.
+        let shown = name.chars().flat_map(char::escape_debug).collect();
+        known.entry(key).or_default().push(shown);
     }
-    known.into_values().find(|classes| classes.len() > 1)
+    if let Some(same) = known.into_values().find(|names| names.len() > 1) {
+        let (listed, n) = (same.join("\", \""), same.len());
+        note(format_args!(
+            "the {what} \"{listed}\" differ only by case, spaces, leading zeros or forms of Unicode, and count as {n} {what}"
+        ));
+    }
 }
 
 /// Returns the distinct values: integers in ascending order, texts in the order of first occurrence.
@@ -126,10 +140,12 @@ pub fn group_keys(values: &[KeyValue]) -> Vec<usize> {
         KeyValue::Integer(number) => *number as usize,
         KeyValue::Text(text) => {
             let next = numbers.len();
-            *numbers.entry(text).or_insert(next)
+            *numbers.entry(&text[..]).or_insert(next)
         }
     });
-    keys.collect()
+    let keys = keys.collect();
+    note_spellings("groups", numbers.into_keys());
+    keys
 }
 
 /// Reads row numbers from a file that contains integers, or a mask with one truth value per row.
@@ -222,7 +238,19 @@ fn values(array: FileArray, allowed: &str) -> Result<Vec<KeyValue>> {
         return Err(Error::input(array.place, given, allowed));
     }
     let numbers = match array.elements {
-        Elements::Texts(texts) => return Ok(texts.into_iter().map(KeyValue::Text).collect()),
+        Elements::Texts(texts) => {
+            let is_missing =
+                |text: &String| text.trim().is_empty() || text == "nan" || text == "NaN";
+            if let Some(position) = texts.iter().position(is_missing) {
+                let place = format!("{}, position {position}", array.place);
+                return Err(Error::input(
+                    place,
+                    format!("{:?}", texts[position]),
+                    allowed,
+                ));
+            }
+            return Ok(texts.into_iter().map(KeyValue::Text).collect());
+        }
         Elements::Numbers(numbers) => numbers,
     };
     let is_wrong = |number: &f64| number.fract() != 0.0 || number.abs() >= MAX_INTEGER;

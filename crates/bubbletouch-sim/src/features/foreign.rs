@@ -6,6 +6,7 @@
 use super::Features;
 use crate::error::{Error, Result};
 use ndarray::{Array2, ArrayView2};
+use serde_json::{Map, Value};
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -17,6 +18,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// Maximum number of letters of a name or a version. Longer texts do not fit into a column of a table.
 const MAX_LETTERS: usize = 64;
 
+/// Values of parameters of features from outside of this crate, by name.
+pub type ForeignParameters = Map<String, Value>;
+
 /// Features from outside of this crate. Several threads may compute them at the same time.
 pub trait ForeignFeatures: Send + Sync {
     /// Returns the features (n × k) of n frames of m measurements (n × m). The number k depends on m alone, and each row depends on its frame alone.
@@ -24,6 +28,19 @@ pub trait ForeignFeatures: Send + Sync {
     /// # Errors
     /// If the features cannot be computed.
     fn compute(&self, frames: ArrayView2<f64>) -> Result<Array2<f64>>;
+
+    /// Returns the features with other values of some of their parameters. By default, features have no parameters.
+    ///
+    /// # Errors
+    /// If the features do not have one of the parameters or do not allow its value.
+    fn with(&self, parameters: &ForeignParameters) -> Result<Arc<dyn ForeignFeatures>> {
+        let names: Vec<&str> = parameters.keys().map(String::as_str).collect();
+        Err(Error::input(
+            "parameters",
+            names.join(", "),
+            "none for these features",
+        ))
+    }
 }
 
 /// Identity of features from outside of this crate: their name and their version. Results of equal identities are interchangeable.
@@ -33,6 +50,8 @@ pub struct Foreign(&'static ForeignAbout);
 struct ForeignAbout {
     name: String,
     version: String,
+    /// Features of which these are a copy with other values of parameters, and these values; `None` for features that a program provides.
+    parameters: Option<(Foreign, ForeignParameters)>,
     provided: Mutex<Vec<Arc<dyn ForeignFeatures>>>,
     /// Number k of features for each number m of measurements for which it is known.
     n_values: Mutex<BTreeMap<usize, usize>>,
@@ -64,21 +83,38 @@ impl Foreign {
             let allowed = "a name that no other features have, and 1 to 64 letters, digits, _, - and . in name and version";
             return Err(Error::input("features", given, allowed));
         }
+        Ok(Self::known(name, version, None))
+    }
+
+    /// Returns the identity of these features with other values of their parameters. The version contains the values.
+    #[must_use]
+    pub fn with(self, parameters: &ForeignParameters) -> Self {
+        if parameters.is_empty() {
+            return self;
+        }
+        let values = Value::Object(parameters.clone());
+        let version = format!("{} {values}", self.version());
+        Self::known(self.name(), &version, Some((self, parameters.clone())))
+    }
+
+    /// Returns the identity with this name and version, which the first call creates.
+    fn known(name: &str, version: &str, parameters: Option<(Self, ForeignParameters)>) -> Self {
         let mut known = lock(&KNOWN);
         let found = known
             .iter()
             .find(|one| one.name() == name && one.version() == version);
         if let Some(found) = found {
-            return Ok(*found);
+            return *found;
         }
         let new = Self(Box::leak(Box::new(ForeignAbout {
             name: name.to_owned(),
             version: version.to_owned(),
+            parameters,
             provided: Mutex::default(),
             n_values: Mutex::default(),
         })));
         known.push(new);
-        Ok(new)
+        new
     }
 
     /// Returns the identity that a study names: `name@version`, or the name of features that this thread provides. Returns `None` for other texts.
@@ -124,9 +160,8 @@ impl Foreign {
     /// # Errors
     /// If no program provides the code, if the code fails, or if it returns another shape or a value that is not finite.
     pub fn compute(self, frames: ArrayView2<f64>) -> Result<Array2<f64>> {
-        let code = lock(&self.0.provided).last().cloned();
         let place = format!("features {}", self.name());
-        let Some(code) = code else {
+        let Some(code) = self.code()? else {
             let given = format!("no code for version {}", self.version());
             let allowed = "the program that provides them, such as bubbletouch.run(…, features={…}) in Python";
             return Err(Error::input(place, given, allowed));
@@ -146,6 +181,22 @@ impl Foreign {
                 Err(Error::input(place, given, "finite numbers"))
             }
         }
+    }
+
+    /// Returns the code of these features; `None` if no program provides it.
+    fn code(self) -> Result<Option<Arc<dyn ForeignFeatures>>> {
+        match &self.0.parameters {
+            None => Ok(lock(&self.0.provided).last().cloned()),
+            Some((of, parameters)) => of.code()?.map(|code| code.with(parameters)).transpose(),
+        }
+    }
+
+    /// Checks whether the features have the parameters of this identity. Without the code of the features, nothing is checked.
+    ///
+    /// # Errors
+    /// If [`ForeignFeatures::with`] fails.
+    pub fn check_parameters(self) -> Result<()> {
+        self.code().map(drop)
     }
 
     /// Returns the number of features of a frame of m measurements. If the number is unknown, it is computed for a frame of zeros.

@@ -13,6 +13,7 @@ use linfa::traits::{Fit, PredictInplace};
 use ndarray::{Array1, Array2, ArrayView2, s};
 use rand::RngCore;
 use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::fmt;
@@ -22,6 +23,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Maximum number of letters of a name or a version. Longer texts do not fit into a column of a table.
 const MAX_LETTERS: usize = 64;
+
+/// Values of parameters of a classifier from outside of this crate, by name.
+pub type ForeignParameters = Map<String, Value>;
 
 /// Classifier from outside of this crate. Several threads may train it at the same time.
 pub trait ForeignClassifier: Send + Sync {
@@ -45,6 +49,14 @@ pub trait ForeignClassifier: Send + Sync {
         self.fit(rows, seed)
     }
 
+    /// Returns the classifier with other values of some of its parameters. By default, a classifier has no parameters.
+    ///
+    /// # Errors
+    /// If the classifier does not have one of the parameters or does not allow its value.
+    fn with(&self, parameters: &ForeignParameters) -> Result<Arc<dyn ForeignClassifier>> {
+        Err(no_parameters(parameters))
+    }
+
     /// Checks whether the classifier can be trained, before any row is known.
     ///
     /// # Errors
@@ -57,6 +69,11 @@ pub trait ForeignClassifier: Send + Sync {
     fn may_be_elsewhere(&self) -> bool {
         false
     }
+}
+
+fn no_parameters(given: &ForeignParameters) -> Error {
+    let names: Vec<&str> = given.keys().map(String::as_str).collect();
+    Error::input("parameters", names.join(", "), "none for this classifier")
 }
 
 /// Trained model of a [`ForeignClassifier`].
@@ -92,6 +109,8 @@ struct ForeignAbout {
     name: String,
     version: String,
     about: ClassifierAbout,
+    /// Classifier of which this one is a copy with other values of parameters, and these values; `None` for a classifier that a program provides.
+    parameters: Option<(Foreign, ForeignParameters)>,
     provided: Mutex<Vec<Arc<dyn ForeignClassifier>>>,
 }
 
@@ -124,12 +143,28 @@ impl Foreign {
             let allowed = "a name that no other classifier has, and 1 to 64 letters, digits, _, - and . in name and version";
             return Err(Error::input("classifier", given, allowed));
         }
+        Ok(Self::known(name, version, None))
+    }
+
+    /// Returns the identity of this classifier with other values of its parameters. The version contains the values.
+    #[must_use]
+    pub fn with(self, parameters: &ForeignParameters) -> Self {
+        if parameters.is_empty() {
+            return self;
+        }
+        let values = Value::Object(parameters.clone());
+        let version = format!("{} {values}", self.version());
+        Self::known(self.name(), &version, Some((self, parameters.clone())))
+    }
+
+    /// Returns the identity with this name and version, which the first call creates.
+    fn known(name: &str, version: &str, parameters: Option<(Self, ForeignParameters)>) -> Self {
         let mut known = lock(&KNOWN);
         let found = known
             .iter()
             .find(|one| one.name() == name && one.version() == version);
         if let Some(found) = found {
-            return Ok(*found);
+            return *found;
         }
         let words: &'static str = Box::leak(name.to_owned().into_boxed_str());
         let new = Self(Box::leak(Box::new(ForeignAbout {
@@ -143,10 +178,11 @@ impl Foreign {
                     _ => unreachable!("this descriptor belongs to foreign classifiers"),
                 }
             }),
+            parameters,
             provided: Mutex::default(),
         })));
         known.push(new);
-        Ok(new)
+        new
     }
 
     /// Returns the identity that a study names: `name@version`, or the name of a classifier that this thread provides. Returns `None` for other texts.
@@ -184,7 +220,10 @@ impl Foreign {
 
     /// Returns whether a program provides the code of this classifier.
     pub fn is_provided(self) -> bool {
-        !lock(&self.0.provided).is_empty()
+        match &self.0.parameters {
+            Some((of, _)) => of.is_provided(),
+            None => !lock(&self.0.provided).is_empty(),
+        }
     }
 
     /// Name of the classifier in tables and charts.
@@ -201,6 +240,17 @@ impl Foreign {
         &self.0.about
     }
 
+    /// Checks whether the classifier has the parameters of this identity. Without the code of the classifier, nothing is checked.
+    ///
+    /// # Errors
+    /// If [`ForeignClassifier::with`] fails.
+    pub fn check_parameters(self) -> Result<()> {
+        match self.is_provided() {
+            true => self.code().map(drop),
+            false => Ok(()),
+        }
+    }
+
     /// Returns an error if no program provides the code of this classifier, or the code cannot train.
     ///
     /// # Errors
@@ -215,6 +265,9 @@ impl Foreign {
     }
 
     fn code(self) -> Result<Arc<dyn ForeignClassifier>> {
+        if let Some((of, parameters)) = &self.0.parameters {
+            return of.code()?.with(parameters);
+        }
         let code = lock(&self.0.provided).last().cloned();
         code.ok_or_else(|| {
             let allowed = "the program that provides it, such as bubbletouch.run(…, classifiers={…}) in Python";
@@ -400,9 +453,13 @@ impl ClassModel for ForeignClassModel {
     }
 }
 
+/// Function that creates linfa's parameters from values in a study.
+type MakeParams<P> = dyn Fn(&ForeignParameters) -> Result<P> + Send + Sync;
+
 /// [`ForeignClassifier`] for parameters that implement linfa's `Fit` and whose models implement `PredictInplace`. The parameters contain their own seed.
 pub struct LinfaClassifier<P, E> {
     params: P,
+    make: Option<Arc<MakeParams<P>>>,
     error: PhantomData<fn() -> E>,
 }
 
@@ -411,17 +468,37 @@ impl<P, E> LinfaClassifier<P, E> {
     pub fn new(params: P) -> Self {
         Self {
             params,
+            make: None,
             error: PhantomData,
+        }
+    }
+
+    /// Returns a classifier whose parameters a study may set. `make` creates linfa's parameters from the values in the study; it refuses unknown names.
+    #[must_use]
+    pub fn with_parameters(
+        self,
+        make: impl Fn(&ForeignParameters) -> Result<P> + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            make: Some(Arc::new(make)),
+            ..self
         }
     }
 }
 
 impl<P, E> ForeignClassifier for LinfaClassifier<P, E>
 where
-    P: Fit<Array2<f64>, Array1<usize>, E> + Send + Sync,
+    P: Fit<Array2<f64>, Array1<usize>, E> + Send + Sync + 'static,
     P::Object: PredictInplace<Array2<f64>, Array1<usize>> + Send + Sync + 'static,
-    E: std::error::Error + From<linfa::Error>,
+    E: std::error::Error + From<linfa::Error> + 'static,
 {
+    fn with(&self, parameters: &ForeignParameters) -> Result<Arc<dyn ForeignClassifier>> {
+        let make = self.make.as_ref();
+        let params =
+            make.map_or_else(|| Err(no_parameters(parameters)), |make| make(parameters))?;
+        Ok(Arc::new(Self::new(params)))
+    }
+
     fn fit(&self, rows: &Dataset, _: u32) -> Result<Box<dyn ForeignModel>> {
         let fitted = self.params.fit(rows);
         let model =

@@ -1,13 +1,14 @@
 //! Classifiers from outside of the crate give their own labels, and decisions on several touches from their probabilities or votes.
 
-use bubbletouch_svm::Result;
 use bubbletouch_svm::classifiers::ClassifierKind;
 use bubbletouch_svm::classifiers::classifier::{Classifier, TrainedClassifier};
 use bubbletouch_svm::classifiers::foreign::{
     Foreign, ForeignClassifier, ForeignModel, LinfaClassifier,
 };
 use bubbletouch_svm::dataset::Dataset;
+use bubbletouch_svm::{Error, Result};
 use ndarray::{Array1, Array2, ArrayView2, array};
+use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// Rows of three classes with the labels 2, 5, 9; class 2 has twice as many rows.
@@ -152,5 +153,62 @@ fn any_classifier_of_linfa_is_a_foreign_classifier() {
     assert_eq!(
         trained(foreign).unwrap().labels(rows.view()).unwrap(),
         ours.labels(rows.view()).unwrap()
+    );
+}
+
+#[test]
+fn a_value_of_a_parameter_is_a_version_of_its_own_with_the_code_of_the_value() {
+    let neighbours =
+        |k: usize| Classifier::new(ClassifierKind::KNearest).with("n_neighbours", k as f64);
+    let linfa = LinfaClassifier::<_, Error>::new(neighbours(5).unwrap()).with_parameters(
+        move |given| match (given.len(), given.get("k").and_then(Value::as_u64)) {
+            (1, Some(k)) => neighbours(k as usize),
+            _ => Err(Error::input("parameters", "others", "k")),
+        },
+    );
+    let foreign = Foreign::new("swept", "1").unwrap();
+    let of = |values: Value| foreign.with(values.as_object().unwrap());
+    let provided = foreign.provide(Arc::new(linfa));
+    let rows = data().records;
+    let mut answers = Vec::new();
+    for k in [1, 5, 59] {
+        let own = of(json!({ "k": k }));
+        assert_eq!((own.name(), own), ("swept", of(json!({ "k": k }))));
+        assert_ne!(own.version(), foreign.version());
+        let labels = trained(own).unwrap().labels(rows.view()).unwrap();
+        let alone = neighbours(k).unwrap().train(&data(), &0_u64).unwrap();
+        assert_eq!(labels, alone.labels(rows.view()).unwrap());
+        answers.push(labels);
+    }
+    assert!(answers[0] != answers[1] && answers[1] != answers[2]);
+    assert_eq!(
+        answers[1],
+        trained(foreign).unwrap().labels(rows.view()).unwrap()
+    );
+    assert_eq!(of(json!({})), foreign);
+    for refused in [
+        json!({ "j": 3 }),
+        json!({ "k": 3, "j": 3 }),
+        json!({ "k": 0 }),
+    ] {
+        assert!(of(refused).check_parameters().is_err());
+    }
+    let other = Foreign::new("unswept", "1").unwrap();
+    let _other = other.provide(Arc::new(LinfaClassifier::<_, Error>::new(
+        neighbours(5).unwrap(),
+    )));
+    let said = other
+        .with(json!({ "k": 3 }).as_object().unwrap())
+        .check_parameters();
+    assert!(
+        said.unwrap_err()
+            .to_string()
+            .contains("parameters: k; none")
+    );
+    // Without code, nothing can be checked, and nothing is trained.
+    drop(provided);
+    let own = of(json!({ "j": 3 }));
+    assert!(
+        own.check_parameters().is_ok() && own.check_provided().is_err() && trained(own).is_err()
     );
 }

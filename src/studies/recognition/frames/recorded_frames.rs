@@ -10,11 +10,11 @@ use crate::inputs::arrays::TableContent;
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::is_member;
 use crate::inputs::arrays::whole_numbers::{
-    ClassLabels, KeyValue, group_keys, read_class_values, read_group_values, read_rows, spellings,
+    ClassLabels, KeyValue, group_keys, note_spellings, read_class_values, read_group_values,
+    read_rows,
 };
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
-use crate::note::note;
 use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
@@ -70,6 +70,8 @@ pub struct RecordedFrames {
     n_taxels: usize,
     /// Group of each touch, in the order of the field `order`; `None` if the recording defines no groups.
     groups: Option<Array1<usize>>,
+    /// Names of the groups by their numbers; empty if the numbers are the names.
+    group_names: Vec<String>,
     /// Side (training or test) of each touch: in all trials for a test set, or in each split; empty if the data do not define splits.
     sides: Vec<Vec<Side>>,
     /// Press depth of each touch, metres; `None` if unknown.
@@ -96,7 +98,9 @@ impl RecordedFrames {
         let mut order: Vec<usize> = (0..n_train + n_test).collect();
         order.sort_by_key(|&touch| labels.labels[touch]);
         let groups = spec.group_keys([n_train, n_test])?;
-        let groups = groups.map(|groups| order.iter().map(|&touch| groups[touch]).collect());
+        let (groups, group_names) = groups.unzip();
+        let groups =
+            groups.map(|groups: Vec<usize>| order.iter().map(|&touch| groups[touch]).collect());
         let side = |&touch: &usize| match touch < n_train {
             true => Side::Train,
             false => Side::Test,
@@ -139,6 +143,7 @@ impl RecordedFrames {
             n_taxels: sensors_of.iter().map(|(_, n)| n).sum(),
             sensors: sensors_of,
             groups,
+            group_names: group_names.unwrap_or_default(),
             sides,
             depths,
             readings: joined_readings(sensors),
@@ -193,6 +198,9 @@ impl RecordedFrames {
         })
     }
 }
+
+/// Number of the group of every touch, and the names of the groups by their numbers.
+type NamedGroups = (Vec<usize>, Vec<String>);
 
 impl RecordedSpec {
     /// Returns the identity of the recording, which depends on the contents of the files.
@@ -290,20 +298,18 @@ impl RecordedSpec {
             let given = format!("{:?} twice", names[name]);
             return Err(Error::input("key recorded.names", given, "each name once"));
         }
-        if let Some(same) = spellings(names.iter().map(String::as_str)) {
-            let quoted: Vec<String> = same.iter().map(|name| format!("{name:?}")).collect();
-            note(format_args!(
-                "{}: the labels {} differ only by case or spaces, and count as {} classes",
-                file.display(),
-                quoted.join(", "),
-                same.len()
-            ));
-        }
+        note_spellings("labels", names.iter().map(String::as_str));
         Ok((names, streams, counts))
     }
 
-    /// Returns the group of every touch; the touches of the separate test set come last. Returns `None` if the recording defines no groups.
-    fn group_keys(&self, [n_train, n_test]: [usize; 2]) -> Result<Option<Vec<usize>>> {
+    /// Returns the group of every touch, and the names of groups that are texts; the touches of the separate test set come last. Returns `None` if the
+    /// recording defines no groups.
+    fn group_keys(&self, [n_train, n_test]: [usize; 2]) -> Result<Option<NamedGroups>> {
+        let named = |values: &[KeyValue]| {
+            let classes = ClassLabels::new(values).classes.into_iter();
+            let names = classes.filter(KeyValue::is_text).map(|name| name_of(&name));
+            (group_keys(values), names.collect())
+        };
         let read = |name: &str, n: usize| -> Result<Option<Vec<KeyValue>>> {
             match self.file_of(name) {
                 None => Ok(None),
@@ -316,7 +322,7 @@ impl RecordedSpec {
         };
         let (train, test) = (read("groups", n_train)?, read("groups_test", n_test)?);
         if n_test == 0 {
-            return Ok(train.map(|groups| group_keys(&groups)));
+            return Ok(train.map(|groups| named(&groups)));
         }
         match (train, test) {
             (None, None) => Ok(None),
@@ -330,9 +336,12 @@ impl RecordedSpec {
             }
             (None, Some(test)) => {
                 // Each training touch is a group of its own.
-                let keys = group_keys(&test);
+                let (keys, names) = named(&test);
                 let first = keys.iter().max().map_or(0, |last| last + 1);
-                Ok(Some((first..first + n_train).chain(keys).collect()))
+                Ok(Some((
+                    (first..first + n_train).chain(keys).collect(),
+                    names,
+                )))
             }
             (Some(train), Some(test)) => {
                 let known: HashSet<&KeyValue> = train.iter().collect();
@@ -341,7 +350,7 @@ impl RecordedSpec {
                     let allowed = "groups that either train or test";
                     return Err(Error::input("key recorded.groups_test", given, allowed));
                 }
-                Ok(Some(group_keys(&[train, test].concat())))
+                Ok(Some(named(&[train, test].concat())))
             }
         }
     }
@@ -464,6 +473,10 @@ impl TouchSet for RecordedFrames {
 
     fn own_groups(&self) -> Option<Array1<usize>> {
         self.groups.clone()
+    }
+
+    fn group_names(&self) -> &[String] {
+        &self.group_names
     }
 
     fn given_sides(&self, split: usize) -> Result<Option<&[Side]>> {

@@ -50,6 +50,9 @@ pub struct RecordedSkinFiles {
     pub stroke_mm: Option<f64>,
 }
 
+/// Frames with one row each, their numbers of rows and columns, and the names of the columns of a table.
+type NamedFrames = (Array2<f64>, (usize, usize), Option<Vec<String>>);
+
 impl RecordedSkinFiles {
     /// Reads the recorded files of the skin. Also returns the reading of a taxel that is not touched.
     ///
@@ -57,7 +60,7 @@ impl RecordedSkinFiles {
     /// If a file cannot be read or does not fit the others, a range exceeds the frames, the times of untouched frames are no ranges within 0 to 1,
     /// or the full scale equals the zero.
     pub fn read(&self) -> Result<(RecordedSkin, f64)> {
-        let (frames, shape) = self.frames_of(&self.frames)?;
+        let (frames, shape, columns) = self.frames_of(&self.frames, None)?;
         let n = frames.nrows();
         let times = Array1::linspace(0.0, 1.0, n);
         let forces = self
@@ -69,7 +72,7 @@ impl RecordedSkinFiles {
         let (untouched, untouched_times, touched) = match &self.untouched {
             UntouchedFrames::None => (Array2::zeros((0, frames.ncols())), Array1::zeros(0), all),
             UntouchedFrames::File { path, times } => {
-                let (untouched, other) = self.frames_of(path)?;
+                let (untouched, other, _) = self.frames_of(path, columns.as_deref())?;
                 if other != shape {
                     let given = format!("frames of {} × {} taxels", other.0, other.1);
                     let allowed =
@@ -114,8 +117,9 @@ impl RecordedSkinFiles {
 }
 
 impl RecordedSkinFiles {
-    /// Reads frames from a file, one per row; also returns the numbers of rows and columns of each frame.
-    fn frames_of(&self, path: &Path) -> Result<(Array2<f64>, (usize, usize))> {
+    /// Reads frames from a file, one per row; also returns the numbers of rows and columns of each frame, and the names of the columns of a table. These are
+    /// compared with the names `first`.
+    fn frames_of(&self, path: &Path, first: Option<&[String]>) -> Result<NamedFrames> {
         let spec = RecordedSpec::of_frames(path, [&self.order, &self.columns], self.grid);
         let shape = spec.shape_of("frames")?;
         if !shape.has_grid {
@@ -126,8 +130,11 @@ impl RecordedSkinFiles {
             let allowed = "frames of a grid of taxels with one value each (--grid ROWS,COLUMNS or --order names them)";
             return Err(Error::input(path.display(), given, allowed));
         }
-        let readings = spec.read_array("frames")?.into_numbers()?;
-        Ok((shape.arrange(readings), (shape.rows, shape.columns)))
+        let array = spec.read_array("frames")?;
+        array.check_columns_of(first, &self.frames.display().to_string())?;
+        let columns = array.columns.clone();
+        let readings = shape.arrange(array.into_numbers()?);
+        Ok((readings, (shape.rows, shape.columns), columns))
     }
 }
 

@@ -27,6 +27,8 @@ struct FramesOfFile {
     readings: Array2<f64>,
     kind: ElementKind,
     place: String,
+    /// Names of the columns of a table; `None` for other files.
+    columns: Option<Vec<String>>,
     /// Path of the file that contains the tangential forces; `None` if the frames contain them.
     shear_place: Option<String>,
     /// Time between the frames of each touch relative to the time between recorded frames; 1 without resampling.
@@ -60,9 +62,9 @@ impl SensorFrames {
     /// # Errors
     /// If a file cannot be read, or the test set has other axes than the training touches.
     pub fn read(name: String, spec: RecordedSpec, ceiling: Option<u64>) -> Result<Self> {
-        let train = spec.read_frames("frames", ceiling)?;
+        let train = spec.read_frames("frames", None, ceiling)?;
         let test = match spec.file_of("frames_test") {
-            Some(_) => Some(spec.read_frames("frames_test", ceiling)?),
+            Some(_) => Some(spec.read_frames("frames_test", Some(&train), ceiling)?),
             None => None,
         };
         if let Some(test) = &test {
@@ -125,7 +127,7 @@ impl SensorFrames {
     pub fn scale(&self, are_depths_known: bool) -> Result<SensorScale> {
         let (files, shape) = (self.files(), &self.train.shape);
         let mut is_masked = masked(&files, shape.rows * shape.columns)?;
-        let zeros = self.spec.zeros(shape)?;
+        let zeros = self.spec.zeros(shape, self.train.columns.as_deref())?;
         mask_placeholders(&files, &zeros, &mut is_masked);
         let zeros = self.spec.checked_zeros(zeros, &is_masked)?;
         check_precision(&files, &zeros, &is_masked)?;
@@ -189,7 +191,13 @@ pub fn joined_readings(sensors: Vec<SensorFrames>) -> [Array2<f64>; 2] {
 }
 
 impl RecordedSpec {
-    fn read_frames(&self, name: &'static str, ceiling: Option<u64>) -> Result<FramesOfFile> {
+    /// Reads the array `frames`, or the array `frames_test` beside the frames `first`.
+    fn read_frames(
+        &self,
+        name: &'static str,
+        first: Option<&FramesOfFile>,
+        ceiling: Option<u64>,
+    ) -> Result<FramesOfFile> {
         let path = self.file_of(name).unwrap_or(&self.frames);
         let mut shape = self.shape_of(name)?;
         let shear = self.shear_shape(name, &shape)?;
@@ -201,7 +209,10 @@ impl RecordedSpec {
         check_memory(bytes, ceiling, "frames")
             .map_err(|allowed| Error::input(path.display(), format!("{n} touches"), allowed))?;
         let array = self.read_array(name)?;
-        let (place, kind) = (array.place.clone(), array.kind);
+        if let Some(first) = first {
+            array.check_columns_of(first.columns.as_deref(), &first.place)?;
+        }
+        let (place, kind, columns) = (array.place.clone(), array.kind, array.columns.clone());
         let mut readings = shape.arrange(array.into_numbers()?);
         let mut shear_place = None;
         if let (Some((path, name)), Some(shape)) = (self.shear_of(name), shear) {
@@ -218,6 +229,7 @@ impl RecordedSpec {
             shape,
             kind,
             place,
+            columns,
             shear_place,
             steps,
         })

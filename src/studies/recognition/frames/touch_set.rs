@@ -65,6 +65,11 @@ pub trait TouchSet: Sync {
         None
     }
 
+    /// Returns the names of the groups by their numbers; empty if the numbers are the names.
+    fn group_names(&self) -> &[String] {
+        &[]
+    }
+
     /// Returns the side (training or test) of every touch in a split if the data define a test set or splits, otherwise `None`.
     ///
     /// # Errors

@@ -7,6 +7,7 @@ use crate::learning::command_classifier::CommandClassifier;
 use crate::studies::recognition::spec::foreign::{ClassifierChoice, CommandSpec, FeatureChoice};
 use crate::studies::recognition::spec::study::RecognitionSpec;
 use bubbletouch_sim::features::{Features, foreign};
+use serde_json::Value;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -14,13 +15,34 @@ impl RecognitionSpec {
     /// Returns the kinds of classifiers of the study.
     pub fn kinds(&self) -> Vec<ClassifierKind> {
         let choices = self.classifier.values();
-        choices.iter().map(ClassifierChoice::kind).collect()
+        let kind = |choice: &ClassifierChoice| match choice.kind() {
+            ClassifierKind::Foreign(foreign) => {
+                ClassifierKind::Foreign(foreign.with(&self.parameters_of(foreign.name())))
+            }
+            kind => kind,
+        };
+        choices.iter().map(kind).collect()
     }
 
     /// Returns the features of the study.
     pub fn all_features(&self) -> Vec<Features> {
         let choices = self.features.values().into_iter();
-        choices.map(|FeatureChoice(features)| features).collect()
+        let features = |FeatureChoice(features)| match features {
+            Features::Foreign(foreign) => {
+                Features::Foreign(foreign.with(&self.parameters_of(foreign.name())))
+            }
+            features => features,
+        };
+        choices.map(features).collect()
+    }
+
+    /// Returns the values that the study gives to parameters of a classifier or of features from outside of this program.
+    fn parameters_of(&self, name: &str) -> serde_json::Map<String, Value> {
+        let values = self.parameters.get(name).into_iter().flatten();
+        let value = |value| serde_json::to_value(value).expect("every TOML value has a JSON form");
+        values
+            .map(|(name, one)| (name.clone(), value(one)))
+            .collect()
     }
 
     /// Adds the classifiers and features that this thread provides and the study does not name.

@@ -6,6 +6,7 @@ use crate::inputs::check::Check;
 use crate::inputs::memory::GIB;
 use crate::inputs::toml_value::has_only;
 use crate::inputs::units::MM;
+use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::parameters;
 use crate::learning::data::temporal_features::TemporalFeatures;
@@ -185,6 +186,30 @@ impl Check<'_> {
                 let allowed = format!("{users} among recognition.classifier, or no such key");
                 return Err(self.error(&format!("recognition.{key}"), given, allowed));
             }
+        }
+        let features = recognition.all_features();
+        let of_classifiers = kinds.iter().filter_map(|kind| match kind {
+            ClassifierKind::Foreign(own) => {
+                Some((own.name(), own.check_parameters().map_err(Error::from)))
+            }
+            _ => None,
+        });
+        let of_features = features.iter().filter_map(|features| features.foreign());
+        let of_features = of_features.map(|own| (own.name(), own.check_parameters()));
+        let own: Vec<_> = of_classifiers.chain(of_features).collect();
+        for name in recognition.parameters.keys() {
+            if !own.iter().any(|(own, _)| own == name) {
+                let key = format!("recognition.parameters.{name}");
+                let given =
+                    "given, but the study has no classifier or features of your own with this name";
+                let allowed =
+                    "names of your own; parameters of other classifiers are keys of [recognition]";
+                return Err(self.error(&key, given, allowed));
+            }
+        }
+        for (name, checked) in own {
+            let key = format!("{}, key recognition.parameters.{name}: ", self.place);
+            checked.map_err(|error| error.under(key))?;
         }
         for kind in kinds {
             let classifier = Classifier {
@@ -381,7 +406,7 @@ impl RecognitionSpec {
             class_imbalance: Some(Axis::One(1.0)),
             next_touch: Some(Axis::One(NextTouch::Random)),
             test_fraction: Some(usual.test_share()),
-            parameters: ClassifierParameters::usual(),
+            of_kinds: ClassifierParameters::usual(),
             ..usual
         };
         toml::Table::try_from(usual).expect("every field of a study has a TOML form")

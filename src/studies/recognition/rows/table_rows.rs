@@ -309,7 +309,7 @@ pub struct Prediction {
     /// Test touches of the decision, separated by spaces: the position of each touch in its recording from 0 (touches of a separate test set follow), or its
     /// number in drawing order.
     touch: String => Subject;
-    /// Held-out groups of the touches, separated by spaces; empty if no groups are held out.
+    /// Held-out groups of the touches, as their file names them, separated by spaces; empty if no groups are held out.
     group: String => Note;
     /// Name of the object that is touched.
     truth: String => Subject "touched object";

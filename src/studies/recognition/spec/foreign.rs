@@ -41,7 +41,7 @@ pub struct CommandSpec {
 params! {
     /// Keys of a classifier that is a command.
     pub struct CommandKeys {
-        /// Program and its arguments. Paths of files are relative to the study file. The program gets three further arguments: the paths of `train.npz`
+        /// Program and its arguments. Paths of files are relative to the study file. `{alpha}` is a parameter with the value of `parameters.NAME.alpha`. The program gets three further arguments: the paths of `train.npz`
         /// (`features`, `labels`, `seed`), of `test.npz` (`features`) and of `labels.npy`, which the program writes. A change of a file among the arguments is
         /// another version.
         command: Vec<String>;

@@ -219,13 +219,14 @@ impl RecordedSpec {
     /// Returns the readings of untouched taxels, shape (rows · columns,), in row-major order.
     ///
     /// # Errors
-    /// If the file cannot be read or does not have one number for each taxel of `shape`, the axes of `frames`.
-    pub fn zeros(&self, shape: &FrameShape) -> Result<Vec<f64>> {
+    /// If the file cannot be read or does not have one number for each taxel of `shape`, the axes of `frames`, whose columns have the names `columns`.
+    pub fn zeros(&self, shape: &FrameShape, columns: Option<&[String]>) -> Result<Vec<f64>> {
         let path = match &self.zero {
             ZeroSpec::One(number) => return Ok(vec![*number; shape.rows * shape.columns]),
             ZeroSpec::Each(path) => path,
         };
         let array = FileArray::read(path, "zero")?;
+        array.check_columns_of(columns, &self.frames.display().to_string())?;
         let (place, given) = (array.place.clone(), array.shape.clone());
         let frames = self.with_frames("frames", FileArray::shape_of)?;
         shape

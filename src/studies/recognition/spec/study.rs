@@ -41,6 +41,7 @@ use bubbletouch_svm::scaling::Scaling;
 use bubbletouch_svm::{Multiclass, Solver};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Default random seed of all kinds of studies.
 pub(crate) const DEFAULT_SEED: u64 = 2018;
@@ -167,7 +168,11 @@ params! {
         readings_per_touch: Option<usize> => Count(1, MAX_READINGS), Choice, Axes;
         /// Keys that [classifiers declare](crate::learning::classifiers::parameters): `degree`, `n_trees` and others.
         #[serde(flatten)]
-        parameters: ClassifierParameters;
+        of_kinds: ClassifierParameters;
+        /// Parameters of your own classifiers and features: for the name of each, a table of values that replace its own, such as `parameters.svc.C = 10.0`.
+        /// Default: their own values.
+        #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+        parameters: BTreeMap<String, toml::Table> = BTreeMap::new() => Unchecked, Choice, Axes;
         /// Maximum size of the kernel values that an SVM solver keeps in memory, GiB. Default: 2. Above the limit, values are recomputed; this takes longer and may
         /// change the last digits.
         solver_memory_gib: Option<f64> => Positive, Choice, Axes;

@@ -483,7 +483,13 @@ impl RecognitionStudy {
                     scores[places[class]] = score.unwrap_or(f64::NAN);
                 }
                 let names = one.touches.iter().map(|&touch| &touches[touch][..]);
-                let groups: Vec<String> = one.groups.iter().map(usize::to_string).collect();
+                let names_of = self.parts[part].tested.group_names();
+                let name = |group: &usize| {
+                    names_of
+                        .get(*group)
+                        .map_or_else(|| group.to_string(), String::clone)
+                };
+                let groups: Vec<String> = one.groups.iter().map(name).collect();
                 let row = Prediction {
                     configuration: configuration.configuration,
                     trial: evaluation.score.trial,

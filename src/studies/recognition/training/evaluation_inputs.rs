@@ -193,7 +193,7 @@ impl Decision {
 impl TrainingInputs {
     fn new(recognition: &RecognitionSpec, kind: ClassifierKind, is_informed: bool) -> Self {
         let is_used = |key: &str| kind.uses(key);
-        let usual = recognition.parameters.applied_to(Classifier::new(kind));
+        let usual = recognition.of_kinds.applied_to(Classifier::new(kind));
         macro_rules! used {
             ($key:ident = $value:expr) => {
                 match is_used(stringify!($key)) {
