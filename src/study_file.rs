@@ -33,6 +33,18 @@ macro_rules! study_file {
         }
 
         $crate::study_file::toml_file!($study);
+
+        impl $study {
+            /// Reads the keys of a study; the seed of the command line replaces that of the file.
+            ///
+            /// # Errors
+            /// If a key is unknown, missing or of another type, or the seed is out of its range.
+            pub(crate) fn of(source: &$crate::studies::source::Source) -> $crate::Result<Self> {
+                let spec = Self::parse(&source.place, &source.text)?;
+                let seed = source.seed(spec.seed)?;
+                Ok(Self { seed, ..spec })
+            }
+        }
     };
 }
 pub(crate) use study_file;

@@ -6,7 +6,6 @@
 pub(crate) mod at_once;
 pub mod axes;
 pub mod axis;
-pub(crate) mod isolated;
 pub mod journal;
 pub(crate) mod program;
 pub mod progress;

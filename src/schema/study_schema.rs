@@ -22,16 +22,17 @@ pub(super) struct KindSchema {
 
 /// Returns the schema of each kind of study, recognition first.
 pub(super) fn kinds() -> Vec<KindSchema> {
-    let kinds = studies::kind_files().into_iter().rev();
-    let kinds = kinds.map(|mut kind| {
+    let kinds = studies::KINDS.iter().rev();
+    let kinds = kinds.map(|kind| {
+        let mut schema = (kind.schema)();
         if kind.about.table == studies::RECOGNITION_TABLE {
-            axes_schema::complete(&mut kind.schema);
+            axes_schema::complete(&mut schema);
         }
         KindSchema {
             table: kind.about.table,
             words: kind.about.words,
-            schema: kind.schema,
-            keys: kind.keys,
+            schema,
+            keys: (kind.keys)(),
         }
     });
     kinds.collect()

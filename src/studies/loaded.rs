@@ -1,11 +1,14 @@
 //! Conversion of a loaded study of any kind to a type-erased study.
+//!
+//! Comparison of recomputed work items with the rows of a result folder.
 
-use crate::engine::journal::identity::{Identity, SameStudy};
+use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;
 use crate::engine::program::PROGRAM;
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::provenance::{Manifest, REPORT};
-use crate::engine::work_items::run_options::{Part, RunOptions};
+use crate::engine::work_items::pending::{Part, RunOptions};
+use crate::engine::work_items::scale::{threads_within, within_memory};
 use crate::engine::work_items::study_run::{ItemFailure, StudyRun};
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::{Error, Result};
@@ -18,11 +21,8 @@ use crate::report::folder::{NamedFile, table_files, write_files};
 use crate::report::page::StudyAbout;
 use crate::report::study_content::Found;
 use crate::report::study_folder::{files_with, first_found, words_of};
-use crate::studies::any_study::{AnyStudy, Outcome};
-use crate::studies::ceiling::{threads_within, within_memory};
 use crate::studies::source::Source;
-use crate::studies::study::{Facts, Resumes, Study, run_items};
-use crate::studies::verified::same_rows;
+use crate::studies::study::{AnyStudy, Facts, Outcome, Study, run_items};
 use crate::table::{File, Table};
 use crate::toml_numbers::with_line;
 use rand::seq::SliceRandom;
@@ -55,12 +55,8 @@ impl<K: Study> Loaded<K> {
         let facts = kind.facts()?;
         let (toml, content) = (facts.toml.clone(), facts.content.clone());
         let items: Arc<[WorkItem]> = kind.work_items().into();
-        let same = match K::ABOUT.resumes {
-            Resumes::ButFor(keys) => SameStudy::ButFor(keys),
-            Resumes::SharedWork => SameStudy::SharesWork(items.clone()),
-        };
         Ok(Self {
-            identity: Identity::new(toml, content, same),
+            identity: Identity::new(toml, content, items.clone()),
             items,
             memory: source.memory,
             facts,
@@ -103,11 +99,10 @@ impl<K: Study> Loaded<K> {
             program: PROGRAM.to_owned(),
             ..of_run
         };
-        let findings = self.kind.findings(tables);
         let found = Found {
             tables,
-            charts: &findings.charts,
-            answers: &findings.answers,
+            charts: &self.kind.charts(tables),
+            answers: &self.kind.answers(tables),
         };
         files_with(&about, &found, || self.kind.beyond(tables))
     }
@@ -194,7 +189,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
         let found = match K::SUMMARY {
             Some(summary) => summary(tables, width),
             None => {
-                let answers = self.kind.findings(tables).answers;
+                let answers = self.kind.answers(tables);
                 words_of(first_found(tables).as_slice(), &answers, width)
             }
         };
@@ -312,4 +307,74 @@ impl<K: Study> Loaded<K> {
         let numbers: Vec<usize> = numbers.collect();
         Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
     }
+}
+
+/// Compares recomputed table rows with the rows of a result folder; returns the number of equal rows, without tables of computing times. If `is_whole` is set,
+/// all work items were recomputed; missing rows, additional rows and different summaries are then also errors.
+///
+/// # Errors
+/// If a row differs; the error names file and line.
+pub fn same_rows(folder: &Path, again: &[Table], is_whole: bool) -> Result<usize> {
+    let mut n_rows = 0;
+    let of_items = again
+        .iter()
+        .filter(|table| table.repeats && !table.csv.is_empty());
+    for table in of_items.filter(|table| is_whole || !table.is_summary) {
+        let path = folder.join(table.file);
+        let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
+        let content = String::from_utf8_lossy(&table.csv);
+        let header = content.lines().next().unwrap_or_default();
+        let same_columns = match is_whole || text.lines().next() == Some(header) {
+            true => None,
+            false => columns_of(&text, header),
+        };
+        let lines = same_columns.as_deref().unwrap_or(&text).lines();
+        let stands: BTreeSet<&str> = lines.clone().collect();
+        for row in content.lines().skip(1) {
+            if !stands.contains(row) {
+                let nearest = lines.zip(1..).max_by_key(|(other, _)| n_alike(row, other));
+                let (nearest, line) = nearest.unwrap_or(("(none)", 1));
+                return Err(Error::input(
+                    format!("{}:{line}", path.display()),
+                    format!("has the row\n  {nearest}"),
+                    format!("\n  again it is\n  {row}"),
+                ));
+            }
+            n_rows += 1;
+        }
+        if is_whole && content != text {
+            let given = "differs from the table that all work items give";
+            let allowed = "the rows of one run, each once, in their order";
+            return Err(Error::input(path.display(), given, allowed));
+        }
+    }
+    Ok(n_rows)
+}
+
+/// Returns a table with only the columns of `header`; `None` if the table lacks one of them. The restriction is needed because some columns exist only if a row
+/// has a value. For example, a table without groups has no column of group counts.
+fn columns_of(text: &str, header: &str) -> Option<String> {
+    let mut reader = csv::ReaderBuilder::new();
+    let mut reader = reader.has_headers(false).from_reader(text.as_bytes());
+    let mut rows = reader.records();
+    let names = rows.next()?.ok()?;
+    let places = header
+        .split(',')
+        .map(|column| names.iter().position(|name| name == column));
+    let places: Vec<usize> = places.collect::<Option<_>>()?;
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header.split(',')).ok()?;
+    for row in rows {
+        let row = row.ok()?;
+        writer
+            .write_record(places.iter().filter_map(|&place| row.get(place)))
+            .ok()?;
+    }
+    String::from_utf8(writer.into_inner().ok()?).ok()
+}
+
+/// Returns the number of equal bytes at the start of two rows. Rows begin with their configuration, so similar configurations have long equal starts.
+fn n_alike(a: &str, b: &str) -> usize {
+    let pairs = a.bytes().zip(b.bytes());
+    pairs.take_while(|(a, b)| a == b).count()
 }

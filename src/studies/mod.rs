@@ -3,26 +3,25 @@
 //! A kind of study ([`Study`]) lists the work items of a study, computes them, and makes tables, charts, pictures and answers. All
 //! commands use [`AnyStudy`], so that every command works with every kind.
 
-pub(crate) mod any_study;
-pub(crate) mod ceiling;
 pub(crate) mod groups;
 pub(crate) mod loaded;
 pub(crate) mod median_time;
 pub(crate) mod model_recognition;
 pub mod object_detail;
+pub(crate) mod prelude;
 pub mod recognition;
 pub mod reconstruction;
 pub(crate) mod source;
 pub mod stability;
 pub(crate) mod study;
-pub(crate) mod verified;
+#[cfg(test)]
+mod tests;
 pub mod whole_body;
 
-pub use crate::studies::any_study::{AnyStudy, Outcome};
 pub use crate::studies::loaded::Loaded;
 pub use crate::studies::source::Source;
 pub use crate::studies::study::{
-    About, AnyFile, Facts, Findings, Resumes, Study, TableFiles, run_whole,
+    About, AnyFile, AnyStudy, Facts, Outcome, Study, TableFiles, run_whole,
 };
 
 use crate::studies::groups::{found_and_cost, grouped};
@@ -30,27 +29,29 @@ use crate::studies::groups::{found_and_cost, grouped};
 use crate::engine::axes::AxisValues;
 use crate::error::{Error, Result};
 use crate::files::{OwnedFiles, RUN, with_folder};
-use crate::inputs::check::Check;
 use crate::inputs::keys::KeyAbout;
 use crate::inputs::params::Described;
 use crate::report::csv_tables::FAILURES_FILE;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::table::{FileAbout, Table};
-use crate::toml_numbers::with_line;
 use crate::toml_text;
 use std::path::Path;
 
 /// Registry entry of a kind of study, without static type, so that all kinds are in one list.
-struct Entry {
-    about: About,
+pub(crate) struct Entry {
+    /// Description of the kind of study.
+    pub about: About,
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
-    tables: TableFiles,
-    schema: fn() -> serde_json::Value,
-    keys: fn() -> Vec<KeyAbout>,
+    /// Table files that a study of the kind writes.
+    pub tables: TableFiles,
+    /// Function that returns the JSON Schema of the kind's study files.
+    pub schema: fn() -> serde_json::Value,
+    /// Function that returns the descriptions of all keys that a study file of the kind may have.
+    pub keys: fn() -> Vec<KeyAbout>,
 }
 
 /// Registry of all kinds of studies.
-const KINDS: &[Entry] = &[
+pub(crate) const KINDS: &[Entry] = &[
     entry::<object_detail::ObjectDetailStudy>(),
     entry::<reconstruction::ReconstructionStudy>(),
     entry::<stability::StabilityPlan>(),
@@ -69,29 +70,6 @@ const fn entry<K: Study>() -> Entry {
         schema: K::Spec::schema,
         keys: K::keys,
     }
-}
-
-/// Description of the files that a kind of study reads and writes.
-pub(crate) struct KindFiles {
-    /// Description of the kind of study.
-    pub about: About,
-    /// JSON Schema of the kind's study files.
-    pub schema: serde_json::Value,
-    /// Descriptions of all keys that a study file of the kind may have.
-    pub keys: Vec<KeyAbout>,
-    /// Table files that a study of the kind writes.
-    pub tables: TableFiles,
-}
-
-/// Returns a description of each kind of study's input and result files.
-pub(crate) fn kind_files() -> Vec<KindFiles> {
-    let kinds = KINDS.iter().map(|entry| KindFiles {
-        about: entry.about,
-        schema: (entry.schema)(),
-        keys: (entry.keys)(),
-        tables: entry.tables,
-    });
-    kinds.collect()
 }
 
 /// Returns the description of the table of failed work items, which every study may write.
@@ -123,7 +101,6 @@ pub fn kinds() -> impl Iterator<Item = &'static str> {
 /// # Errors
 /// If a key is unknown or out of its range, or a file cannot be read.
 pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
-    check_removed(&source.place, &source.text)?;
     let entry = find(&source.text).unwrap_or(&RECOGNITION);
     with_folder(source.folder.clone(), || (entry.load)(source))
 }
@@ -173,9 +150,7 @@ pub fn check_folder(study: &str, folder: &Path) -> Result<()> {
 /// # Errors
 /// If the folder has no study, or a table cannot be read or has other columns.
 pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
-    let Source { place, text, .. } = Source::of_results(folder)?;
-    check_removed(&place, &text)?;
-    let entry = find(&text).unwrap_or(&RECOGNITION);
+    let entry = find(&Source::of_results(folder)?.text).unwrap_or(&RECOGNITION);
     Ok((entry.about, entry.tables.read(folder)?))
 }
 
@@ -186,33 +161,6 @@ pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
 pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
     let found = loaded::FAILURES.read_if_there(folder)?;
     Ok(found.filter(|failures| failures.n_rows > 0))
-}
-
-/// Names of tables that identified removed kinds of studies, each with the name of its replacement.
-const REMOVED: [(&str, &str); 2] = [
-    (
-        "speed_accuracy",
-        "a recognition study (pareto.csv: accuracy and its time), [object_detail] (error and time of models of objects) or [stability] \
-         (engines and time steps)",
-    ),
-    (
-        "breaking_points",
-        "a recognition study with the same keys in [axes] and combine = \"one_at_a_time\" (\"test.touches.depth_mm\" drives test touches alone); \
-         robustness.csv says where half of the accuracy is lost",
-    ),
-];
-
-/// Returns an error if the text is a study file of a kind that no longer exists.
-fn check_removed(place: &str, text: &str) -> Result<()> {
-    let table = toml_text::table(text).unwrap_or_default();
-    match REMOVED.iter().find(|(key, _)| table.contains_key(*key)) {
-        Some((key, instead)) => {
-            let check = Check { place };
-            let error = check.error(key, "a kind of study that exists no more", instead);
-            Err(with_line(place, text, error))
-        }
-        None => Ok(()),
-    }
 }
 
 /// Returns the kind of study to which a study file's text belongs; `None` if no table of the file identifies a kind. Also returns `None` for invalid TOML,

@@ -1,19 +1,108 @@
 //! Trait [`Study`], which every kind of study implements, and the types that a kind provides.
+//!
+//! Type-erased studies, which all commands use.
 
+use crate::engine::journal::identity::Identity;
+use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::Progress;
-use crate::engine::work_items::{
-    ItemFailure, ItemRows, PendingItems, RunOptions, Scale, StudyRun, WorkItem,
-};
+use crate::engine::provenance::Manifest;
+use crate::engine::work_items::pending::{Part, RunOptions};
+use crate::engine::work_items::{ItemFailure, ItemRows, PendingItems, Scale, StudyRun, WorkItem};
 use crate::error::{Error, Result};
-use crate::inputs::keys::KeyAbout;
-use crate::inputs::params::{Described, keys_of};
+use crate::inputs::keys::{AxisPlace, KeyAbout};
+use crate::inputs::params::{Described, joined, keys_of};
+use crate::inputs::toml_value::is_at;
+use crate::report::chart_format::ChartFormat;
+use crate::report::page::StudyAbout;
 use crate::report::study_content::Beyond;
+use crate::studies::recognition::spec::keys::keys_without_axes;
 use crate::studies::source::Source;
 use crate::table::{ChartSpec, Columns, File, FileAbout, Table};
 use crate::toml_text;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
+use toml::Value;
+
+/// Type-erased study: a loaded and checked study of any kind.
+pub trait AnyStudy: Send {
+    /// Returns the identity of the study: hashes of all content on which its results depend.
+    fn identity(&self) -> &Identity;
+
+    /// Returns the number of work items of the study.
+    fn n_all(&self) -> usize;
+
+    /// Returns a text that describes the study before it runs: its question, its size and the memory that it needs.
+    ///
+    /// # Errors
+    /// If the study does not fit into the memory limit.
+    fn plan(&self) -> Result<String>;
+
+    /// Returns the number of work items in `part` that have no result in the journal.
+    fn n_pending(&self, part: Part, journal: &Journal) -> usize;
+
+    /// Returns the number of work items in `part` without a successful result in the journal.
+    fn n_without_success(&self, part: Part, journal: &Journal) -> usize;
+
+    /// Checks what the work items in `part` that have no successful result in the journal need of the running program. Commands call this function before they
+    /// write a file.
+    ///
+    /// # Errors
+    /// If the running program cannot compute one of these work items, for example because it does not provide a classifier.
+    fn check(&self, part: Part, journal: &Journal) -> Result<()> {
+        let missing = self.check_elsewhere(part, journal)?;
+        missing.into_iter().next().map_or(Ok(()), Err)
+    }
+
+    /// Checks what these work items need if they are computed on other machines. Returns an error for each program that this machine lacks and the other
+    /// machines may have.
+    ///
+    /// # Errors
+    /// If the running program cannot compute one of these work items on any machine.
+    fn check_elsewhere(&self, part: Part, journal: &Journal) -> Result<Vec<Error>>;
+
+    /// Runs the work items that have no result in the journal.
+    ///
+    /// # Errors
+    /// If the journal cannot be written, or the memory does not suffice for a single item. If an item fails and the first failure ends the run.
+    fn run(&self, options: &RunOptions) -> Result<Outcome>;
+
+    /// Writes all files of a run into a result folder: tables, charts, page, study file and manifest.
+    ///
+    /// # Errors
+    /// If a chart cannot be drawn or a file cannot be written.
+    fn write(
+        &self,
+        folder: &Path,
+        outcome: &Outcome,
+        run: Manifest,
+        chart_format: ChartFormat,
+    ) -> Result<()>;
+
+    /// Returns the text that the terminal shows at the end of a run, wrapped at `width` characters.
+    fn words(&self, outcome: &Outcome, width: usize) -> String;
+
+    /// Re-runs `n` work items, drawn at random with the seed `draw`, and compares their results with the stored ones. Returns a text that lists these items.
+    ///
+    /// # Errors
+    /// If a recomputed row differs from the row in the folder.
+    fn verify(&self, folder: &Path, n: usize, draw: u64, progress: &dyn Progress)
+    -> Result<String>;
+
+    /// Redraws the charts, pictures and page of a result folder from the tables in the folder. The question and the answers come from the study.
+    ///
+    /// # Errors
+    /// If a table cannot be read or a file cannot be written.
+    fn report(&self, folder: &Path, about: StudyAbout) -> Result<()>;
+}
+
+/// Result of running a study: its tables, and the number of failed work items.
+pub struct Outcome {
+    /// All result tables, including the table of failed work items.
+    pub tables: Vec<Table>,
+    /// Number of work items that failed.
+    pub n_failed: usize,
+}
 
 /// Description of a kind of study, which is available before any study file is read.
 #[derive(Clone, Copy, Debug)]
@@ -22,18 +111,6 @@ pub struct About {
     pub table: &'static str,
     /// Phrase of the form `a study that …` that describes the purpose of this kind of study.
     pub words: &'static str,
-    /// Rule that determines which studies of this kind may resume each other's runs.
-    pub resumes: Resumes,
-}
-
-/// Rule that determines which studies of a kind may continue a run that another study began.
-#[derive(Clone, Copy, Debug)]
-pub enum Resumes {
-    /// Two studies may resume each other's runs if they differ only in these keys or in keys of their subtables. Keys in this list are texts, or select work
-    /// items without changing their results.
-    ButFor(&'static [&'static str]),
-    /// Two studies may resume each other's runs if they have common work items. The name of a work item is derived from all inputs of the item.
-    SharedWork,
 }
 
 /// Content of the study file and of the files to which it refers.
@@ -64,8 +141,8 @@ impl Facts {
     /// Creates the facts of a study from its complete TOML text, which contains the question, the expectation and the seed.
     pub fn of_toml(toml: String, content: BTreeMap<String, String>) -> Self {
         let table = toml_text::table(&toml).unwrap_or_default();
-        let words = |key| table.get(key).and_then(toml::Value::as_str);
-        let seed = table.get("seed").and_then(toml::Value::as_integer);
+        let words = |key| table.get(key).and_then(Value::as_str);
+        let seed = table.get("seed").and_then(Value::as_integer);
         Self {
             question: words("question").unwrap_or_default().to_owned(),
             expected: words("expected").unwrap_or_default().to_owned(),
@@ -161,14 +238,6 @@ impl TableFiles {
     }
 }
 
-/// Charts and answers of a study, computed from its tables for the page and the terminal.
-pub struct Findings {
-    /// Charts of the results, the most important one first.
-    pub charts: Vec<ChartSpec>,
-    /// Answers as sentences, shown at the top of the page and at the end of the run.
-    pub answers: Vec<String>,
-}
-
 /// Kind of study, such as recognition studies. The engine runs, resumes, shards, merges, plans, verifies and reports studies of any kind.
 pub trait Study: Send + Sized + Sync + 'static {
     /// Description of the kind of study.
@@ -182,14 +251,15 @@ pub trait Study: Send + Sized + Sync + 'static {
     const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
 
     /// Specification of a study: the keys that its file may have.
-    type Spec: Described;
+    type Spec: Described + Serialize;
 
     /// Type of the result rows of a work item.
     type Rows: ItemRows;
 
-    /// Returns the descriptions of all keys of the kind's study files, in the order of a file.
+    /// Returns the descriptions of all keys of the kind's study files, in the order of a file. Without another implementation, only the keys of the kind's own
+    /// table may be swept.
     fn keys() -> Vec<KeyAbout> {
-        keys_of::<Self::Spec>().to_vec()
+        keys_without_axes(keys_of::<Self::Spec>(), &[Self::ABOUT.table])
     }
 
     /// Reads and checks a study, and loads its objects.
@@ -240,8 +310,13 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// If a file that the tables need cannot be read.
     fn tables(&self, rows: Self::Rows) -> Result<Vec<Table>>;
 
-    /// Returns the charts and answers that are computed from the result tables.
-    fn findings(&self, tables: &[Table]) -> Findings;
+    /// Returns the charts of the result tables, the most important one first.
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec>;
+
+    /// Returns answers as sentences, computed from the result tables. They are shown at the top of the page and at the end of the run.
+    fn answers(&self, _tables: &[Table]) -> Vec<String> {
+        Vec::new()
+    }
 
     /// Returns further pictures and sections for the page of the results.
     ///
@@ -250,6 +325,56 @@ pub trait Study: Send + Sized + Sync + 'static {
     fn beyond(&self, _tables: &[Table]) -> Result<Beyond> {
         Ok(Beyond::default())
     }
+}
+
+/// Returns the settings of a configuration as text, such as `taxels = 8, dt_s = 0.001`; settings without a value are left out.
+pub(crate) fn settings_words(configuration: &impl Serialize) -> String {
+    let settings = serde_json::to_value(configuration).unwrap_or_default();
+    let settings = settings.as_object().into_iter().flatten();
+    let settings = settings.filter(|(_, value)| !value.is_null());
+    let words =
+        settings.map(|(key, value)| format!("{key} = {}", value.to_string().trim_matches('"')));
+    words.collect::<Vec<_>>().join(", ")
+}
+
+/// Returns one work item for each configuration of a study. The configurations, with the further inputs of their items, contain the values of all swept keys, and
+/// no numbers of configurations.
+pub(crate) fn work_items_of<'a, S: Study, C: Serialize + 'a, I: Serialize>(
+    spec: &S::Spec,
+    configurations: impl IntoIterator<Item = (&'a C, I)>,
+) -> Vec<WorkItem> {
+    let shared = shared_inputs(spec, &S::keys());
+    let items = configurations.into_iter().enumerate();
+    let items = items.map(|(group, (configuration, further))| {
+        let inputs = (&shared, configuration, further);
+        WorkItem::of(settings_words(configuration), group, &inputs)
+    });
+    items.collect()
+}
+
+/// Returns the keys of a study that are inputs of all its work items. The words of the study are no inputs. Swept keys and lists of tables are inputs of single
+/// work items, which have one of their values or entries.
+pub(crate) fn shared_inputs(spec: &impl Serialize, keys: &[KeyAbout]) -> toml::Table {
+    let mut table = toml_text::table(&toml_text::write(spec)).unwrap_or_default();
+    for words in ["question", "expected"] {
+        table.remove(words);
+    }
+    without_swept("", table, keys)
+}
+
+fn without_swept(prefix: &str, table: toml::Table, keys: &[KeyAbout]) -> toml::Table {
+    let kept = table.into_iter().filter_map(|(name, value)| {
+        let path = joined(prefix, &name);
+        let is_swept = |key: &KeyAbout| key.path == path && key.axis == AxisPlace::Table;
+        let is_inside = |key: &KeyAbout| key.path != path && is_at(key.path, &path);
+        let value = match value {
+            Value::Table(inner) => Value::Table(without_swept(&path, inner, keys)),
+            Value::Array(_) if keys.iter().any(is_inside) => return None,
+            value => value,
+        };
+        (!keys.iter().any(is_swept)).then_some((name, value))
+    });
+    kept.collect()
 }
 
 /// Computes the work items of a study that the options select.

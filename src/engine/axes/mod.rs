@@ -14,7 +14,6 @@
 mod reader;
 mod study_axes;
 mod study_axis;
-mod toml_path;
 
 pub use reader::{read, to_toml};
 pub use study_axes::{AxisValue, AxisValues, CombineSpec, StudyAxes};

@@ -1,8 +1,7 @@
 //! Reader and writer of the table `[axes]` of a study file.
 
-use super::study_axes::{CombineSpec, StudyAxes};
+use super::study_axes::{CombineSpec, StudyAxes, find, insert, table_at};
 use super::study_axis::StudyAxis;
-use super::toml_path::{find, insert, table_at};
 use crate::error::{Error, Result};
 use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::toml_lines::line_of;

@@ -20,62 +20,27 @@ pub struct Identity {
     pub study: String,
     /// SHA-256 hash of each object's content, by the object's name.
     pub objects: BTreeMap<String, String>,
-    /// Rule that determines which other studies may resume the run. The rule is not stored in the journal.
+    /// Work items of the study, whose keys contain all their inputs except objects. They are not stored in the journal.
     #[serde(skip)]
-    same: SameStudy,
-}
-
-/// Rule that determines which studies of one program with equal objects may resume each other's runs.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SameStudy {
-    /// Studies may share a journal if they differ only in these keys and in keys of their subtables.
-    ButFor(&'static [&'static str]),
-    /// Studies may share a journal if it contains a result of one of these work items. The names of the items are derived from all inputs, so results cannot be
-    /// confused. A study that shares no result is rejected, because its tables would replace all existing tables.
-    SharesWork(Arc<[WorkItem]>),
-}
-
-impl Default for SameStudy {
-    fn default() -> Self {
-        Self::ButFor(&[])
-    }
-}
-
-impl SameStudy {
-    /// Returns a function that returns whether a key of the study file may differ between two studies that share a journal.
-    fn may_differ(&self, records: &Records) -> Box<dyn Fn(&str) -> bool> {
-        match self {
-            Self::ButFor(keys) => Box::new(|key| keys.iter().any(|name| is_at(key, name))),
-            Self::SharesWork(items) => {
-                let known = items.iter().filter_map(|item| {
-                    let (key, _) = records.get_key_value(&item.key())?;
-                    Some((&key[..], item.is_result))
-                });
-                let known: HashSet<(&str, bool)> = known.collect();
-                let shares = known.iter().any(|(_, is_result)| *is_result);
-                let is_same = shares || known.len() == records.len();
-                Box::new(move |_| is_same)
-            }
-        }
-    }
+    items: Arc<[WorkItem]>,
 }
 
 impl Identity {
     /// Creates the identity of a study, which consists of the TOML text, the objects and this program.
-    pub fn new(study: String, objects: BTreeMap<String, String>, same: SameStudy) -> Self {
+    pub fn new(study: String, objects: BTreeMap<String, String>, items: Arc<[WorkItem]>) -> Self {
         Self {
             program: crate::engine::program::PROGRAM.to_owned(),
             source: crate::engine::program::SOURCE.to_owned(),
             study,
             objects,
-            same,
+            items,
         }
     }
 
     /// Returns the differences between this study and the study that started a journal, one line per difference.
     pub fn differences(&self, (begun, records): (&Self, &Records)) -> Vec<String> {
-        let may_differ = self.same.may_differ(records);
-        let [theirs, ours] = [begun, self].map(|identity| identity.facts(&may_differ));
+        let shares_results = self.shares_results(records);
+        let [theirs, ours] = [begun, self].map(|identity| identity.facts(shares_results));
         let mut names: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
         names.retain(|name| ours.get(*name) != theirs.get(*name));
         let words = |value: Option<&String>| value.map_or("nothing".to_owned(), String::clone);
@@ -103,17 +68,30 @@ impl Identity {
         ))
     }
 
-    /// Returns the parts of the identity by name: program, objects, and all study keys that may not differ.
-    fn facts(&self, may_differ: impl Fn(&str) -> bool) -> BTreeMap<String, String> {
+    /// Returns whether the records of a journal belong to this study: they contain the result of a work item of the study, or no record of another study. A study
+    /// that shares no result is another study, because its tables would replace all existing tables.
+    fn shares_results(&self, records: &Records) -> bool {
+        let known = self.items.iter().filter_map(|item| {
+            let (key, _) = records.get_key_value(&item.key())?;
+            Some((&key[..], item.is_result))
+        });
+        let known: HashSet<(&str, bool)> = known.collect();
+        let shares = known.iter().any(|(_, is_result)| *is_result);
+        shares || known.len() == records.len()
+    }
+
+    /// Returns the parts of the identity by name: program, objects, and the keys of the study. Studies that share results may differ in their keys, because the
+    /// keys of work items contain their inputs.
+    fn facts(&self, shares_results: bool) -> BTreeMap<String, String> {
         let mut facts = BTreeMap::new();
-        if let Some(table) = toml_text::table(&self.study) {
+        let table = toml_text::table(&self.study).filter(|_| !shares_results);
+        if let Some(table) = table {
             add_keys("", &table, &mut facts);
         }
-        facts.retain(|key, _| !may_differ(key));
         facts.insert("program".to_owned(), self.program.clone());
         facts.insert("program's sources".to_owned(), self.source.clone());
         // The names of work items contain the contents of a recording, so its files may differ like other keys.
-        let has_to_be_same = |name: &str| !is_at(name, "recorded") || !may_differ(name);
+        let has_to_be_same = |name: &str| !is_at(name, "recorded") || !shares_results;
         let objects = self.objects.iter();
         let objects = objects.filter(|(name, _)| has_to_be_same(name));
         facts.extend(objects.map(|(name, hash)| (format!("object {name}"), hash.clone())));
@@ -152,30 +130,40 @@ fn without_versions(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::value::RawValue;
+
+    fn identity(study: &str, objects: &[(&str, &str)], n_items: usize) -> Identity {
+        let objects = objects.iter();
+        let objects = objects.map(|(name, hash)| (name.to_string(), hash.to_string()));
+        let items = (0..n_items).map(|n| WorkItem::of("item".to_owned(), n, &n));
+        Identity::new(study.to_owned(), objects.collect(), items.collect())
+    }
+
+    /// Returns a journal with the results of the first work items of a study.
+    fn records(of: &Identity, n: usize) -> Records {
+        let result = RawValue::from_string("1".to_owned()).unwrap();
+        let items = of.items[..n].iter();
+        items.map(|item| (item.key(), result.clone())).collect()
+    }
 
     #[test]
     fn what_differs_is_named_by_its_key_and_by_its_object() {
-        let identity = |study: &str, objects: &[(&str, &str)]| {
-            let objects = objects
-                .iter()
-                .map(|(name, hash)| (name.to_string(), hash.to_string()));
-            let same = SameStudy::ButFor(&["question"]);
-            Identity::new(study.to_owned(), objects.collect(), same)
-        };
         let old = identity(
-            "question = \"a\"\nseed = 1\n[skin]\npitch_mm = [1.0, 2.0]\nstiffness_n_per_m = 100.0",
+            "seed = 1\n[skin]\npitch_mm = [1.0, 2.0]\nstiffness_n_per_m = 100.0",
             &[("mug", "a1"), ("bowl", "b")],
+            1,
         );
         let new = identity(
-            "question = \"b\"\nseed = 1\n[skin]\npitch_mm = [1.0, 2.0]\nstiffness_n_per_m = 200.0\nstroke_mm = 5.0",
+            "seed = 1\n[skin]\npitch_mm = [1.0, 2.0]\nstiffness_n_per_m = 200.0\nstroke_mm = 5.0",
             &[("mug", "a2"), ("bowl", "b")],
+            0,
         );
         let expected = [
             "object mug: was a1, is a2",
             "skin.stiffness_n_per_m: was 100.0, is 200.0",
             "skin.stroke_mm: was nothing, is 5.0",
         ];
-        let records = &Records::default();
+        let records = &records(&old, 1);
         assert_eq!(new.differences((&old, records)), expected);
         assert!(old.check_same((&old, records), "x").is_ok());
         let said = new.check_same((&old, records), "results/x").unwrap_err();
@@ -184,15 +172,15 @@ mod tests {
     }
 
     #[test]
-    fn words_and_axes_of_a_study_leave_it_the_same() {
-        let identity = |study: &str| {
-            let same = SameStudy::ButFor(&["question", "trials", "skin.pitch_mm", "report"]);
-            Identity::new(study.to_owned(), BTreeMap::new(), same)
-        };
-        let old = identity("question = \"a\"\ntrials = 1\n[skin]\npitch_mm = 2.0");
-        let new = identity(
-            "question = \"b\"\ntrials = 2\n[skin]\npitch_mm = [1.0, 2.0]\n[report]\nsamples = [\"mug\"]",
-        );
-        assert!(new.check_same((&old, &Records::default()), "x").is_ok());
+    fn studies_that_share_a_result_may_differ_in_their_keys_but_not_in_their_objects() {
+        let mug = |hash| [("mug", hash)];
+        let old = identity("question = \"a\"\ntrials = 1", &mug("a1"), 2);
+        let new = identity("question = \"b\"\ntrials = 2", &mug("a1"), 3);
+        for n in [0, 1, 2] {
+            let records = records(&old, n);
+            assert!(new.check_same((&old, &records), "x").is_ok(), "{n}");
+            let other = identity(&new.study, &mug("a2"), 3);
+            assert!(other.check_same((&old, &records), "x").is_err(), "{n}");
+        }
     }
 }

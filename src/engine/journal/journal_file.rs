@@ -1,15 +1,19 @@
 //! Journal of a run: a single file with one writer at a time.
+//!
+//! Journals of a study's shards in a result folder, and their union.
+//!
+//! Exclusive lock of a journal file.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::line::{Decoded, NO_STUDY, Records, decode, encode};
-use crate::engine::journal::locked_file::LockedFile;
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::value::RawValue;
-use std::fs::OpenOptions;
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::ErrorKind::{NotADirectory, NotFound};
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
@@ -247,4 +251,112 @@ fn read_locked(path: &Path) -> Result<(LockedFile, Vec<u8>)> {
     file.read_to_end(&mut bytes)
         .map_err(|e| Error::io(path, "read", e))?;
     Ok((file, bytes))
+}
+
+impl Journal {
+    /// Adds the records of all shard journals in the given folders, and returns the number of these journals.
+    ///
+    /// # Errors
+    /// If a folder or a journal cannot be read, or a journal belongs to another study.
+    pub fn take_from_shards<'a>(
+        &mut self,
+        identity: &Identity,
+        folders: impl IntoIterator<Item = &'a Path>,
+    ) -> Result<usize> {
+        let mut n_journals = 0;
+        for folder in folders {
+            for path in shard_journals(folder)? {
+                n_journals += 1;
+                if let Some((begun, shard)) = Self::read(&path)? {
+                    let place = path.display().to_string();
+                    identity.check_same((&begun, shard.records()), &place)?;
+                    self.take_from(shard)?;
+                }
+            }
+        }
+        Ok(n_journals)
+    }
+}
+
+/// Returns the shard journals in a folder, sorted by name.
+fn shard_journals(folder: &Path) -> Result<Vec<PathBuf>> {
+    let failed = |e| Error::io(folder, "read", e);
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        // The file name has the form of `Shard::file_name`.
+        if name.starts_with("journal.") && name.contains("-of-") && name.ends_with(".jsonl") {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+/// File that is locked against other runs until this value is dropped.
+///
+/// A child process that another thread is starting has a copy of each open file until its own program begins. Closing the file would not end the lock in this
+/// time, so the lock is released explicitly.
+#[derive(Debug)]
+pub(crate) struct LockedFile(File);
+
+impl LockedFile {
+    /// Locks an open file. `path` is its path for error sentences.
+    ///
+    /// # Errors
+    /// If another run has locked the file, or the file system cannot lock files.
+    pub(crate) fn new(path: &Path, file: File) -> Result<Self> {
+        match file.try_lock() {
+            Ok(()) => Ok(Self(file)),
+            Err(TryLockError::WouldBlock) => Err(Error::input(
+                path.display(),
+                "another run is writing to it",
+                "one run in a folder at a time: wait for that one, or name another folder with --out",
+            )),
+            Err(TryLockError::Error(error)) => Err(Error::io(path, "lock", error)),
+        }
+    }
+}
+
+impl Deref for LockedFile {
+    type Target = File;
+
+    fn deref(&self) -> &File {
+        &self.0
+    }
+}
+
+impl DerefMut for LockedFile {
+    fn deref_mut(&mut self) -> &mut File {
+        &mut self.0
+    }
+}
+
+impl Drop for LockedFile {
+    fn drop(&mut self) {
+        // If this fails, the lock ends when the last copy of the file is closed.
+        let _ = self.0.unlock();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lock_ends_while_a_copy_of_the_file_is_open() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("journal.jsonl");
+        let file = File::create(&path).unwrap();
+        // A child process has such a copy before its program begins.
+        let copy = file.try_clone().unwrap();
+        let locked = LockedFile::new(&path, file).unwrap();
+        let open = || File::open(&path).unwrap();
+        let error = LockedFile::new(&path, open()).unwrap_err().to_string();
+        assert!(error.contains("another run is writing to it"), "{error}");
+        drop(locked);
+        LockedFile::new(&path, open()).unwrap();
+        drop(copy);
+    }
 }

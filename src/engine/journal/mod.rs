@@ -10,11 +10,9 @@
 pub(crate) mod identity;
 pub(crate) mod journal_file;
 pub(crate) mod line;
-pub(crate) mod locked_file;
 pub(crate) mod rename_old_results;
-mod shard_journals;
 
-pub use crate::engine::journal::identity::{Identity, SameStudy};
+pub use crate::engine::journal::identity::Identity;
 pub use crate::engine::journal::journal_file::{JOURNAL_FILE, Journal};
 pub use crate::engine::journal::line::Records;
 pub use crate::engine::journal::rename_old_results::{check_set_aside, rename_old_results};

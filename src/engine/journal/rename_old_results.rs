@@ -1,7 +1,6 @@
 //! Renaming of old result folders, so that new results do not replace them.
 
-use crate::engine::journal::journal_file::JOURNAL_FILE;
-use crate::engine::journal::locked_file::LockedFile;
+use crate::engine::journal::journal_file::{JOURNAL_FILE, LockedFile};
 use crate::error::{Error, Result};
 use crate::files::{MANIFEST_FILE, OwnedFiles, RUN, input_within};
 use std::fs::{self, File};

@@ -7,15 +7,13 @@ pub use crate::engine::work_items::work_item::WorkItem;
 pub mod any_number;
 pub(crate) mod pending;
 pub(crate) mod record;
-pub(crate) mod run_options;
 pub(crate) mod scale;
 pub(crate) mod shared;
 pub(crate) mod study_run;
 pub(crate) mod work_item;
 
-pub use crate::engine::work_items::pending::PendingItems;
+pub use crate::engine::work_items::pending::{Part, PendingItems, RunOptions};
 pub use crate::engine::work_items::record::ItemRows;
-pub use crate::engine::work_items::run_options::{Part, RunOptions};
 pub use crate::engine::work_items::scale::{Scale, Stage};
 pub use crate::engine::work_items::shared::Shared;
 pub use crate::engine::work_items::study_run::{ItemFailure, StudyRun};

@@ -1,13 +1,56 @@
 //! Pending work items, which a run has yet to compute.
+//!
+//! Options of a run: the work items to compute, and the place where their results are stored.
 
-use crate::engine::isolated::run_isolated;
+use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::Progress;
+use crate::engine::shard::Shard;
 use crate::engine::work_items::record::{ItemResult, ItemRows};
-use crate::engine::work_items::run_options::RunOptions;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
-use std::collections::BTreeMap;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
+
+/// Selection of the work items that a run of a study computes.
+#[derive(Clone, Copy, Debug)]
+pub enum Part<'a> {
+    /// All work items of the study are computed.
+    All,
+    /// Only the work items of one shard are computed.
+    Shard(Shard),
+    /// Only the work items with the given numbers are computed.
+    Only(&'a BTreeSet<usize>),
+}
+
+/// Options of a run: journal, treatment of failures, selection of work items, and progress.
+#[derive(Clone, Copy)]
+pub struct RunOptions<'a> {
+    /// Journal that contains finished work items and stores new ones.
+    pub journal: &'a Journal,
+    /// Whether the first failed work item ends the run.
+    pub fail_fast: bool,
+    /// Whether work items that failed in an earlier run are computed again.
+    pub retries: bool,
+    /// Selection of the work items that the run has to compute.
+    pub part: Part<'a>,
+    /// Receiver of progress reports.
+    pub progress: &'a dyn Progress,
+}
+
+impl<'a> RunOptions<'a> {
+    /// Returns options for computing all work items of a study without a journal; the first failure ends the run.
+    pub fn whole(progress: &'a dyn Progress) -> Self {
+        Self {
+            journal: Journal::none(),
+            fail_fast: true,
+            retries: false,
+            part: Part::All,
+            progress,
+        }
+    }
+}
 
 /// Work items that a run has yet to compute, identified by their numbers among all items of the study.
 pub struct PendingItems<'a, R> {
@@ -70,6 +113,22 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.keep(number, result)
     }
 
+    /// Computes all pending work items as a stage of the given name; `inputs` has the inputs of each work item of the study. Items are distributed one by one
+    /// among the threads, because their times may differ much.
+    ///
+    /// # Errors
+    /// If the journal cannot be written, or if `measure` fails and the first failure ends the run.
+    pub fn each<I: Sync>(
+        &self,
+        stage: &str,
+        inputs: &[I],
+        measure: impl Fn(&I) -> Result<R> + Sync,
+    ) -> Result<()> {
+        self.progress.stage(stage, self.n() as u64);
+        let inputs = inputs.par_iter().enumerate().with_max_len(1);
+        inputs.try_for_each(|(number, inputs)| self.finish(number, || measure(inputs)))
+    }
+
     /// Computes data that several pending work items use. If `make` fails, all pending items in `numbers` are recorded as failed, and `None` is returned.
     ///
     /// # Errors
@@ -114,4 +173,26 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         let results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
         (self.is_pending, results)
     }
+}
+
+/// Runs `work` and returns its result. An error or a panic is converted to a message, so that one failed work item does not end a long run. If `fail_fast` is true, a failure is returned as an error.
+fn run_isolated<T>(
+    fail_fast: bool,
+    work: impl FnOnce() -> Result<T>,
+) -> Result<std::result::Result<T, String>> {
+    if fail_fast {
+        return work().map(Ok);
+    }
+    Ok(match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(Ok(found)) => Ok(found),
+        Ok(Err(error)) => Err(error.to_string()),
+        Err(panic) => Err(format!("a defect of the program: {}", words(&*panic))),
+    })
+}
+
+/// Returns the message of a panic as text.
+fn words(panic: &(dyn std::any::Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("it did not say why")
 }

@@ -113,7 +113,7 @@ mod tests {
         let failed = in_journal(item("two"));
         assert_eq!(failed, Some(Err("no\nroom".to_owned())));
         assert_eq!(in_journal(item("three")), None);
-        let of_more = item("one").made_of("more");
+        let of_more = WorkItem::of("one".to_owned(), 0, &"more");
         assert_eq!(in_journal(of_more), None);
     }
 }

@@ -1,6 +1,7 @@
-//! Size of a study, estimated before it runs.
+//! Size of a study, estimated before it runs, and the number of threads that a limit of the memory allows.
 
-use crate::inputs::memory::{Bytes, memory_in_use};
+use crate::error::{Error, Result};
+use crate::inputs::memory::{Bytes, GIB, memory_in_use};
 use crate::spelling::counted;
 
 /// Approximate memory of the pictures and the page that a study draws at the end, bytes.
@@ -72,4 +73,45 @@ impl Scale {
         let loaded = memory_in_use().map_or(PROGRAM_BYTES, |bytes| bytes as f64);
         loaded + self.bytes + most.fold(DRAWING_BYTES, f64::max)
     }
+}
+
+/// Returns the largest number of threads for which the memory of a study stays within the limit `ceiling`, bytes. If there is no limit, returns the number of
+/// all threads.
+///
+/// # Errors
+/// If even one work item at a time exceeds the limit.
+pub fn threads_within(scale: &Scale, ceiling: Option<u64>) -> Result<usize> {
+    let Some(ceiling) = ceiling else {
+        return Ok(rayon::current_num_threads());
+    };
+    scale.n_at_once(ceiling as f64).ok_or_else(|| {
+        Error::input(
+            "memory",
+            format!("a ceiling of {:.2} GiB", ceiling as f64 / GIB),
+            format!(
+                "at least {:.2} GiB for this study; fewer touches, frames, taxels or measurements take less",
+                scale.least_bytes() / GIB
+            ),
+        )
+    })
+}
+
+/// Runs `work` on the number of threads that the memory limit allows. The result does not depend on the number of threads.
+///
+/// # Errors
+/// If [`threads_within`] or `work` fails.
+pub fn within_memory<T: Send>(
+    scale: &Scale,
+    ceiling: Option<u64>,
+    work: impl FnOnce() -> Result<T> + Send,
+) -> Result<T> {
+    let n_threads = threads_within(scale, ceiling)?;
+    if n_threads == rayon::current_num_threads() {
+        return work();
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
+    let pool = pool
+        .build()
+        .map_err(|error| Error::input("threads", error, "a number that the system can start"))?;
+    pool.install(work)
 }

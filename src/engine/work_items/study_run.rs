@@ -1,8 +1,7 @@
 //! Run of a study's work items; results that the journal already contains are reused.
 
-use crate::engine::work_items::pending::PendingItems;
+use crate::engine::work_items::pending::{Part, PendingItems, RunOptions};
 use crate::engine::work_items::record::{ItemResult, ItemRows};
-use crate::engine::work_items::run_options::{Part, RunOptions};
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::row;

@@ -1,7 +1,7 @@
 //! Charts and answers of an object-detail study: deflection errors and costs of models, and the accuracy of classifiers trained on models.
 
-use crate::studies::object_detail::study::{ObjectDetailStudy, RECOGNITION};
-use crate::studies::object_detail::variants::within;
+use crate::studies::object_detail::measured::within;
+use crate::studies::object_detail::rows::RECOGNITION;
 use crate::table::{ChartSpec, Table, short_number};
 
 /// Chart axis: a part of the chart's file name, the words for the title, and the name of the table column.
@@ -53,59 +53,57 @@ const LEARNED: [Named; 2] = [
     ),
 ];
 
-impl ObjectDetailStudy {
-    /// Returns charts of the deflection error by cost. If classifiers were trained, charts of their accuracy follow.
-    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        let by_cost = [
-            (DEFLECTION_ERRORS, SPHERES),
-            (DEFLECTION_ERRORS, TIME),
-            (SURFACE, SPHERES),
-        ];
-        let errors = by_cost.into_iter().flat_map(|(errors, (by, of, x))| {
-            errors.map(|(name, words, y)| {
-                let (name, title) = (format!("{name}_by_{by}"), format!("{words} by {of}"));
-                ChartSpec {
-                    note: "Medians over objects with their quartiles.".to_owned(),
-                    lines: vec!["method".to_owned()],
-                    ..tables[3].chart(name, title, (y, x))
-                }
-            })
-        });
-        let by_error = |learned: &Table| {
-            LEARNED.map(|(name, title, y)| ChartSpec {
+/// Returns charts of the deflection error by cost. If classifiers were trained, charts of their accuracy follow.
+pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
+    let by_cost = [
+        (DEFLECTION_ERRORS, SPHERES),
+        (DEFLECTION_ERRORS, TIME),
+        (SURFACE, SPHERES),
+    ];
+    let errors = by_cost.into_iter().flat_map(|(errors, (by, of, x))| {
+        errors.map(|(name, words, y)| {
+            let (name, title) = (format!("{name}_by_{by}"), format!("{words} by {of}"));
+            ChartSpec {
+                note: "Medians over objects with their quartiles.".to_owned(),
                 lines: vec!["method".to_owned()],
-                panels: Some("classifier".to_owned()),
-                ..learned.chart(
-                    format!("{name}_by_deflection_error"),
-                    title,
-                    (y, "error_own_contact_median_mm"),
-                )
-            })
-        };
-        let learned = learned(tables).into_iter().flat_map(by_error);
-        errors.chain(learned).collect()
-    }
+                ..tables[3].chart(name, title, (y, x))
+            }
+        })
+    });
+    let by_error = |learned: &Table| {
+        LEARNED.map(|(name, title, y)| ChartSpec {
+            lines: vec!["method".to_owned()],
+            panels: Some("classifier".to_owned()),
+            ..learned.chart(
+                format!("{name}_by_deflection_error"),
+                title,
+                (y, "error_own_contact_median_mm"),
+            )
+        })
+    };
+    let learned = learned(tables).into_iter().flat_map(by_error);
+    errors.chain(learned).collect()
+}
 
-    /// Returns the answers: the most exact model, the cheapest models within half a millimetre, and the loss of accuracy by training on models.
-    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
-        let costs = &tables[3];
-        let rows = 0..costs.n_rows;
-        let models: Vec<usize> = rows
-            .filter(|&row| costs.number("n_spheres_median", row) > 0.0)
-            .collect();
-        let best = least(costs, models.iter().copied(), "error_median_mm");
-        let best = best.map(|said| format!("The most exact model of spheres is {said}"));
-        let fewest = OF_SPHERES.into_iter().filter_map(|method| {
-            let small = models.iter().copied().filter(|&row| {
-                let error = costs.number("error_median_mm", row);
-                costs.word("method", row) == method && error <= SMALL_MM
-            });
-            let said = least(costs, small, "n_spheres_median")?;
-            Some(format!("Fewest spheres within {SMALL_MM} mm by {said}"))
+/// Returns the answers: the most exact model, the cheapest models within half a millimetre, and the loss of accuracy by training on models.
+pub(super) fn answers(tables: &[Table]) -> Vec<String> {
+    let costs = &tables[3];
+    let rows = 0..costs.n_rows;
+    let models: Vec<usize> = rows
+        .filter(|&row| costs.number("n_spheres_median", row) > 0.0)
+        .collect();
+    let best = least(costs, models.iter().copied(), "error_median_mm");
+    let best = best.map(|said| format!("The most exact model of spheres is {said}"));
+    let fewest = OF_SPHERES.into_iter().filter_map(|method| {
+        let small = models.iter().copied().filter(|&row| {
+            let error = costs.number("error_median_mm", row);
+            costs.word("method", row) == method && error <= SMALL_MM
         });
-        let misled = learned(tables).and_then(misled_most);
-        best.into_iter().chain(fewest).chain(misled).collect()
-    }
+        let said = least(costs, small, "n_spheres_median")?;
+        Some(format!("Fewest spheres within {SMALL_MM} mm by {said}"))
+    });
+    let misled = learned(tables).and_then(misled_most);
+    best.into_iter().chain(fewest).chain(misled).collect()
 }
 
 /// Returns the table of trained classifiers; `None` if the study has trained none.

@@ -1,14 +1,11 @@
 //! Deflections on a model, and their comparison with the deflections on the exact mesh.
 
 use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
-use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Object};
 use crate::quantile::quantile;
-use crate::random::Seed;
 use crate::studies::median_time::median_s;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::touches::drawn_touches::draw_touches;
+use crate::studies::prelude::*;
 use crate::world::Placement;
 
 /// Summary of |δ − δ\*| over taxels, where δ is the deflection by a model and δ\* the deflection by the exact object.

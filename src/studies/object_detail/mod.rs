@@ -19,13 +19,9 @@ mod measured;
 mod plan;
 mod recognition;
 pub mod rows;
-mod spec;
 mod study;
-mod summary;
-mod variants;
 
-pub use crate::studies::object_detail::plan::ObjectDetailPlan;
-pub use crate::studies::object_detail::spec::{
-    DetailMethod, DetailRecognitionSpec, ObjectDetailSpec, ObjectDetailStudySpec,
+pub use crate::studies::object_detail::plan::{
+    DetailMethod, DetailRecognitionSpec, ObjectDetailPlan, ObjectDetailSpec, ObjectDetailStudySpec,
 };
 pub use crate::studies::object_detail::study::{DetailRows, ObjectDetailStudy};

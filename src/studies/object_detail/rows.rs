@@ -1,8 +1,8 @@
 //! Rows of the result tables of an object-detail study: one plain struct for each kind of row, with one field per column.
 
 use crate::learning::classifiers::ClassifierKind;
-use crate::row;
-use crate::studies::object_detail::spec::DetailMethod;
+use crate::studies::object_detail::plan::DetailMethod;
+use crate::studies::prelude::*;
 
 /// Display names of the methods that replace a mesh by a model.
 const METHODS: &[(&str, &str)] = &[("mesh", "exact mesh")];
@@ -165,3 +165,10 @@ pub struct LevelTime {
     /// Computing time of a touch of the model on one thread, median over objects, µs.
     us_per_touch_median: f64 => Cost "time of a touch, one thread" in "µs": Log;
 } }
+
+/// File of the table of classifiers, which only studies with a table `[object_detail.recognition]` have.
+pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
+    "object_detail_recognition.csv",
+    "Classifiers that learned from models",
+    "",
+);

@@ -1,27 +1,23 @@
 //! Object-detail study: computes models and their errors on all threads, and then computing times on one thread.
+//!
+//! Summary of the results over all objects, for each method and tolerance.
 
-use crate::engine::work_items::pending::PendingItems;
-use crate::engine::work_items::scale::{Scale, Stage};
-use crate::engine::work_items::work_item::WorkItem;
-use crate::error::Result;
-use crate::inputs::keys::KeyAbout;
-use crate::inputs::object_files::{NamedMesh, load_named_meshes, objects_content};
+use crate::engine::work_items::scale::Stage;
+use crate::inputs::object_files::{NamedMesh, load_named_meshes};
 use crate::inputs::packings::packing_path;
 use crate::inputs::units::MM;
+use crate::quantile::quantile;
+use crate::studies::grouped;
 use crate::studies::model_recognition::check_apart;
-use crate::studies::object_detail::measured::Measured;
-use crate::studies::object_detail::plan::ObjectDetailPlan;
-use crate::studies::object_detail::plan::object_detail_keys;
+use crate::studies::object_detail::charts::{answers, charts};
+use crate::studies::object_detail::measured::{Level, Measured, levels};
+use crate::studies::object_detail::plan::{DetailMethod, ObjectDetailPlan, ObjectDetailStudySpec};
 use crate::studies::object_detail::recognition::{Learned, Sensor};
 use crate::studies::object_detail::rows::{
     DetailConfiguration, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
+    RECOGNITION,
 };
-use crate::studies::object_detail::spec::ObjectDetailStudySpec;
-use crate::studies::object_detail::summary::{costs, summary};
-use crate::studies::object_detail::variants::levels;
-use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
-use crate::table::{File, Table};
+use crate::studies::prelude::*;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -58,11 +54,6 @@ const COST: File<(DetailSummary, LevelTime)> =
     File::new("object_detail_cost.csv", "Cost of deflection errors", "")
         .of_times()
         .summary();
-pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
-    "object_detail_recognition.csv",
-    "Classifiers that learned from models",
-    "",
-);
 
 /// Returns the number of the work item that computes all models of an object. For an index past the last object, returns the number of the first classifier's
 /// item.
@@ -109,11 +100,6 @@ impl Study for ObjectDetailStudy {
     const ABOUT: About = About {
         table: "object_detail",
         words: "a study of how detailed objects are",
-        resumes: Resumes::ButFor(&[
-            "question",
-            "expected",
-            "object_detail.recognition.classifiers",
-        ]),
     };
     const TABLES: TableFiles = TableFiles {
         always: &[&DETAIL, &SUMMARY, &TIMING, &COST],
@@ -124,13 +110,8 @@ impl Study for ObjectDetailStudy {
     type Spec = ObjectDetailStudySpec;
     type Rows = DetailRows;
 
-    fn keys() -> Vec<KeyAbout> {
-        object_detail_keys()
-    }
-
     fn load(source: &Source) -> Result<Self> {
-        let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;
-        spec.seed = source.seed(spec.seed)?;
+        let mut spec = ObjectDetailStudySpec::of(source)?;
         source.replace_objects(&mut spec.objects);
         let plan = ObjectDetailPlan::new(&source.place, spec)?;
         let meshes = load_named_meshes(&plan.meshes, &plan.spec.objects)?;
@@ -193,15 +174,17 @@ impl Study for ObjectDetailStudy {
     /// Returns all work items. For each object, one item computes its models, and one item measures their computing times. The items of classifiers follow;
     /// they need the models of all objects.
     fn work_items(&self) -> Vec<WorkItem> {
+        let shared = shared_inputs(&self.plan.spec, &Self::keys());
+        let inputs = (&shared, levels(&self.plan));
         let mut items = Vec::new();
         for (group, NamedMesh { name, .. }) in self.meshes.iter().enumerate() {
-            let mut add = |name| items.push(WorkItem::new(name, group));
+            let mut add = |name| items.push(WorkItem::of(name, group, &inputs));
             add(format!("models of {name}"));
             add(format!("times of {name}"));
         }
         let group = self.meshes.len();
         let learned = Learned::all(&self.plan).into_iter();
-        items.extend(learned.map(|learned| WorkItem::new(learned.name(), group)));
+        items.extend(learned.map(|learned| WorkItem::of(learned.name(), group, &inputs)));
         items
     }
 
@@ -260,10 +243,93 @@ impl Study for ObjectDetailStudy {
         Ok(tables)
     }
 
-    fn findings(&self, tables: &[Table]) -> Findings {
-        Findings {
-            charts: self.charts(tables),
-            answers: self.answers(tables),
-        }
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts(tables)
     }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers(tables)
+    }
+}
+
+type Row = (DetailConfiguration, DetailScore);
+
+fn level(configuration: &DetailConfiguration) -> Level {
+    (configuration.method, configuration.tolerance_mm)
+}
+
+/// Returns one row for each method and tolerance, which summarises all objects, in the order of first occurrence.
+pub(super) fn summary(rows: &[Row]) -> Vec<DetailSummary> {
+    let levels = grouped(rows, |(configuration, _)| level(configuration)).into_iter();
+    levels
+        .map(|(level, of_level)| summary_row(level, &of_level, rows))
+        .collect()
+}
+
+fn summary_row((method, tolerance_mm): Level, of_level: &[&Row], rows: &[Row]) -> DetailSummary {
+    let quartiles = |value: &dyn Fn(&Row) -> f64| {
+        let mut values: Vec<f64> = of_level.iter().map(|row| value(row)).collect();
+        [0.25, 0.5, 0.75, 1.0].map(|part| quantile(&mut values, part))
+    };
+    let spheres = quartiles(&|(configuration, _)| configuration.n_spheres as f64);
+    let surface = quartiles(&|(_, score)| score.surface_error_mm);
+    let farthest = quartiles(&|(_, score)| score.protrusion_max_mm.max(score.gap_max_mm));
+    let error = quartiles(&|(_, score)| score.error_mm);
+    let after = quartiles(&|(_, score)| score.error_after_offset_mm);
+    let own = quartiles(&|(_, score)| score.error_own_contact_mm);
+    let ratios = of_level.iter().filter_map(|(configuration, score)| {
+        let packing = rows.iter().find(|(other, _)| {
+            other.object == configuration.object
+                && level(other) == (DetailMethod::Packing, tolerance_mm)
+        })?;
+        Some(score.error_after_offset_mm / packing.1.error_after_offset_mm)
+    });
+    let mut ratios: Vec<f64> = ratios.collect();
+    DetailSummary {
+        method,
+        tolerance_mm,
+        n_objects: of_level.len(),
+        n_spheres_q1: spheres[0],
+        n_spheres_median: spheres[1],
+        n_spheres_q3: spheres[2],
+        surface_error_q1_mm: surface[0],
+        surface_error_median_mm: surface[1],
+        surface_error_q3_mm: surface[2],
+        surface_error_max_q1_mm: farthest[0],
+        surface_error_max_median_mm: farthest[1],
+        surface_error_max_q3_mm: farthest[2],
+        error_q1_mm: error[0],
+        error_median_mm: error[1],
+        error_q3_mm: error[2],
+        error_worst_mm: error[3],
+        error_after_offset_q1_mm: after[0],
+        error_after_offset_median_mm: after[1],
+        error_after_offset_q3_mm: after[2],
+        error_after_offset_worst_mm: after[3],
+        error_own_contact_median_mm: own[1],
+        error_own_contact_worst_mm: own[3],
+        times_packing: (!ratios.is_empty()).then(|| quantile(&mut ratios, 0.5)),
+    }
+}
+
+/// Returns the computing time per touch for each method and tolerance.
+pub(super) fn costs(
+    summary: &[DetailSummary],
+    timing: &[(DetailConfiguration, DetailTime)],
+) -> Vec<(DetailSummary, LevelTime)> {
+    let cost = |row: &DetailSummary| {
+        let of_level = (row.method, row.tolerance_mm);
+        let times = timing
+            .iter()
+            .filter(|(configuration, _)| level(configuration) == of_level);
+        let mut times: Vec<f64> = times.map(|(_, time)| time.us_per_touch).collect();
+        let us_per_touch_median = quantile(&mut times, 0.5);
+        (
+            row.clone(),
+            LevelTime {
+                us_per_touch_median,
+            },
+        )
+    };
+    summary.iter().map(cost).collect()
 }

@@ -1,71 +1,64 @@
 //! Charts and answers of a reconstruction study.
 
-use crate::error::Result;
 use crate::report::advice::Candidates;
-use crate::report::study_content::NamedPicture;
-use crate::studies::reconstruction::study::{BOTH, ReconstructionStudy};
-use crate::table::{Along, At, ChartSpec, Mark, Rule, Table, Value};
+use crate::studies::prelude::*;
+use crate::studies::reconstruction::rows::BOTH;
+use crate::table::{Along, At, Rule, Value};
 
 /// Time of a frame at 1,000 frames per second, µs.
 const US_PER_FRAME: f64 = 1000.0;
 
-impl ReconstructionStudy {
-    /// Returns a chart of the reconstruction error by computing time with one panel per noise level, and for each level charts of the error by the number of
-    /// measurements.
-    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        let configurations = &tables[0];
-        let mut charts: Vec<ChartSpec> = by_time(tables).into_iter().collect();
-        for of_level in configurations.groups(&["noise_std"], 0..configurations.n_rows) {
-            let ensembles = configurations.groups(&["ensemble"], of_level.iter().copied());
-            let compressed = ensembles
-                .iter()
-                .filter(|rows| configurations.word("ensemble", rows[0]) != "identity");
-            charts.extend(compressed.map(|rows| by_measurements(configurations, rows)));
-        }
-        charts
+/// Returns a chart of the reconstruction error by computing time with one panel per noise level, and for each level charts of the error by the number of
+/// measurements.
+pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
+    let configurations = &tables[0];
+    let mut charts: Vec<ChartSpec> = by_time(tables).into_iter().collect();
+    for of_level in configurations.groups(&["noise_std"], 0..configurations.n_rows) {
+        let ensembles = configurations.groups(&["ensemble"], of_level.iter().copied());
+        let compressed = ensembles
+            .iter()
+            .filter(|rows| configurations.word("ensemble", rows[0]) != "identity");
+        charts.extend(compressed.map(|rows| by_measurements(configurations, rows)));
     }
+    charts
+}
 
-    pub(crate) fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        self.sample_frames(tables)
-    }
-
-    /// Returns answers for each noise level: the smallest number of measurements that is as good as the noisy frame, for all levels first, and the most accurate
-    /// configuration.
-    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
-        let (configurations, timing) = (&tables[0], &tables[2]);
-        let number = |column: &'static str| move |row: usize| configurations.number(column, row);
-        let (error, full) = (number("error"), number("full_sampling_error"));
-        let said = |row: usize| {
-            format!(
-                "{:.2} in {} a frame ({})",
-                error(row),
-                timing.words("us_per_frame", row),
-                cell_words(configurations, row)
-            )
-        };
-        let levels = configurations.groups(&["noise_std"], 0..configurations.n_rows);
-        let fewest = levels.iter().filter_map(|rows| {
-            let as_good = rows.iter().copied().filter(|&row| error(row) <= full(row));
-            let key = |row: usize| (number("measurements")(row), error(row));
-            let row = as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"))?;
-            Some(format!(
-                "With {}, {} measurements are as good as the noisy frame itself (error {:.2}): error {}.",
-                noise_words(configurations, row),
-                configurations.words("measurements", row),
-                full(row),
-                said(row)
-            ))
-        });
-        let least = levels.iter().filter_map(|rows| {
-            let row = rows
-                .iter()
-                .copied()
-                .min_by(|&a, &b| error(a).total_cmp(&error(b)))?;
-            let noise = noise_words(configurations, row);
-            Some(format!("With {noise}: least error {}.", said(row)))
-        });
-        fewest.chain(least).collect()
-    }
+/// Returns answers for each noise level: the smallest number of measurements that is as good as the noisy frame, for all levels first, and the most accurate
+/// configuration.
+pub(super) fn answers(tables: &[Table]) -> Vec<String> {
+    let (configurations, timing) = (&tables[0], &tables[2]);
+    let number = |column: &'static str| move |row: usize| configurations.number(column, row);
+    let (error, full) = (number("error"), number("full_sampling_error"));
+    let said = |row: usize| {
+        format!(
+            "{:.2} in {} a frame ({})",
+            error(row),
+            timing.words("us_per_frame", row),
+            cell_words(configurations, row)
+        )
+    };
+    let levels = configurations.groups(&["noise_std"], 0..configurations.n_rows);
+    let fewest = levels.iter().filter_map(|rows| {
+        let as_good = rows.iter().copied().filter(|&row| error(row) <= full(row));
+        let key = |row: usize| (number("measurements")(row), error(row));
+        let row = as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"))?;
+        Some(format!(
+            "With {}, {} measurements are as good as the noisy frame itself (error {:.2}): error {}.",
+            noise_words(configurations, row),
+            configurations.words("measurements", row),
+            full(row),
+            said(row)
+        ))
+    });
+    let least = levels.iter().filter_map(|rows| {
+        let row = rows
+            .iter()
+            .copied()
+            .min_by(|&a, &b| error(a).total_cmp(&error(b)))?;
+        let noise = noise_words(configurations, row);
+        Some(format!("With {noise}: least error {}.", said(row)))
+    });
+    fewest.chain(least).collect()
 }
 
 /// Returns a chart of the reconstruction error by the time of a frame, with one panel per noise level and one colour per solver.

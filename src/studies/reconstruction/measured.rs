@@ -1,17 +1,13 @@
 //! Reconstruction of frames by all configurations that use equal measurements.
 
-use crate::engine::work_items::pending::PendingItems;
-use crate::engine::work_items::shared::Shared;
-use crate::error::Result;
-use crate::random::Seed;
 use crate::sensing::{Basis, Extremes, Reconstructor, SensedDictionary};
+use crate::studies::prelude::*;
 use crate::studies::reconstruction::plan::ReconstructionPlan;
 use crate::studies::reconstruction::rows::{
     EnsembleStatistics, ReconstructionConfiguration, ReconstructionRow, ReconstructionRows,
     ReconstructionTime,
 };
-use crate::studies::reconstruction::score::{Found, square_errors};
-use crate::studies::reconstruction::touches::{Noisy, Touches};
+use crate::studies::reconstruction::touches::{Found, Noisy, Touches, square_errors};
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use std::time::Instant;

@@ -9,14 +9,12 @@
 mod charts;
 mod frames;
 mod measured;
-mod memory;
 mod plan;
 pub mod rows;
-mod score;
-mod spec;
 mod study;
 mod touches;
 
-pub use crate::studies::reconstruction::plan::ReconstructionPlan;
-pub use crate::studies::reconstruction::spec::{ReconstructionSpec, ReconstructionStudySpec};
+pub use crate::studies::reconstruction::plan::{
+    ReconstructionPlan, ReconstructionSpec, ReconstructionStudySpec,
+};
 pub use crate::studies::reconstruction::study::ReconstructionStudy;

@@ -1,8 +1,8 @@
 //! Rows of the result tables of a reconstruction study: one plain struct for each kind of row, with one field per column.
 
-use crate::row;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
+use crate::studies::prelude::*;
 
 /// Display names of the ensembles (random measurement matrices), each preceded by the name in result tables.
 const ENSEMBLES: &[(&str, &str)] = &[("sbhe", "SBHE"), ("gaussian", "Gaussian")];
@@ -150,6 +150,9 @@ pub struct EnsembleStatistics {
     /// is a lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
     delta_lower_bound: f64 => Value(Less) "lower bound of δ": Linear;
 } }
+
+/// Name of the table of errors and times, which is not written to a file.
+pub(super) const BOTH: &str = "configurations.csv";
 
 /// Configuration of a work item, with its reconstruction error and computing time.
 pub type ReconstructionRow = (

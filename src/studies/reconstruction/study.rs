@@ -1,32 +1,24 @@
 //! Reconstruction study: simulates touches and computes dictionaries once, then reconstructs frames with every configuration.
+//!
+//! Memory estimate of a reconstruction study.
 
 use crate::engine::progress::Progress;
-use crate::engine::work_items::pending::PendingItems;
-use crate::engine::work_items::scale::Scale;
-use crate::engine::work_items::shared::Shared;
-use crate::engine::work_items::work_item::WorkItem;
-use crate::error::Result;
-use crate::inputs::keys::KeyAbout;
-use crate::inputs::object_files::{load_objects, objects_content};
-use crate::random::Seed;
+use crate::engine::work_items::scale::Stage;
+use crate::inputs::sensor_errors::NOISES;
 use crate::report::study_content::Beyond;
+use crate::sensing::{Basis, PCA_ATOMS, Solver};
 use crate::studies::found_and_cost;
+use crate::studies::prelude::*;
 use crate::studies::recognition::charts::tables::set_noise_unit;
-use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
+use crate::studies::recognition::spec::keys::keys_without_axes;
+use crate::studies::reconstruction::charts::{answers, charts};
 use crate::studies::reconstruction::measured::measure_cells;
-use crate::studies::reconstruction::memory::memory;
-use crate::studies::reconstruction::plan::ReconstructionPlan;
-use crate::studies::reconstruction::plan::reconstruction_keys;
+use crate::studies::reconstruction::plan::{ReconstructionPlan, ReconstructionStudySpec};
 use crate::studies::reconstruction::rows::{
-    EnsembleStatistics, ReconstructionConfiguration, ReconstructionPareto, ReconstructionRows,
-    ReconstructionScore, ReconstructionTime,
+    BOTH, EnsembleStatistics, ReconstructionConfiguration, ReconstructionPareto,
+    ReconstructionRows, ReconstructionScore, ReconstructionTime,
 };
-use crate::studies::reconstruction::score::pareto;
-use crate::studies::reconstruction::spec::ReconstructionStudySpec;
-use crate::studies::reconstruction::touches::Touches;
-use crate::studies::source::Source;
-use crate::studies::study::{About, AnyFile, Facts, Findings, Resumes, Study, TableFiles};
-use crate::table::{File, Table};
+use crate::studies::reconstruction::touches::{Touches, pareto};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -62,25 +54,11 @@ const PARETO: File<(ReconstructionConfiguration, ReconstructionPareto)> = File::
 
 /// Table files that every reconstruction study writes.
 const FILES: &[&dyn AnyFile] = &[&CONFIGURATIONS, &ENSEMBLES, &TIMING, &PARETO];
-/// Name of the table of errors and times, which is not written to a file.
-pub(super) const BOTH: &str = "configurations.csv";
 
 impl Study for ReconstructionStudy {
     const ABOUT: About = About {
         table: "reconstruction",
         words: "a study that reconstructs frames",
-        resumes: Resumes::ButFor(&[
-            "question",
-            "expected",
-            "signal.noise_std_full_scale",
-            "signal.noise_std_mm",
-            "signal.noise_std_n",
-            "sensing.ensemble",
-            "sensing.ratio",
-            "sensing.measurements",
-            "reconstruction.solver",
-            "reconstruction.dictionary",
-        ]),
     };
     const TABLES: TableFiles = TableFiles {
         read: Some(read_tables),
@@ -91,12 +69,14 @@ impl Study for ReconstructionStudy {
     type Rows = ReconstructionRows;
 
     fn keys() -> Vec<KeyAbout> {
-        reconstruction_keys()
+        let noise = NOISES.map(|(key, _)| format!("signal.{key}"));
+        let lists = noise.iter().map(String::as_str);
+        let lists: Vec<&str> = lists.chain(["sensing", "reconstruction"]).collect();
+        keys_without_axes(keys_of::<ReconstructionStudySpec>(), &lists)
     }
 
     fn load(source: &Source) -> Result<Self> {
-        let mut spec = ReconstructionStudySpec::parse(&source.place, &source.text)?;
-        spec.seed = source.seed(spec.seed)?;
+        let mut spec = ReconstructionStudySpec::of(source)?;
         source.replace_objects(&mut spec.objects);
         let plan = ReconstructionPlan::new(&source.place, spec)?;
         let objects = load_objects(&plan.spec.objects, source.packings.as_deref())?;
@@ -127,14 +107,23 @@ impl Study for ReconstructionStudy {
 
     /// Returns all work items. For each ensemble and number of measurements, the items for isometry statistics come first, followed by the configurations.
     fn work_items(&self) -> Vec<WorkItem> {
+        let shared = shared_inputs(&self.plan.spec, &Self::keys());
+        let sizes = &self.plan.spec.reconstruction.isometry_sparsity;
         let mut items = Vec::new();
         for (group, configurations) in on_measured(&self.plan.configurations()).enumerate() {
-            let mut add = |name| items.push(WorkItem::new(name, group));
             for &basis in &self.plan.dictionaries {
-                add(configurations[0].isometry_name(basis));
+                let name = configurations[0].isometry_name(basis);
+                let of = &configurations[0];
+                let inputs = (&shared, of.ensemble, of.measurements, basis, sizes);
+                items.push(WorkItem::of(name, group, &inputs));
             }
             for configuration in configurations {
-                add(configuration.name());
+                let unnumbered = ReconstructionConfiguration {
+                    configuration: 0,
+                    ..configuration.clone()
+                };
+                let inputs = (&shared, unnumbered);
+                items.push(WorkItem::of(configuration.name(), group, &inputs));
             }
         }
         items
@@ -166,16 +155,17 @@ impl Study for ReconstructionStudy {
         ))
     }
 
-    fn findings(&self, tables: &[Table]) -> Findings {
-        Findings {
-            charts: self.charts(tables),
-            answers: self.answers(tables),
-        }
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts(tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers(tables)
     }
 
     fn beyond(&self, tables: &[Table]) -> Result<Beyond> {
         Ok(Beyond {
-            pictures: self.pictures(tables)?,
+            pictures: self.sample_frames(tables)?,
             ..Beyond::default()
         })
     }
@@ -209,4 +199,67 @@ impl ReconstructionStudy {
         let simulate = || Touches::simulate(&self.plan, &self.touched, progress);
         self.frames.get(simulate)
     }
+}
+
+/// Memory of the charts and of the picture of sample frames, bytes.
+const PICTURE_BYTES: f64 = 1.4e8;
+
+/// Returns the memory of the frames of a study with `n_touches` touches, bytes, which the whole run keeps, and the memory of its stages.
+pub(super) fn memory(plan: &ReconstructionPlan, n_touches: usize) -> (f64, Vec<Stage>) {
+    let wanted = &plan.spec.reconstruction;
+    let n = plan.array.n_taxels() as f64;
+    let n_test = (n_touches as f64 * wanted.test_fraction).ceil();
+    let n_train = n_touches as f64 - n_test;
+    let atoms = |basis: &Basis| {
+        let asked = wanted.atoms.map(|k| k as f64);
+        match basis {
+            Basis::Pca => asked.unwrap_or(PCA_ATOMS as f64).min(n).min(n_train),
+            _ => asked.unwrap_or(n).min(n),
+        }
+    };
+    let stored = plan
+        .dictionaries
+        .iter()
+        .filter(|basis| **basis == Basis::Pca);
+    let stored: f64 = stored.map(|basis| atoms(basis) * n).sum();
+    // Test frames are kept without noise and at each noise level.
+    let frames = n_train + n_test * (1.0 + plan.noise.len() as f64);
+    let kept = 8.0 * (n * frames + stored);
+    let is_linear = wanted.solver.values().contains(&Solver::Lmmse);
+    let matrices = plan
+        .spec
+        .sensing
+        .ensemble
+        .values()
+        .into_iter()
+        .flat_map(|ensemble| {
+            let counts = plan.measurement_counts(ensemble).into_iter();
+            counts.map(move |m| (ensemble, m as f64))
+        });
+    let matrices = matrices.map(|(ensemble, m)| {
+        // Measured atoms and their Gram matrix, of each dictionary.
+        let sensed: f64 = plan
+            .dictionaries
+            .iter()
+            .map(atoms)
+            .map(|k| k * m + k * k)
+            .sum();
+        // The linear estimate needs the covariances of the measurements and of their noise, and its maps to coefficients and to frames.
+        let linear = plan.dictionaries.iter().map(atoms).map(|k| {
+            let map = if k * (m + n) < m * n { k * n } else { m * n };
+            2.0 * k * m + 2.0 * m * m + map
+        });
+        let linear = if is_linear {
+            linear.fold(0.0, f64::max)
+        } else {
+            0.0
+        };
+        (ensemble.about().bytes)(m, n) + 8.0 * (sensed + linear + n_test * m)
+    });
+    let stages = [matrices.fold(0.0, f64::max), PICTURE_BYTES];
+    let stage = |bytes: f64| Stage {
+        bytes,
+        items: Vec::new(),
+    };
+    (kept, stages.map(stage).to_vec())
 }

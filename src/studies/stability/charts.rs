@@ -1,50 +1,182 @@
 //! Charts of a stability study: methods in the same scenes, and computing time against the number of taxels.
+//!
+//! Scenes that all methods of a part of the study have computed. Methods are compared on these scenes alone, because shares of different scenes differ. A method
+//! that has computed less than half of the scenes is not compared.
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
-use crate::studies::stability::common::{METHODS, SCENES};
+use crate::quantile::quantile;
+use crate::studies::prelude::*;
 use crate::studies::stability::plan::StabilityPlan;
-use crate::table::{Along, ChartSpec, Mark, Rule, Shown, Table, Value};
+use crate::studies::stability::rows::{CommonScene, MethodScore};
+use crate::table::{Along, Rule, Shown, Value};
+
+/// Table of the outcomes in the common scenes, which is not written to a file.
+pub(super) const SCENES: File<CommonScene> = File::new(
+    "common_scenes.csv",
+    "Scenes that all methods have computed",
+    "Right: force and deflections within 1 % of the exact result.",
+);
+/// Table of the methods in the common scenes, which is not written to a file.
+pub(super) const METHODS: File<MethodScore> = File::new(
+    "common_methods.csv",
+    "Methods in the same scenes",
+    "Right: force and deflections within 1 % of the exact result. Times are of one thread while other threads run other simulations.",
+);
+
+/// Number of array sizes from which a part of the study is a series of growing arrays, which has charts of its own.
+const MANY_SIZES: usize = 3;
+
+/// Columns that distinguish the scenes of a part.
+const SCENE: [&str; 5] = [
+    "stiffness_n_per_m",
+    "object_mass_kg",
+    "taxels",
+    "dt_s",
+    "taxel_mass_kg",
+];
+
+/// Returns the tables of a study, followed by the tables of the common scenes. Parts with one method, one scene or growing arrays have no rows in them.
+///
+/// # Errors
+/// If a row cannot be written to a table.
+pub(super) fn with_common(mut tables: Vec<Table>) -> Result<Vec<Table>> {
+    let (configurations, timing) = (&tables[0], &tables[2]);
+    let (mut scenes, mut methods) = (Vec::new(), Vec::new());
+    for rows in configurations.groups(&["part"], 0..configurations.n_rows.min(timing.n_rows)) {
+        let of_part = scored_methods(configurations, timing, &rows);
+        for (score, of_method) in of_part {
+            methods.push(score);
+            scenes.extend(of_method);
+        }
+    }
+    for table in [SCENES.table(&scenes)?, METHODS.table(&methods)?] {
+        tables.push(table.with((table.file, table.title), None));
+    }
+    Ok(tables)
+}
+
+/// Returns the score and the outcomes of each method of a part in its common scenes: the method with the most correct results first, and the faster one first
+/// among equals.
+fn scored_methods(
+    configurations: &Table,
+    timing: &Table,
+    rows: &[usize],
+) -> Vec<(MethodScore, Vec<CommonScene>)> {
+    let groups = |columns: &[&str]| configurations.groups(columns, rows.iter().copied());
+    let mut by_method = groups(&["method", "solver_iterations"]);
+    let n_scenes = groups(&SCENE).len();
+    by_method.retain(|rows| 2 * rows.len() >= n_scenes);
+    let compared = by_method.iter().flatten().copied();
+    let mut common = configurations.groups(&SCENE, compared);
+    common.retain(|rows| rows.len() == by_method.len());
+    if by_method.len() < 2 || common.len() < 2 || groups(&["taxels"]).len() >= MANY_SIZES {
+        return Vec::new();
+    }
+    // Stiff taxels are at the top, long steps and light taxels on the right.
+    common.sort_by(|a, b| {
+        let key = |rows: &[usize]| {
+            let [stiffness, mass, taxels, step, taxel] =
+                SCENE.map(|column| configurations.number(column, rows[0]));
+            [-stiffness, mass, taxels, step, -taxel]
+        };
+        let pairs = key(a).into_iter().zip(key(b));
+        let orders = pairs.map(|(a, b)| a.total_cmp(&b));
+        orders.fold(std::cmp::Ordering::Equal, |order, next| order.then(next))
+    });
+    let varies = |column: &str| groups(&[column]).len() > 1;
+    let words = |columns: &[&str], row: usize| {
+        let varying = columns.iter().filter(|column| varies(column));
+        let words = varying.map(|column| configurations.words(column, row));
+        words.collect::<Vec<_>>().join(", ")
+    };
+    let mut n_iterations = groups(&["solver_iterations"]);
+    n_iterations.retain(|rows| {
+        configurations
+            .number("solver_iterations", rows[0])
+            .is_finite()
+    });
+    let method_words = |row: usize| {
+        let method = configurations.words("method", row);
+        match &configurations.words("solver_iterations", row)[..] {
+            n if n_iterations.len() > 1 && !n.is_empty() => {
+                format!("{method}, {n} iterations")
+            }
+            _ => method,
+        }
+    };
+    let scored = by_method.iter().map(|of_method| {
+        let own = common
+            .iter()
+            .filter_map(|rows| rows.iter().find(|row| of_method.contains(row)));
+        let scenes = own.map(|&row| CommonScene {
+            part: configurations.number("part", row) as usize,
+            method: method_words(row),
+            step: words(&SCENE[3..], row),
+            load: words(&SCENE[..3], row),
+            outcome: configurations.word("outcome", row).to_owned(),
+            wall_s: timing.number("wall_s", row),
+        });
+        let scenes: Vec<CommonScene> = scenes.collect();
+        let mut times: Vec<f64> = scenes.iter().map(|scene| scene.wall_s).collect();
+        let score = MethodScore {
+            part: scenes[0].part,
+            scene: configurations.word("scene", rows[0]).to_owned(),
+            method: scenes[0].method.clone(),
+            n_scenes: scenes.len(),
+            n_right: scenes
+                .iter()
+                .filter(|scene| scene.outcome == "right")
+                .count(),
+            median_s: quantile(&mut times, 0.5),
+        };
+        (score, scenes)
+    });
+    let mut scored: Vec<_> = scored.collect();
+    scored.sort_by(|(a, _), (b, _)| {
+        let by_right = b.n_right.cmp(&a.n_right);
+        by_right.then(a.median_s.total_cmp(&b.median_s))
+    });
+    scored
+}
 
 /// Maximum number of methods that a title lists.
 const MAX_LISTED: usize = 3;
 
-impl StabilityPlan {
-    /// Returns the charts: for each part, the number of correct results against time and a map of the outcomes for each method, both in the scenes that all
-    /// methods of the part have computed; then charts of growing arrays.
-    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        let (configurations, joints) = (&tables[0], &tables[3]);
-        let mut charts: Vec<ChartSpec> = Vec::new();
-        let methods = tables.iter().find(|table| table.file == METHODS.name());
-        if let Some(methods) = methods {
-            for rows in methods.groups(&["part"], 0..methods.n_rows) {
-                let mut of_part = of_part(methods, &rows, &charts);
-                let mut names = rows.iter().map(|&row| methods.word("method", row));
-                if names.any(|name| name.starts_with("MuJoCo")) {
-                    let note = format!(" {}", configurations.note);
-                    of_part.iter_mut().for_each(|chart| chart.note += &note);
-                }
-                charts.extend(of_part);
+/// Returns the charts: for each part, the number of correct results against time and a map of the outcomes for each method, both in the scenes that all
+/// methods of the part have computed; then charts of growing arrays.
+pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
+    let (configurations, joints) = (&tables[0], &tables[3]);
+    let mut charts: Vec<ChartSpec> = Vec::new();
+    let methods = tables.iter().find(|table| table.file == METHODS.name());
+    if let Some(methods) = methods {
+        for rows in methods.groups(&["part"], 0..methods.n_rows) {
+            let mut of_part = of_part(methods, &rows, &charts);
+            let mut names = rows.iter().map(|&row| methods.word("method", row));
+            if names.any(|name| name.starts_with("MuJoCo")) {
+                let note = format!(" {}", configurations.note);
+                of_part.iter_mut().for_each(|chart| chart.note += &note);
             }
+            charts.extend(of_part);
         }
-        charts.extend(joint_charts(joints));
-        charts
     }
+    charts.extend(joint_charts(joints));
+    charts
+}
 
-    /// Returns the titles of the charts of times as sentences. A last sentence names the table of other programs if it does not exist.
-    pub(crate) fn answers(&self, charts: &[ChartSpec]) -> Vec<String> {
-        let timed = charts.iter().filter(|chart| chart.table != SCENES.name());
-        let missing = self.peers.as_ref().filter(|path| !path.exists());
-        let missing = missing.map(|path| {
-            format!(
-                "No rows of other programs: {} does not exist.",
-                path.display()
-            )
-        });
-        timed
-            .map(|chart| format!("{}.", chart.title))
-            .chain(missing)
-            .collect()
-    }
+/// Returns the titles of the charts of times as sentences. A last sentence names the table of other programs if it does not exist.
+pub(super) fn answers(plan: &StabilityPlan, charts: &[ChartSpec]) -> Vec<String> {
+    let timed = charts.iter().filter(|chart| chart.table != SCENES.name());
+    let missing = plan.peers.as_ref().filter(|path| !path.exists());
+    let missing = missing.map(|path| {
+        format!(
+            "No rows of other programs: {} does not exist.",
+            path.display()
+        )
+    });
+    timed
+        .map(|chart| format!("{}.", chart.title))
+        .chain(missing)
+        .collect()
 }
 
 /// Returns the two charts of a part: correct results against time, and the outcomes of each method. A repeated scene has its number in the name.

@@ -20,9 +20,7 @@
 //! Dynamic methods run until the slowest motion of a scene has decayed to 5e-5, and for at least [`LEAST_STEPS`] steps and half a second.
 
 mod charts;
-mod common;
 mod configuration;
-mod peers;
 mod plan;
 pub mod rows;
 mod scene;

@@ -1,10 +1,7 @@
 //! Plan of a stability study: checked keys, and the list of configurations.
 
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::params::keys_of;
 use crate::inputs::units::MM;
-use crate::studies::recognition::sweep::configurations::nested;
+use crate::studies::prelude::*;
 use crate::studies::stability::rows::StabilityConfiguration;
 use crate::studies::stability::spec::{
     ContactMethod, StabilityPartSpec, StabilityScene, StabilityStudySpec,

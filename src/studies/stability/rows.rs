@@ -1,7 +1,7 @@
 //! Rows of the result tables of a stability study: one plain struct for each kind of row, with one field per column.
 
 use crate::engine::work_items::any_number;
-use crate::row;
+use crate::studies::prelude::*;
 use crate::studies::stability::spec::{ContactMethod, StabilityScene};
 use serde::{Deserialize, Serialize};
 

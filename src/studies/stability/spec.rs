@@ -1,10 +1,9 @@
 //! Specification of a stability study: the keys of its TOML file.
 
-use crate::engine::axis::Axis;
 use crate::files::FilePath;
-use crate::inputs::params::{params, words};
 use crate::inputs::range::COUNT;
 use crate::inputs::range::Range::{Any, Positive, Unchecked};
+use crate::studies::prelude::*;
 use crate::study_file::toml_file;
 
 params! {

@@ -1,24 +1,21 @@
 //! Stability study: simulates all configurations and computes the result tables.
+//!
+//! Results of other programs for the same configurations, read from a CSV file.
 
-use crate::engine::work_items::pending::PendingItems;
-use crate::engine::work_items::scale::{Scale, Stage};
-use crate::engine::work_items::work_item::WorkItem;
-use crate::error::Result;
-use crate::inputs::units::millimetres;
-use crate::studies::source::Source;
-use crate::studies::stability::common::with_common;
+use crate::engine::work_items::scale::Stage;
+use crate::inputs::units::MM;
+use crate::report::csv_tables::read_rows;
+use crate::studies::prelude::*;
+use crate::studies::stability::charts::{answers, charts, with_common};
 use crate::studies::stability::configuration::measure;
-use crate::studies::stability::peers::peer_rows;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{
-    Joints, Outcome, StabilityConfiguration, StabilityRow, StabilityScore, StabilitySummary,
-    StabilityTime,
+    Joints, Outcome, PeerScene, PeerSource, StabilityConfiguration, StabilityRow, StabilityScore,
+    StabilitySummary, StabilityTime,
 };
 use crate::studies::stability::spec::{StabilityScene, StabilityStudySpec};
-use crate::studies::study::{About, AnyFile, Facts, Findings, Resumes, Study, TableFiles};
 use crate::studies::{found_and_cost, grouped};
-use crate::table::{File, Table};
-use rayon::prelude::*;
+use crate::table::csv_place;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -47,7 +44,6 @@ impl Study for StabilityPlan {
     const ABOUT: About = About {
         table: "stability",
         words: "a study of where contact methods break",
-        resumes: Resumes::ButFor(&["question", "expected", "stability.parts"]),
     };
     const TABLES: TableFiles = TableFiles {
         read: Some(read_tables),
@@ -101,30 +97,21 @@ impl Study for StabilityPlan {
         }
     }
 
-    /// Returns all work items. Work items are named by their settings, because the list of configurations depends on the features of the build.
     fn work_items(&self) -> Vec<WorkItem> {
-        let items = self.configurations.iter().enumerate();
-        let items = items.map(|(group, (configuration, taxel))| {
-            let settings = format!("{configuration:?}");
-            let settings = settings.trim_start_matches("StabilityConfiguration ");
-            let stroke_mm = millimetres(taxel.stroke);
-            let name = format!("{settings} and a stroke of {stroke_mm} mm");
-            WorkItem::new(name, group)
-        });
-        items.collect()
+        let configurations = self.configurations.iter();
+        let configurations = configurations.map(|(of, taxel)| (of, taxel.stroke));
+        work_items_of::<Self, _, _>(&self.spec, configurations)
     }
 
     fn measure(&self, left: &PendingItems<Self::Rows>) -> Result<()> {
-        left.progress.stage("stability", left.n() as u64);
-        let configurations = self.configurations.par_iter().enumerate();
-        // Work items are distributed one by one, because their times range from microseconds to a minute.
-        let configurations = configurations.with_max_len(1);
-        configurations.try_for_each(|(number, (configuration, undamped))| {
-            left.finish(number, || {
+        left.each(
+            "stability",
+            &self.configurations,
+            |(configuration, undamped)| {
                 let (score, time) = measure(configuration, *undamped)?;
                 Ok(vec![(configuration.clone(), score, time)])
-            })
-        })
+            },
+        )
     }
 
     fn tables(&self, mut rows: Self::Rows) -> Result<Vec<Table>> {
@@ -141,12 +128,12 @@ impl Study for StabilityPlan {
         with_common(vec![configurations, summary, timing, joints])
     }
 
-    fn findings(&self, tables: &[Table]) -> Findings {
-        let charts = self.charts(tables);
-        Findings {
-            answers: self.answers(&charts),
-            charts,
-        }
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts(tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers(self, &charts(tables))
     }
 }
 
@@ -225,4 +212,71 @@ fn carried(configuration: &StabilityConfiguration) -> f64 {
     let load = configuration.object_mass_kg.unwrap_or(0.0) / configuration.n_taxels() as f64;
     let digits = format!("{load:.9e}");
     digits.parse().expect("a number is written as one")
+}
+
+/// Returns the results of other programs for the configurations of the plan, and their source, such as `MuJoCo 4.0.0, 2026-11-22`. Each row stands in the
+/// first part of the study that contains its scene. The result is empty if there is no file.
+///
+/// # Errors
+/// If the file is not a table of such rows, or a row belongs to no scene of the study or repeats another row; the error names the file and the line.
+pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, String)> {
+    let Some(path) = plan.peers.as_ref().filter(|path| path.exists()) else {
+        return Ok(Default::default());
+    };
+    // Each line is read once for each struct, because serde's flattening reads an empty field as an empty text.
+    let configurations = read_rows::<StabilityConfiguration>(path)?.into_iter();
+    let found = configurations.zip(read_rows(path)?).zip(read_rows(path)?);
+    let others = read_rows::<PeerScene>(path)?
+        .into_iter()
+        .zip(read_rows::<PeerSource>(path)?);
+    let mut sources: Vec<String> = Vec::new();
+    let mut rows: Vec<StabilityRow> = Vec::new();
+    for (line, (((configuration, score), time), (scene, source))) in (2..).zip(found.zip(others)) {
+        let configuration = placed(plan, configuration, &scene)
+            .ok_or("a scene and a method that the study lacks")
+            .and_then(|one| match rows.iter().any(|(known, ..)| *known == one) {
+                true => Err("a configuration of an earlier line"),
+                false => Ok(one),
+            })
+            .map_err(|given| refuse(path, line, given))?;
+        rows.push((configuration, score, time));
+        let source = format!("{} {}, {}", source.program, source.version, source.date);
+        if !sources.contains(&source) {
+            sources.push(source);
+        }
+    }
+    Ok((rows, sources.join("; ")))
+}
+
+/// Returns a configuration of another program's method as it stands in the plan: in the first part that contains its scene. Returns `None` if no part does.
+/// Scenes are equal if all their parameters are equal; the part and the method do not belong to a scene.
+fn placed(
+    plan: &StabilityPlan,
+    configuration: StabilityConfiguration,
+    scene: &PeerScene,
+) -> Option<StabilityConfiguration> {
+    let (radius, stroke) = (0.5 * scene.pitch_mm * MM, scene.stroke_mm * MM);
+    let mut others = plan.all_methods.iter();
+    let part = others.find_map(|(other, taxel)| {
+        let of_scene = StabilityConfiguration {
+            part: configuration.part,
+            method: configuration.method,
+            solver_iterations: configuration.solver_iterations,
+            ..other.clone()
+        };
+        let is_equal =
+            of_scene == configuration && (taxel.radius, taxel.stroke) == (radius, stroke);
+        is_equal.then_some(other.part)
+    })?;
+    let is_peer = configuration.method.is_peer();
+    is_peer.then_some(StabilityConfiguration {
+        part,
+        ..configuration
+    })
+}
+
+fn refuse(path: &Path, line: u64, given: &str) -> Error {
+    let allowed =
+        "rows of the study's own scenes, each once, as benches/peers/stability.py writes them";
+    Error::input(csv_place(path, Some(line)), given, allowed)
 }

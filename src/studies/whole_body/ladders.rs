@@ -3,14 +3,14 @@
 
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::studies::whole_body::drive::{Drive, Posture};
-use crate::studies::whole_body::objects::cushion;
+use crate::studies::whole_body::drive::{Drive, Posture, cushion};
 use crate::studies::whole_body::plan::{Aim, WholeBodyPlan};
 use crate::studies::whole_body::rows::{Driven, Series};
 use crate::studies::whole_body::spec::LaddersSpec;
 use crate::whole_body::WholeBody;
 use crate::world::{Extrusion, Oscillation, Patch, Taxel};
 use glam::{DQuat, DVec3};
+use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// Numbers of patches around and along a cylindrical sleeve of skin, from the smallest to the largest sleeve. With ten patches of 10,000 taxels each, 100,000
@@ -31,7 +31,7 @@ const PERIOD: f64 = 0.5;
 const N_HALVINGS: usize = 40;
 
 /// One size in a scaling series: the numbers of taxels, of touched taxels and of spheres that the study asks for.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct ScalingPoint {
     pub series: Series,
     /// Name of the work item.

@@ -1,12 +1,10 @@
 //! Plan of a whole-body study: checked keys, converted to SI units.
 
-use crate::error::Result;
 use crate::geometry::Pose;
-use crate::inputs::check::Check;
-use crate::inputs::params::keys_of;
 use crate::inputs::units::MM;
 use crate::scene::{Movement, ObjectSpec, PlannedRobot, Reader};
 use crate::sensing::Ensemble;
+use crate::studies::prelude::*;
 use crate::studies::whole_body::spec::{
     BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodyStudySpec,
 };

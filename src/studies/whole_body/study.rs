@@ -1,20 +1,15 @@
 //! Whole-body study: training comes first, then scenes and scaling series one after the other, so that timings do not disturb each other.
 
-use crate::engine::work_items::pending::PendingItems;
-use crate::engine::work_items::scale::{Scale, Stage};
-use crate::engine::work_items::shared::Shared;
-use crate::engine::work_items::work_item::WorkItem;
-use crate::error::{Error, Result};
+use crate::engine::work_items::scale::Stage;
 use crate::geometry::Pose;
 use crate::inputs::object_files::file_content;
 use crate::inputs::units::MM;
 use crate::objects::SphereUnion;
 use crate::report::study_content::Beyond;
-use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
-use crate::studies::whole_body::drive::{Drive, Posture};
+use crate::studies::prelude::*;
+use crate::studies::whole_body::charts::{answers, charts, picture_of_body};
+use crate::studies::whole_body::drive::{Drive, Posture, of_scene};
 use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
-use crate::studies::whole_body::objects::of_scene;
 use crate::studies::whole_body::plan::{BodySize, ScenePlan, WholeBodyPlan};
 use crate::studies::whole_body::recognition::learn;
 use crate::studies::whole_body::rows::{
@@ -22,7 +17,6 @@ use crate::studies::whole_body::rows::{
     WholeBodyRows,
 };
 use crate::studies::whole_body::spec::WholeBodyStudySpec;
-use crate::table::{File, Table};
 use crate::whole_body::{BodyState, CoveredRobot};
 use std::collections::BTreeMap;
 
@@ -52,15 +46,6 @@ impl Study for WholeBodyPlan {
     const ABOUT: About = About {
         table: "whole_body",
         words: "a study of a whole body of skin",
-        resumes: Resumes::ButFor(&[
-            "question",
-            "expected",
-            "whole_body.scenes",
-            "whole_body.ladders.taxels",
-            "whole_body.ladders.touched_at_taxels",
-            "whole_body.ladders.touched",
-            "whole_body.ladders.spheres",
-        ]),
     };
     const TABLES: TableFiles =
         TableFiles::always(&[&CASES, &RECOGNITION, &SENSED, &TIMING, &STEPS]);
@@ -70,8 +55,7 @@ impl Study for WholeBodyPlan {
 
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a whole body is touched by the objects that its study names")?;
-        let mut spec = WholeBodyStudySpec::parse(&source.place, &source.text)?;
-        spec.seed = source.seed(spec.seed)?;
+        let spec = WholeBodyStudySpec::of(source)?;
         let plan = Self::new(&source.place, &source.folder, spec)?;
         Ok(Self {
             size: plan.body_size()?,
@@ -114,19 +98,20 @@ impl Study for WholeBodyPlan {
         }
     }
 
-    /// Returns all work items. Names of the items for compressions and scenes depend on all training inputs; names of the items for scaling series do not.
+    /// Returns all work items. The items of compressions and of scaling series do not depend on other compressions; scenes are sensed with all of them.
     fn work_items(&self) -> Vec<WorkItem> {
-        let compressions = self
-            .compressions
-            .iter()
-            .map(|(name, _)| WorkItem::new(format!("learn from {name}"), 0));
-        let scenes = self
-            .scenes
-            .iter()
-            .map(|scene| WorkItem::new(format!("scene {}", scene.spec.name), 0).made_of(scene));
+        let shared = shared_inputs(&self.spec, &Self::keys());
+        let compressions = self.compressions.iter().map(|compression| {
+            let name = format!("learn from {}", compression.0);
+            WorkItem::of(name, 0, &(&shared, compression))
+        });
+        let scenes = self.scenes.iter().map(|scene| {
+            let name = format!("scene {}", scene.spec.name);
+            WorkItem::of(name, 0, &(&shared, &self.compressions, &scene.spec))
+        });
         let rungs = self.rungs().into_iter().enumerate().map(|(number, rung)| {
             let name = format!("ladder of {:?}, {}", rung.series, rung.name).to_lowercase();
-            WorkItem::new(name, number + 1).made_of(rung)
+            WorkItem::of(name, number + 1, &(&shared, rung))
         });
         compressions.chain(scenes).chain(rungs).collect()
     }
@@ -189,16 +174,17 @@ impl Study for WholeBodyPlan {
         ])
     }
 
-    fn findings(&self, tables: &[Table]) -> Findings {
-        Findings {
-            charts: self.charts(tables),
-            answers: self.answers(tables),
-        }
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts(tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers(tables)
     }
 
     fn beyond(&self, tables: &[Table]) -> Result<Beyond> {
         Ok(Beyond {
-            pictures: self.pictures(tables)?,
+            pictures: picture_of_body(self, &tables[0])?.into_iter().collect(),
             ..Beyond::default()
         })
     }

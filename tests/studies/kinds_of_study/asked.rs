@@ -2,7 +2,6 @@
 
 use crate::command::Case;
 use crate::kinds::Kind;
-use std::fs;
 
 fn json(case: &Case, arguments: &[&str]) -> serde_json::Value {
     let (said, _) = case.succeeds(&[&["advise", "found", "--json"], arguments].concat());
@@ -117,22 +116,6 @@ fn the_advisor_reads_a_study_that_recognises_objects() {
         let error = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
         assert!(error.contains(wanted), "{arguments:?}: {error}");
-    }
-    fs::create_dir(case.path("old")).unwrap();
-    for (table, key) in [
-        ("[speed_accuracy]", "speed_accuracy"),
-        ("[[breaking_points]]", "breaking_points"),
-    ] {
-        case.file("old/study.toml", format!("question = \"?\"\n{table}\n"));
-        for arguments in [
-            &["run", "old/study.toml"][..],
-            &["advise", "old", "--accuracy", "0.5"],
-        ] {
-            let error = refused(&case, arguments);
-            let wanted =
-                format!("key {key}: a kind of study that exists no more; a recognition study");
-            assert!(error.contains(&wanted), "{error}");
-        }
     }
 }
 

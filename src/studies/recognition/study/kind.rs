@@ -2,11 +2,13 @@
 
 use crate::engine::work_items::{PendingItems, Scale, WorkItem};
 use crate::error::{Error, Result};
+use crate::inputs::keys::KeyAbout;
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::snapshots;
 use crate::report::study_content::{Beyond, NamedPicture};
 use crate::studies::recognition::charts;
 use crate::studies::recognition::frames::touch_set::Samples;
+use crate::studies::recognition::spec::keys::recognition_keys;
 use crate::studies::recognition::spec::pose_split::{GroupSpec, PoseSplit};
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::studies::recognition::study::load::load_study;
@@ -15,7 +17,7 @@ use crate::studies::recognition::study::rows::RecognitionRows;
 use crate::studies::recognition::sweep::configurations::StudyPart;
 use crate::studies::recognition::training::evaluation_inputs::{FamilyInputs, family_name};
 use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
+use crate::studies::study::{About, Facts, Study, TableFiles, settings_words};
 use crate::table::{ChartSpec, Table};
 use std::collections::HashSet;
 
@@ -63,7 +65,6 @@ impl Study for RecognitionStudy {
     const ABOUT: About = About {
         table: "recognition",
         words: "a study that recognises objects",
-        resumes: Resumes::SharedWork,
     };
 
     const TABLES: TableFiles = TableFiles {
@@ -74,6 +75,10 @@ impl Study for RecognitionStudy {
     const SUMMARY: Option<fn(&[Table], usize) -> String> = Some(charts::words);
     type Spec = StudySpec;
     type Rows = RecognitionRows;
+
+    fn keys() -> Vec<KeyAbout> {
+        recognition_keys().to_vec()
+    }
 
     fn load(source: &Source) -> Result<Self> {
         load_study(source)
@@ -178,25 +183,20 @@ impl Study for RecognitionStudy {
             return item.name.clone();
         }
         let (trial, family) = (number / self.families.len(), number % self.families.len());
-        let settings = serde_json::to_value(&self.family(family).1[0]).unwrap_or_default();
-        let settings = settings.as_object().into_iter().flatten();
-        let settings = settings.filter(|(_, value)| !value.is_null());
-        let mut words: Vec<String> = settings
-            .map(|(key, value)| format!("{key} = {}", value.to_string().trim_matches('"')))
-            .collect();
-        words.push(format!("trial = {trial}"));
-        words.join(", ")
+        let settings = settings_words(&self.family(family).1[0]);
+        format!("{settings}, trial = {trial}")
     }
 
     fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
         charts::tables_of(&self.outcome(rows)?)
     }
 
-    fn findings(&self, tables: &[Table]) -> Findings {
-        Findings {
-            charts: self.charts(tables),
-            answers: self.answers(tables),
-        }
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts::charts(tables, self.first().plan.spec.report.pareto)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        charts::answers(tables)
     }
 
     fn beyond(&self, tables: &[Table]) -> Result<Beyond> {
@@ -209,10 +209,6 @@ impl Study for RecognitionStudy {
 }
 
 impl RecognitionStudy {
-    pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts::charts(tables, self.first().plan.spec.report.pareto)
-    }
-
     pub(crate) fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
         let Samples { shown, each } = self.samples()?;
         let each = each
@@ -277,10 +273,6 @@ impl RecognitionStudy {
         add("Trials", self.n_trials().to_string());
         add("Seed", of_spec(|spec| spec.seed.to_string()));
         charts::sections(&settings, tables)
-    }
-
-    pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
-        charts::answers(tables)
     }
 }
 
