@@ -15,6 +15,7 @@ mod kinds;
 #[path = "../fixtures/study/mod.rs"]
 mod study;
 
+mod every_key;
 mod every_kind;
 mod fuzz;
 mod hostile;

@@ -121,6 +121,11 @@ impl ReconstructionPlan {
         check.used_springs((&spec.skin, &spec.touches), reads_force, of_force)?;
         check.sensing(&spec.sensing, std::slice::from_ref(&array))?;
         check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
+        check.selection(&spec.sensing)?;
+        if let Some(rate) = spec.sensing.readings_per_s {
+            let allowed = "no such key: only studies of recognition state the time to read a frame";
+            return Err(check.error("sensing.readings_per_s", rate, allowed));
+        }
         let wanted = &spec.reconstruction;
         check.keys(
             "reconstruction",

@@ -4,7 +4,7 @@ use crate::inputs::units::MM;
 use crate::studies::prelude::*;
 use crate::studies::stability::rows::StabilityConfiguration;
 use crate::studies::stability::spec::{
-    ContactMethod, StabilityPartSpec, StabilityScene, StabilityStudySpec,
+    ContactMethod, SOLVER_ITERATIONS, StabilityPartSpec, StabilityScene, StabilityStudySpec,
 };
 use crate::world::Taxel;
 use std::path::{Path, PathBuf};
@@ -87,6 +87,11 @@ impl Check<'_> {
             false => vec![None],
         };
         let methods = wanted.methods.clone();
+        if !methods.iter().any(|method| method.is_engine()) && of_engines != [SOLVER_ITERATIONS] {
+            let given = format!("{of_engines:?}, but no method of the part iterates");
+            let allowed = "no such key, or a physics engine among methods";
+            return Err(error(["solver_iterations", &given, allowed]));
+        }
         let axes = [
             methods.iter().map(|&method| iterations(method).len()).sum(),
             sides.len(),

@@ -6,6 +6,9 @@ use crate::inputs::range::Range::{Any, Positive, Unchecked};
 use crate::studies::prelude::*;
 use crate::study_file::toml_file;
 
+/// Default number of iterations of an engine's contact solver per step.
+pub const SOLVER_ITERATIONS: usize = 4;
+
 params! {
     /// Contents of a stability study file.
     pub struct StabilityStudySpec {
@@ -54,7 +57,7 @@ params! {
         dt_s: Axis<f64> => Positive, Choice, Table;
         /// Axis: number of iterations of an engine's contact solver per step, at least 1. For the method `rapier_skin_sim`, it is the number of sweeps over all
         /// contacts. Default: 4.
-        solver_iterations: Axis<usize> = Axis::One(4) => COUNT, Choice, Table;
+        solver_iterations: Axis<usize> = Axis::One(SOLVER_ITERATIONS) => COUNT, Choice, Table;
     }
 }
 
