@@ -1,7 +1,7 @@
 //! Law of keys: each key of a study changes a number or a column of a table, or is refused, or is one of the keys that change no number by their meaning.
 //!
 //! The values are made from the declarations, which the JSON Schema contains. A value that equals the default, and a key that needs another key beside it, count
-//! for nothing. `cargo test --test long_runs -- every_key` tries the kind of study that runs fastest; with BUBBLETOUCH_LONG=1, all kinds.
+//! for nothing. `.ci/long engine` runs this law, which takes some minutes.
 
 use crate::kinds::Kind;
 use serde_json::Value as Json;
@@ -145,7 +145,11 @@ fn silent_keys(kind: &Kind) -> Vec<String> {
         let _ = fs::remove_dir_all(case.path("out"));
         let output = case.run(&["run", "study.toml", "--out", "out"]);
         let code = output.status.code();
-        assert!(matches!(code, Some(0 | 2)), "{text}\n{output:?}");
+        assert!(matches!(code, Some(0..=2)), "{text}\n{output:?}");
+        if code == Some(1) {
+            // Work items that fail are no silent result.
+            return Some(Json::Null);
+        }
         let manifest = (code == Some(0)).then(|| fs::read(case.path("out/manifest.json")).unwrap());
         manifest
             .map(|bytes| serde_json::from_slice::<Json>(&bytes).unwrap()["tables_sha256"].clone())
@@ -184,6 +188,7 @@ fn silent_keys(kind: &Kind) -> Vec<String> {
 }
 
 #[test]
+#[ignore = "some minutes"]
 fn every_key_acts_or_is_refused() {
     let all = [
         Kind::STABILITY,
@@ -195,11 +200,7 @@ fn every_key_acts_or_is_refused() {
         Kind::TEST_TOUCHES,
         Kind::WHOLE_BODY,
     ];
-    let n_kinds = match std::env::var_os("BUBBLETOUCH_LONG") {
-        Some(_) => all.len(),
-        None => 1,
-    };
-    for kind in &all[..n_kinds] {
+    for kind in &all {
         let silent = silent_keys(kind);
         assert!(silent.is_empty(), "{}\n{silent:#?}", kind.study);
     }
