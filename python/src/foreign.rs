@@ -1,7 +1,7 @@
 //! Classifiers and features of a study whose code is in Python.
 //!
 //! The objects come from `bubbletouch/_foreign.py`. A trainer has the methods `fit(rows, labels, seed, groups)`, `predict(model, rows)` and
-//! `log_probabilities(model, rows)`. A function has the method `compute(frames)`.
+//! `log_probabilities(model, rows)`. A function has the method `compute(frames)`. Both have `with_parameters(json)`, which returns a copy.
 
 use bubbletouch::recognition::classifiers::foreign as classifiers;
 use bubbletouch::recognition::data::dataset::Dataset;
@@ -51,6 +51,24 @@ impl Object {
     }
 }
 
+impl Object {
+    /// Returns the object with other values of its parameters.
+    fn with(
+        &self,
+        parameters: &classifiers::ForeignParameters,
+    ) -> std::result::Result<Self, svm::Error> {
+        let values = serde_json::Value::Object(parameters.clone()).to_string();
+        let object = self.call("parameters that it has", |object| {
+            Ok(object.call_method1("with_parameters", (values,))?.unbind())
+        })?;
+        Ok(Self {
+            place: self.place.clone(),
+            object,
+            raised: self.raised.clone(),
+        })
+    }
+}
+
 const FIT: &str = "a fit without an exception";
 const PREDICT: &str = "one whole-numbered label of training for each row";
 
@@ -88,6 +106,13 @@ impl Trainer {
 }
 
 impl classifiers::ForeignClassifier for Trainer {
+    fn with(
+        &self,
+        parameters: &classifiers::ForeignParameters,
+    ) -> std::result::Result<Arc<dyn classifiers::ForeignClassifier>, svm::Error> {
+        Ok(Arc::new(Self(Arc::new(self.0.with(parameters)?))))
+    }
+
     fn fit(
         &self,
         rows: &Dataset,
@@ -137,6 +162,13 @@ impl classifiers::ForeignModel for Model {
 struct Function(Object);
 
 impl features::ForeignFeatures for Function {
+    fn with(
+        &self,
+        parameters: &features::ForeignParameters,
+    ) -> Result<Arc<dyn features::ForeignFeatures>> {
+        Ok(Arc::new(Self(self.0.with(parameters)?)))
+    }
+
     fn compute(&self, frames: ArrayView2<f64>) -> Result<Array2<f64>> {
         let computed = self.0.call("a function without an exception", |object| {
             let made = object.call_method1("compute", (frames.to_pyarray(object.py()),))?;

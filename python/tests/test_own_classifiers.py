@@ -433,8 +433,69 @@ def test_the_python_of_the_guide_runs(tmp_path: Path, monkeypatch: pytest.Monkey
     for code in re.findall(r"^```python\n(.*?)^```", GUIDE, re.M | re.S)[:2]:
         exec(compile(code, "own_methods.md", "exec"), variables)
     assert "tuned" in (tmp_path / "results" / "mine" / "summary.csv").read_text()
-    # A parameter of an own estimator becomes a column.
-    assert capsys.readouterr().out.splitlines()[-5].split() == ["svc_c"]
+    # A parameter of an own estimator is a column.
+    shown = [line.split() for line in capsys.readouterr().out.splitlines()[-4:]]
+    assert shown[0] == ["C", "accuracy"] and [float(line[1]) for line in shown[1:]] == [0.1, 1.0, 10.0]
+
+
+def power(frames: Any, exponent: float = 1.0) -> Any:
+    return np.abs(frames) ** exponent
+
+
+class Turned(Nearest):
+    """Nearest class mean of features times a factor, as a variable without set_params."""
+
+    def __init__(self, weight: float = 1.0) -> None:
+        super().__init__()
+        self.weight = weight
+
+    def fit(self, rows: Any, labels: Any) -> None:
+        super().fit(rows * np.array([self.weight, *[1.0] * (rows.shape[1] - 1)]), labels)
+
+
+def swept(classifier: str, key: str, values: list[Any], **given: Any) -> bt.Study:
+    study = with_keys(classifier=classifier, features="powers" if given.get("features") else "raw")
+    return bt.run({**study, "axes": {f"recognition.parameters.{key}": values}}, **given)
+
+
+def accuracies(study: bt.Study, **where: Any) -> list[float]:
+    table = study["summary"].columns
+    is_of = np.all([np.asarray(table[name]) == value for name, value in where.items()], axis=0) if where else slice(None)
+    return list(np.asarray(table["accuracy"])[is_of])
+
+
+def test_a_parameter_of_an_own_method_is_an_axis_whose_values_equal_runs_of_their_own() -> None:
+    svm = pytest.importorskip("sklearn.svm")
+    make_pipeline = pytest.importorskip("sklearn.pipeline").make_pipeline
+    study = swept("svc", "svc.C", [1e-3, 10.0], classifiers={"svc": svm.SVC(kernel="linear")})
+    of_pipeline = swept("svc", "svc.svc__C", [1e-3, 10.0], classifiers={"svc": make_pipeline(svm.SVC(kernel="linear"))})
+    for c in (1e-3, 10.0):
+        alone = accuracies(bt.run(with_keys(classifier="svc"), classifiers={"svc": svm.SVC(kernel="linear", C=c)}))
+        assert accuracies(study, C=c) == accuracies(of_pipeline, svc__C=c) == alone
+    assert accuracies(study, C=1e-3) != accuracies(study, C=10.0)
+    words = swept("svc", "svc.kernel", ["linear", "rbf"], classifiers={"svc": svm.SVC()})
+    assert accuracies(words, kernel="rbf") == accuracies(bt.run(with_keys(classifier="svc"), classifiers={"svc": svm.SVC()}))
+    turned = swept("mine", "mine.weight", [1.0, -50.0], classifiers={"mine": Turned()}, processes=2)
+    assert accuracies(turned, weight=1.0) == accuracies(bt.run(with_keys(classifier="mine"), classifiers={"mine": Turned()}))
+    assert accuracies(turned, weight=1.0) != accuracies(turned, weight=-50.0)
+    powers = swept("linear_svm", "powers.exponent", [1.0, 3.0], features={"powers": power})
+    one = bt.run(with_keys(classifier="linear_svm", features="cubes"), features={"cubes": lambda frames: np.abs(frames) ** 3.0})
+    assert accuracies(powers, exponent=3.0) == accuracies(one)
+    assert accuracies(powers, exponent=3.0) != accuracies(powers, exponent=1.0)
+
+
+def test_a_parameter_that_an_own_method_does_not_have_is_refused() -> None:
+    svm = pytest.importorskip("sklearn.svm")
+    own: dict[str, Any] = {"classifiers": {"svc": svm.SVC(), "mine": Turned()}, "features": {"powers": power}}
+    for key, words in (
+        ("svc.D", r"svc\.D = 1.*recognition\.parameters\.svc: classifier svc: .*Invalid parameter 'D' for estimator SVC"),
+        ("mine.wait", r"recognition\.parameters\.mine: classifier mine: .*no parameter wait; .*weight"),
+        ("powers.frames", r"recognition\.parameters\.powers: features powers: .*multiple values for argument 'frames'"),
+        ("powers.root", r"recognition\.parameters\.powers: features powers: .*unexpected keyword argument 'root'"),
+        ("svm.C", r"recognition\.parameters\.svm: given, but the study has no classifier or features of your own with this name"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            bt.run({**with_keys(classifier="linear_svm"), "axes": {f"recognition.parameters.{key}": [1, 2]}}, **own)
 
 
 FACTOR = 2.0

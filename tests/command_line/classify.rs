@@ -645,3 +645,26 @@ fn another_or_a_damaged_file_of_a_classifier_is_refused() {
     let both = ["classify", ".", "--model", "model.json", "--n-trees", "3"];
     assert_eq!(case.run(&both).status.code(), Some(2));
 }
+
+#[test]
+fn a_label_among_the_features_is_noted() {
+    let case = folder();
+    let classify = ["classify", ".", "--classifier", "nearest_centroid"];
+    let (_, said) = case.succeeds(&classify);
+    assert!(!said.contains("one value for each class"), "{said}");
+    let line = |row: &[f64], label: &i64| {
+        let [a, b, ..] = row else {
+            panic!("5 features")
+        };
+        format!("{a},{},{b}\n", 7 - 2 * label)
+    };
+    let (features, labels) = (features(), labels());
+    let rows = features.rows().into_iter().zip(&labels);
+    let rows = rows.map(|(row, label)| line(row.as_slice().unwrap(), label));
+    let text = "mean,label,std\n".to_owned() + &rows.collect::<String>();
+    std::fs::remove_file(case.path("features.npy")).unwrap();
+    case.file("features.csv", text);
+    let (_, said) = case.succeeds(&classify);
+    let words = "note: .: column 2 of the features has one value for each class; remove it if it is the label";
+    assert!(said.contains(words), "{said}");
+}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import inspect
+import json
 import pickle
 import random
 import re
@@ -13,6 +14,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from importlib import import_module
 from multiprocessing import get_context
 from sysconfig import get_paths
@@ -186,19 +188,37 @@ def _seeded(seed: int) -> Iterator[None]:
             torch.set_rng_state(states[2])
 
 
+def _copied(estimator: Any) -> Any:
+    """Returns an unfitted copy of an estimator."""
+    if hasattr(estimator, "get_params"):
+        try:
+            from sklearn.base import clone
+        except ImportError:
+            pass
+        else:
+            return clone(estimator)
+    return copy.deepcopy(estimator)
+
+
+def _with_parameters(estimator: Any, values: dict[str, Any]) -> Any:
+    """Returns an unfitted copy of an estimator with other values of its parameters. Without `set_params`, these are its variables."""
+    changed = _copied(estimator)
+    if hasattr(changed, "set_params"):
+        return changed.set_params(**values)
+    for name, value in values.items():
+        if not hasattr(changed, name):
+            raise ValueError(f"no parameter {name}; {', '.join(vars(changed))}")
+        setattr(changed, name, value)
+    return changed
+
+
 def _fresh(estimator: Any, seed: int) -> Any:
     """Returns an unfitted copy of an estimator. Each `random_state` that is None becomes the seed."""
-    if not hasattr(estimator, "get_params"):
-        fresh = copy.deepcopy(estimator)
+    fresh = _copied(estimator)
+    if not hasattr(fresh, "get_params"):
         if getattr(fresh, "random_state", 0) is None:
             fresh.random_state = seed
         return fresh
-    try:
-        from sklearn.base import clone
-    except ImportError:
-        fresh = copy.deepcopy(estimator)
-    else:
-        fresh = clone(estimator)
     unset = {key: seed for key, value in fresh.get_params().items() if key.rpartition("__")[2] == "random_state" and value is None}
     return fresh.set_params(**unset) if unset else fresh
 
@@ -299,6 +319,10 @@ class Trainer:
     def __init__(self, host: Host, estimator: Any) -> None:
         self._host, self._estimator = host, estimator
 
+    def with_parameters(self, values: str) -> Trainer:
+        """Returns the estimator with other values of its parameters, a JSON object."""
+        return Trainer(self._host, _with_parameters(self._estimator, json.loads(values)))
+
     def fit(self, rows: Rows, labels: NDArray[np.int64], seed: int, groups: NDArray[np.int64] | None = None) -> Any:
         return self._host.call(_fit, self._estimator, rows, labels, seed, groups)
 
@@ -316,6 +340,13 @@ class Function:
 
     def __init__(self, host: Host, function: Callable[[Rows], Any]) -> None:
         self._host, self._function = host, function
+
+    def with_parameters(self, values: str) -> Function:
+        """Returns the function with values of its keyword arguments, a JSON object."""
+        given = json.loads(values)
+        # Raises TypeError if the function has no such argument.
+        inspect.signature(self._function).bind(None, **given)
+        return Function(self._host, partial(self._function, **given))
 
     def compute(self, frames: Rows) -> Rows:
         made: Rows = self._host.call(_compute, self._function, frames)

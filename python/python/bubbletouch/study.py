@@ -147,7 +147,8 @@ def run(
     `layout` may be a Patch, or positions of taxels, metres, shape (n_taxels, 3), or positions and axes, shape (n_taxels, 6).
     classifiers: estimators with fit(X, y) and predict(X) as in scikit-learn, by name; a tuple (estimator, version) sets the version. The study trains each of
     them beside its own classifiers, on its splits and scaled features. A `random_state` that is None becomes the seed of the trial. If there is a
-    predict_proba, decisions on several touches add log-probabilities; otherwise they count votes. One touch is decided by predict.
+    predict_proba, decisions on several touches add log-probabilities; otherwise they count votes. One touch is decided by predict. The study's key
+    `recognition.parameters.NAME.PARAMETER`, also in `axes`, sets a parameter of a classifier by set_params, and of features as a keyword argument.
     features: functions by name, or tuples (function, version). A function converts frames of m measurements, shape (n, m), to features, shape (n, k). Without
     compression, a frame contains the taxels in rows: frames.reshape(-1, ny, nx).
     processes: number of processes in which estimators and functions run. 0: one call at a time in this process. Results have the same bytes.

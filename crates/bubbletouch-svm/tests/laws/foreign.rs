@@ -180,7 +180,7 @@ fn a_value_of_a_parameter_is_a_version_of_its_own_with_the_code_of_the_value() {
         assert_eq!(labels, alone.labels(rows.view()).unwrap());
         answers.push(labels);
     }
-    assert!(answers[0] != answers[1] && answers[1] != answers[2]);
+    assert_ne!(answers[1], answers[2]);
     assert_eq!(
         answers[1],
         trained(foreign).unwrap().labels(rows.view()).unwrap()

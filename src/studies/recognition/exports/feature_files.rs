@@ -15,10 +15,11 @@ use crate::engine::progress::{Progress, Silent};
 use crate::error::{Error, Result};
 use crate::files::{CsvFile, DataFolder, write_bytes};
 use crate::inputs::arrays::whole_numbers::{
-    KeyValue, read_class_labels, read_group_keys, read_rows,
+    ClassLabels, KeyValue, read_class_labels, read_group_keys, read_rows,
 };
 use crate::inputs::arrays::{is_member, read_matrix};
 use crate::inputs::npy::{write_integers, write_npy};
+use crate::note::note;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::{Measurements, measure_group};
 use crate::studies::recognition::measurements::measurement_inputs::MeasuredTrial;
@@ -243,6 +244,7 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
         test: read_rows(&file("test"), "test", n_rows)?,
     };
     check_split(folder, &split, n_rows)?;
+    note_class_columns(folder, &features, &labels);
     let features = features.as_standard_layout().into_owned();
     let data = dataset(features, Array1::from(labels.labels));
     let data = data.map_err(|error| Error::from(error).under(format!("{}: ", folder.display())))?;
@@ -252,6 +254,29 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
         groups: None,
         classes: labels.classes,
     })
+}
+
+/// Writes a note for each column of features that has one value for each class, as a column of labels has. A class has two rows or more on average.
+fn note_class_columns(folder: &Path, features: &Array2<f64>, labels: &ClassLabels) {
+    for (number, column) in features.columns().into_iter().enumerate() {
+        let mut values = vec![f64::NAN; labels.classes.len()];
+        let mut rows = labels.labels.iter().zip(column);
+        let is_of_class = rows.all(|(&label, &value)| {
+            let known = &mut values[label];
+            *known = if known.is_nan() { value } else { *known };
+            *known == value
+        });
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        let n_classes = labels.classes.len();
+        if is_of_class && values.len() == n_classes && features.nrows() >= 2 * n_classes {
+            note(format_args!(
+                "{}: column {} of the features has one value for each class; remove it if it is the label",
+                folder.display(),
+                number + 1
+            ));
+        }
+    }
 }
 
 /// Rows to which a trained classifier is applied.

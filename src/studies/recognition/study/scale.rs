@@ -19,6 +19,8 @@ const CELL_BYTES: f64 = 4e3;
 const NUMBER: f64 = 8.0;
 /// Memory of an encoded frame beside its values, bytes: its place in the list and the header of its allocation.
 const FRAME_BYTES: f64 = 32.0;
+/// Approximate memory of drawing pictures of touches, charts and the page, bytes, with memory of earlier stages that the allocator has not returned yet.
+const DRAWING_BYTES: f64 = 9.5e7;
 /// Number of directions in which principal components are sought beyond the components.
 const OVERSAMPLING: f64 = 16.0;
 
@@ -51,12 +53,16 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
             items: items.flat_map(|bytes| vec![bytes; n_alike]).collect(),
         }
     });
+    let drawing = Stage {
+        bytes: DRAWING_BYTES,
+        items: Vec::new(),
+    };
     Scale {
         objects: study.of_parts(|part| part.touched.class_names().len().to_string()),
         touches,
         n_configurations: study.n_configurations(),
         bytes: CELL_BYTES * (study.n_configurations() * study.n_trials()) as f64,
-        stages: stages.collect(),
+        stages: stages.chain([drawing]).collect(),
     }
 }
 
