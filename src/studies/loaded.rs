@@ -1,6 +1,4 @@
-//! Conversion of a loaded study of any kind to a type-erased study.
-//!
-//! Comparison of recomputed work items with the rows of a result folder.
+//! Conversion of a loaded study of any kind to a type-erased study, which can also be compared with its results.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;

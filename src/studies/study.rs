@@ -1,6 +1,4 @@
-//! Trait [`Study`], which every kind of study implements, and the types that a kind provides.
-//!
-//! Type-erased studies, which all commands use.
+//! Trait [`Study`], which every kind of study implements, the types that a kind provides, and the type-erased studies that all commands use.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;

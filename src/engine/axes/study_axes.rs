@@ -1,6 +1,4 @@
-//! All axes of a study, and the combinations of their values that become configurations.
-//!
-//! Values at dotted key paths, such as `skin.stroke_mm`, in tables of TOML.
+//! All axes of a study, and the combinations of their values that become configurations. The key of an axis is a dotted path, such as `skin.stroke_mm`.
 
 use super::study_axis::StudyAxis;
 use crate::error::{Error, Result};

@@ -1,8 +1,4 @@
-//! Journal of a run: a single file with one writer at a time.
-//!
-//! Journals of a study's shards in a result folder, and their union.
-//!
-//! Exclusive lock of a journal file.
+//! Journal of a run: a single file with one writer at a time. The journals of a study's shards can be joined.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::line::{Decoded, NO_STUDY, Records, decode, encode};

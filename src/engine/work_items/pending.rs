@@ -1,6 +1,4 @@
-//! Pending work items, which a run has yet to compute.
-//!
-//! Options of a run: the work items to compute, and the place where their results are stored.
+//! Pending work items, which a run has yet to compute, and the options of the run: the items to compute, and the place where their results are stored.
 
 use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::Progress;

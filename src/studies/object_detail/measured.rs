@@ -1,6 +1,4 @@
-//! Measurements of an object's models: surface deviation, deflection error, and computing time per touch.
-//!
-//! Models of a mesh whose deflections are compared with the deflections by the mesh.
+//! Models of an object's mesh, and their measurements: surface deviation, deflection error, and computing time per touch.
 
 use crate::error::Result;
 use crate::geometry::distinct_places;

@@ -1,6 +1,4 @@
-//! Plan of an object-detail study: checked keys, converted to SI units.
-//!
-//! Specification of an object-detail study: the keys of its TOML file.
+//! Keys of an object-detail study, and its plan: the checked values in SI units.
 
 use crate::inputs::range::Range::{Any, Count};
 use crate::inputs::range::{SURFACE_ERROR, TOUCHES};

@@ -1,6 +1,4 @@
-//! Object-detail study: computes models and their errors on all threads, and then computing times on one thread.
-//!
-//! Summary of the results over all objects, for each method and tolerance.
+//! Object-detail study: computes models and their errors on all threads, and then computing times on one thread. A summary covers all objects.
 
 use crate::engine::work_items::scale::Stage;
 use crate::inputs::object_files::{NamedMesh, load_named_meshes};

@@ -1,6 +1,4 @@
-//! Plan of a reconstruction study: checked keys, converted to SI units.
-//!
-//! Specification of a reconstruction study: the keys of its TOML file.
+//! Keys of a reconstruction study, and its plan: the checked values in SI units.
 
 use crate::engine::axes::CombineSpec;
 use crate::inputs::params::named;

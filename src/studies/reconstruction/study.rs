@@ -1,6 +1,4 @@
-//! Reconstruction study: simulates touches and computes dictionaries once, then reconstructs frames with every configuration.
-//!
-//! Memory estimate of a reconstruction study.
+//! Reconstruction study: simulates touches and computes dictionaries once, then reconstructs frames with every configuration. Its memory is estimated before.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::scale::Stage;

@@ -1,6 +1,4 @@
-//! Frames of all touches, divided into training and test frames, with and without noise, and the dictionaries computed from them.
-//!
-//! Errors of reconstructed frames, and the Pareto front of the configurations.
+//! Frames of all touches, divided into training and test frames, with and without noise. Dictionaries and the errors of reconstructed frames are computed from them.
 
 use crate::engine::progress::Progress;
 use crate::learning::data::split::stratified_hold_out;

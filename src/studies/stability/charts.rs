@@ -1,7 +1,7 @@
 //! Charts of a stability study: methods in the same scenes, and computing time against the number of taxels.
 //!
-//! Scenes that all methods of a part of the study have computed. Methods are compared on these scenes alone, because shares of different scenes differ. A method
-//! that has computed less than half of the scenes is not compared.
+//! Methods are compared in the scenes that all methods of a part have computed, because shares of different scenes differ. A method that has computed less than
+//! half of the scenes is not compared.
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
 use crate::quantile::quantile;

@@ -1,6 +1,4 @@
-//! Stability study: simulates all configurations and computes the result tables.
-//!
-//! Results of other programs for the same configurations, read from a CSV file.
+//! Stability study: simulates all configurations, reads the results of other programs for these configurations, and computes the result tables.
 
 use crate::engine::work_items::scale::Stage;
 use crate::inputs::units::MM;

@@ -1,8 +1,4 @@
-//! Charts and answers of a whole-body study.
-//!
-//! Chart of accuracy against the memory of the measurement matrix.
-//!
-//! Picture of the scene with the most touched patches: one view of the robot with the object, one of the pressure on the robot's patches.
+//! Charts, answers and the picture of a whole-body study.
 
 use crate::objects::Sphere;
 use crate::report::pictures::colours::{PAINT, Rgb, tint};

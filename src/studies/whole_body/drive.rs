@@ -1,6 +1,4 @@
-//! Motion of an object over a robot's skin, and the search for its first contact.
-//!
-//! Sphere models of the objects that touch a robot: scene objects, built-in objects, and square cushions of spheres for scaling series.
+//! Sphere models of the objects that touch a robot, their motion over its skin, and the search for the first contact.
 
 use crate::geometry::Pose;
 use crate::inputs::objects_spec::ModelSpec;
