@@ -6,8 +6,8 @@ use crate::engine::progress::Progress;
 use crate::engine::provenance::Manifest;
 use crate::engine::work_items::run_options::{Part, RunOptions};
 use crate::error::{Error, Result};
-use crate::report::chart_format::ChartFormat;
 use crate::report::page::StudyAbout;
+use crate::report::study_content::ChartFormat;
 use crate::table::Table;
 use std::path::Path;
 

@@ -11,7 +11,7 @@ use crate::inputs::object_files::{load_objects, objects_content};
 use crate::random::Seed;
 use crate::report::study_content::Beyond;
 use crate::studies::found_and_cost;
-use crate::studies::recognition::charts::tables::set_noise_unit;
+use crate::studies::recognition::tables::table_files::set_noise_unit;
 use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
 use crate::studies::reconstruction::measured::measure_cells;
 use crate::studies::reconstruction::memory::memory;

@@ -14,7 +14,6 @@
 mod charts;
 mod drive;
 mod ladders;
-mod memory_chart;
 mod objects;
 mod picture;
 mod plan;
