@@ -22,6 +22,7 @@ use bubbletouch::recognition::{ClassifierKind, ModelFile};
 use bubbletouch::study::{
     CONFIDENCE, FeatureSet, KeyValue, NewRows, read_features, read_new_rows, write_npy, write_texts,
 };
+use bubbletouch::table::short_number;
 use bubbletouch::{Error, Result};
 use ndarray::{Array1, Axis};
 use serde::de::IntoDeserializer;
@@ -464,7 +465,9 @@ fn tell(found: &Findings) -> Result<()> {
         found.accuracy, found.accuracy_low, found.accuracy_high, found.n_correct, found.n_test
     ))?;
     if let Some(Chosen { best, tried, .. }) = &found.chosen {
-        let gamma = best.gamma.map(|gamma| format!(" and γ = {gamma:.3e}"));
+        let gamma = best
+            .gamma
+            .map(|gamma| format!(" and γ = {}", short_number(gamma)));
         say(format_args!(
             "choice    C = {}{}, {:.4} on validation rows, of {} candidates",
             best.c,

@@ -75,7 +75,7 @@ pub fn compare(args: &Args) -> Result<()> {
             (&found, ranks.as_ref(), &changed),
             (&first_name, &second_name),
         )?;
-        write_bytes(html, page.as_bytes())?;
+        write_bytes(html, &page)?;
     }
     say(format_args!("First: {first_name}; second: {second_name}."))?;
     let width = terminal_width();

@@ -4,7 +4,7 @@ use crate::command::options::memory_limit::MemoryLimit;
 use crate::command::options::study_args::StudyArgs;
 use crate::command::terminal::streams::say;
 use bubbletouch::kinds::AnyStudy;
-use bubbletouch::report::run_clock::RunClock;
+use bubbletouch::report::progress::RunClock;
 
 use bubbletouch::study::progress::Progress;
 use bubbletouch::study::work_items::RunOptions;

@@ -6,6 +6,7 @@ use crate::inputs::memory::{check_memory, machine_memory};
 use crate::inputs::range::Range;
 use crate::inputs::toml_value::{number, value_at};
 use crate::inputs::units::{MM, millimetres};
+use bubbletouch_sim::text::numbers::short_number;
 use serde::Serialize;
 
 /// Maximum number of values that one key may sweep. A longer list indicates a mistake, and the search for duplicates compares all pairs of values.
@@ -105,7 +106,7 @@ impl Check<'_> {
         let given = if n < 1e15 {
             format!("{n:.0} configurations")
         } else {
-            format!("{n:.1e} configurations")
+            format!("{} configurations", short_number(n))
         };
         let allowed = format!(
             "at most {MAX_CONFIGURATIONS}, all combinations of the values of its axes: fewer values, or several studies"

@@ -11,7 +11,6 @@
 pub mod advice;
 pub mod advice_answers;
 pub mod chart;
-pub(crate) mod chart_format;
 pub mod comparison;
 pub mod csv_tables;
 pub mod folder;
@@ -19,7 +18,6 @@ pub mod page;
 pub mod pictures;
 pub mod progress;
 pub mod recording;
-pub mod run_clock;
 pub mod scene_files;
 pub mod scene_summary;
 pub(crate) mod study_content;

@@ -1,7 +1,9 @@
-//! Content of a study's page and result folder.
+//! Content of a study's page and result folder: metadata, tables, charts, pictures and sections.
 
+use crate::engine::provenance::Manifest;
 use crate::report::page::Section;
 use crate::table::{ChartSpec, Table};
+use serde::Deserialize;
 
 /// Picture in a report that is not a chart, for example of frames, spheres or objects.
 pub struct NamedPicture {
@@ -35,4 +37,40 @@ pub struct Beyond {
     pub first_sections: Vec<Section>,
     /// Additional sections of the study's HTML page before the tables.
     pub sections: Vec<Section>,
+}
+
+/// Metadata of a study for its page: name, question, provenance and report options.
+#[derive(Clone, Debug, Default)]
+pub struct StudyAbout {
+    /// Name of the study.
+    pub name: String,
+    /// Question that the study answers, in one sentence.
+    pub question: String,
+    /// Answer that the author of the study expected before the run; may be empty.
+    pub expected: String,
+    /// Duration of the run, seconds; NaN if unknown.
+    pub wall_s: f64,
+    /// Command that reproduces the result folder.
+    pub command: String,
+    /// Name and version of the program, such as `bubbletouch 0.1.0`.
+    pub program: String,
+    /// Provenance of the results (program, machine, times and hashes), if known.
+    pub manifest: Option<Manifest>,
+    /// Whether all charts are written as files; otherwise, their number is limited.
+    pub all_charts: bool,
+    /// File format of the charts.
+    pub chart_format: ChartFormat,
+}
+
+/// File formats in which charts are written. Pictures of frames and objects are always PNG files.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChartFormat {
+    /// SVG files only, about a fifth of the size of PNG files.
+    #[default]
+    Svg,
+    /// PNG files only, with two pixels per unit of the SVG file.
+    Png,
+    /// Two files per chart, in the formats SVG and PNG.
+    Both,
 }

@@ -3,10 +3,9 @@
 use crate::error::Result;
 use crate::inputs::content_hash::short_hash;
 use crate::report::chart;
-pub use crate::report::chart_format::ChartFormat;
 use crate::report::folder::NamedFile;
 use crate::report::page::{Beside, StudyAbout, study_page};
-pub use crate::report::study_content::{Beyond, Found, NamedPicture};
+pub use crate::report::study_content::{Beyond, ChartFormat, Found, NamedPicture};
 use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
@@ -102,22 +101,6 @@ fn short_name(name: &str) -> String {
     });
     let start: String = start.collect();
     format!("{start}_{}", short_hash(name, NAME_DIGITS))
-}
-
-/// Returns only the HTML page of a result folder, without other files.
-///
-/// # Errors
-/// If a chart cannot be drawn.
-pub(super) fn page_of(about: &StudyAbout, found: &Found) -> Result<String> {
-    let draw = |spec: &ChartSpec| {
-        let drawing = chart::draw(spec, found.tables)?;
-        Ok(drawing.svg_with_data(&spec.title))
-    };
-    let beside = Beside {
-        charts: found.charts.iter().map(draw).collect::<Result<_>>()?,
-        ..Beside::default()
-    };
-    Ok(study_page(about, found, &beside))
 }
 
 /// Returns the text that the terminal shows after a run: the first table, the answers, and the other tables, at about `width` characters per line.

@@ -271,6 +271,23 @@ impl<'a> Swept<'a> {
     }
 }
 
+/// Returns the choices and conditions with an equal value in all given rows as phrases without line breaks; those for which `is_said` returns false are omitted.
+pub fn constant_phrases(
+    table: &Table,
+    rows: &[usize],
+    is_said: impl Fn(&Setting) -> bool,
+) -> Vec<String> {
+    let settings = Setting::of_roles(table, &[Role::Choice, Role::Condition]);
+    let has_one = |one: &Setting| {
+        let value = rows.first().and_then(|&row| one.data.value(row));
+        value.is_some() && !one.varies(rows) && is_said(one)
+    };
+    let phrases = settings
+        .filter(has_one)
+        .map(|one| one.phrase(rows[0]).replace(' ', "\u{a0}"));
+    phrases.collect()
+}
+
 /// Returns whether a numeric setting has a number in every given row.
 fn numbers_are_there(setting: &Setting, rows: &[usize]) -> bool {
     rows.iter().all(|&row| setting.data.value(row).is_some())

@@ -1,9 +1,9 @@
 //! Text output on the terminal: tables that fit the width of the terminal.
 
 use crate::report::pictures::colours::Rgb;
-use crate::report::swept::{Setting, Swept, without};
+use crate::report::swept::{Setting, Swept, constant_phrases, without};
 use crate::report::text_width::break_lines;
-use crate::table::{Column, Role, Table, Value};
+use crate::table::{Better, Role, Table, Value};
 use comfy_table::{
     CellAlignment, ColumnConstraint, ContentArrangement, Table as TextTable, TableComponent, Width,
     presets,
@@ -15,6 +15,9 @@ const MAX_LINES: usize = 40;
 
 /// Number of spaces between two columns of a table.
 const COLUMN_GAP: usize = 3;
+
+/// Smallest width for which a table is laid out, characters.
+const NARROWEST: usize = 20;
 
 /// Number of colours that a terminal or another output supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,76 +99,84 @@ impl TextColumn {
 const WIDE: usize = 24;
 
 /// Returns a table as text without escape codes, in lines of at most `width` characters. Settings that are equal in all rows are stated once, at the start.
-/// Each row then has a line with its varying settings, values and costs. If the settings leave no space for a value, one column has all choices and conditions. A
-/// remark names the columns for which there is no space.
-///
-/// A table of more than 40 rows is shown as a pivot table: one setting runs along the columns. If the settings do not distinguish all rows, the text contains
-/// the first 40 rows and the number of all rows.
+/// Each row then has a line with its varying settings, values and costs; of more than 40 rows, those with the best values are shown. If the settings leave no
+/// space for a value, one column has all choices and conditions. A remark names the columns for which there is no space.
 pub fn table_text(table: &Table, width: usize) -> String {
-    if table.n_rows > MAX_LINES
-        && let Some(text) = pivot_text(table, width)
-    {
-        return text;
-    }
-    let n_lines = table.n_rows.min(MAX_LINES);
+    let rows = best_rows(table);
     let of = |setting: &Setting| TextColumn {
         head: setting.column.words.to_string(),
-        said: (0..n_lines)
-            .map(|row| table.bounded(setting.column, row))
+        said: rows
+            .iter()
+            .map(|&row| table.bounded(setting.column, row))
             .collect(),
         is_number: setting.is_number(),
         most: WIDE,
     };
     let shown = shown_columns(table);
     let mut columns: Vec<TextColumn> = shown.iter().map(of).collect();
-    let is_setting = |one: &&Setting| {
-        matches!(
-            one.column.role,
-            Role::Choice | Role::Condition | Role::Subject
-        )
+    let n_of = |settings: &[Setting], roles: &[Role]| {
+        let of_roles = settings
+            .iter()
+            .filter(|one| roles.contains(&one.column.role));
+        of_roles.count()
     };
-    let n_needed = 1 + shown.iter().filter(is_setting).count();
+    let n_needed = 1 + n_of(&shown, &[Role::Choice, Role::Condition, Role::Subject]);
     if n_fitting(&columns, width) < n_needed.min(columns.len()) {
         let (settings, others): (Vec<Setting>, Vec<Setting>) = shown
             .iter()
             .copied()
             .partition(|one| matches!(one.column.role, Role::Choice | Role::Condition));
-        let rows: Vec<usize> = (0..table.n_rows).collect();
-        let following = Swept::new(table, &rows).following;
+        let following = Swept::new(table, &(0..table.n_rows).collect::<Vec<_>>()).following;
         let settings = following
             .iter()
             .fold(settings, |kept, one| without(&kept, one));
         let heads: Vec<&str> = settings.iter().map(|one| &one.column.words[..]).collect();
         let together = TextColumn {
             head: heads.join(", "),
-            said: (0..n_lines)
-                .map(|row| Setting::short_words(&settings, row))
+            said: rows
+                .iter()
+                .map(|&row| Setting::short_words(&settings, row))
                 .collect(),
             is_number: false,
             most: width / 2,
         };
         columns = others.iter().map(of).collect();
-        let n_subjects = others
-            .iter()
-            .filter(|one| one.column.role == Role::Subject)
-            .count();
+        let n_subjects = n_of(&others, &[Role::Subject]);
         if !settings.is_empty() {
             columns.insert(n_subjects, together);
         }
     }
     let heads: Vec<String> = columns.iter().map(|column| column.head.clone()).collect();
-    let (lines, n_shown) = columns_text(columns, n_lines, width);
+    let (lines, n_shown) = columns_text(columns, rows.len(), width);
     let mut text = constants(table, width) + &lines;
     if let left_out @ [_, ..] = &heads[n_shown..] {
         let remark = format!("Left out at this width: {}.", left_out.join(", "));
         text += &paragraph(&remark, width);
     }
     if table.n_rows > MAX_LINES {
-        let (n, file) = (table.n_rows, table.file);
-        let remark = format!("The first {MAX_LINES} of {n} rows; all are in {file}.");
+        let n = table.n_rows;
+        let remark = format!("The best {MAX_LINES} of {n} rows; all are in the tables.");
         text += &paragraph(&remark, width);
     }
     text
+}
+
+/// Returns all rows of a table; of more than [`MAX_LINES`] rows, those with the best values in the first column that has a better direction, the best first.
+fn best_rows(table: &Table) -> Vec<usize> {
+    let mut rows: Vec<usize> = (0..table.n_rows).collect();
+    if table.n_rows > MAX_LINES {
+        let ranked = Setting::all(table).find_map(|one| match one.column.role {
+            Role::Value(Better::More) => Some((one, -1.0)),
+            Role::Value(Better::Less) => Some((one, 1.0)),
+            _ => None,
+        });
+        if let Some((one, sign)) = ranked {
+            let key = |row: &usize| sign * one.position(*row).unwrap_or(f64::INFINITY * sign);
+            rows.sort_by(|a, b| key(a).total_cmp(&key(b)));
+        }
+        rows.truncate(MAX_LINES);
+    }
+    rows
 }
 
 /// Returns the columns of a table to show: varying settings, followed by values and outcomes, and costs.
@@ -223,20 +234,17 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
         if text.is_number {
             column.set_cell_alignment(CellAlignment::Right);
         }
-        // Headings and long texts wrap between words; numbers with units and intervals do not wrap. The width includes the padding.
-        let most = if text.is_number {
-            usize::MAX
-        } else {
-            text.most
-        };
-        let widest = text.said.iter().map(|text| letters(text)).max();
-        let unbroken = widest.unwrap_or(0).min(most);
-        let least = unbroken.max(longest_word(&text.head)) + 2;
-        column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(least as u16)));
+        // The width includes the padding.
+        let least = Width::Fixed(text.least_width() as u16 + 2);
+        column.set_constraint(ColumnConstraint::LowerBoundary(least));
     }
     let lines = shown.lines();
     let lines: String = lines
-        .map(|line| line.trim_end().to_owned() + "\n")
+        .map(|line| {
+            // The line below the header is as long as the columns with their gaps.
+            let line: String = line.chars().take(width.max(NARROWEST)).collect();
+            line.trim_end().to_owned() + "\n"
+        })
         .collect();
     (lines, columns.len())
 }
@@ -247,73 +255,14 @@ fn constants(table: &Table, width: usize) -> String {
     if rows.len() < 2 {
         return String::new();
     }
-    let fixed = Swept::new(table, &rows).fixed;
     // Conditions of zero (ideal ones) are omitted.
-    let is_said = |setting: &&Setting| {
-        let value = setting.data.value(0);
-        let is_ideal = setting.column.role == Role::Condition && value == Some(Value::Number(0.0));
-        value.is_some() && !is_ideal
+    let is_ideal = |one: &Setting| {
+        one.column.role == Role::Condition && one.data.value(0) == Some(Value::Number(0.0))
     };
-    let said = fixed.iter().filter(is_said);
-    let said: Vec<String> = said
-        .map(|setting| setting.phrase(0).replace(' ', "\u{a0}"))
-        .collect();
-    match said.is_empty() {
-        true => String::new(),
-        false => paragraph(&format!("All rows: {}", said.join("\u{a0}· ")), width) + "\n",
+    match &constant_phrases(table, &rows, |one| !is_ideal(one))[..] {
+        [] => String::new(),
+        said => paragraph(&format!("All rows: {}", said.join("\u{a0}· ")), width) + "\n",
     }
-}
-
-/// Returns a pivot table if a table has too many rows for the terminal: one setting in the columns, all others in the rows. Returns `None` if the settings do
-/// not distinguish all rows.
-fn pivot_text(table: &Table, width: usize) -> Option<String> {
-    let rows: Vec<usize> = (0..table.n_rows).collect();
-    let swept = Swept::new(table, &rows);
-    let across = swept.main(&rows)?;
-    let mut values = table.columns.iter();
-    let value = values.find(|column| matches!(column.role, Role::Value(_)))?;
-    if swept.groups(&swept.free, &rows).len() < rows.len() {
-        return None;
-    }
-    let down = without(&swept.free, &across);
-    let lines = swept.groups(&down, &rows);
-    let shown = &lines[..lines.len().min(MAX_LINES)];
-    let labels = down.iter().map(|one| TextColumn {
-        head: one.column.words.to_string(),
-        said: shown.iter().map(|line| one.label(line[0])).collect(),
-        is_number: one.is_number(),
-        most: WIDE,
-    });
-    let alone = Column {
-        interval: None,
-        ..value.clone()
-    };
-    let levels = across.levels(&rows);
-    let at = |line: &Vec<usize>, level: usize| {
-        let mut line = line.iter();
-        let row = line.find(|&&row| across.data.key(row) == across.data.key(level));
-        row.map_or_else(|| "-".to_owned(), |&row| table.bounded(&alone, row))
-    };
-    let values = levels.iter().map(|&level| TextColumn {
-        head: across.label(level),
-        said: shown.iter().map(|line| at(line, level)).collect(),
-        is_number: true,
-        most: WIDE,
-    });
-    let columns = labels.chain(values).collect();
-    let (text, n_shown) = columns_text(columns, shown.len(), width);
-    let n_hidden = down.len() + levels.len() - n_shown;
-    let all = match (lines.len() - shown.len(), n_hidden) {
-        (0, 0) => "A".to_owned(),
-        (lines_hidden, columns_hidden) => format!(
-            "Left out here: {lines_hidden} of {} lines, {columns_hidden} of {} columns; a",
-            lines.len(),
-            levels.len()
-        ),
-    };
-    let remark = format!("{all}ll {} rows are in the tables.", table.n_rows);
-    let head = format!("{}; across: {}\n", value.words, across.column.words);
-    Some(constants(table, width) + &head + &text + &paragraph(&remark, width))
 }
 
 /// Formats rows of text as aligned columns without lines between them. The columns with indices in `texts` are left-aligned, all others right-aligned.
@@ -333,12 +282,12 @@ pub fn rows_text(
     table.to_string()
 }
 
-/// Creates a table with a line below its header, at least 20 characters wide; its texts wrap to fit the width.
+/// Creates a table with a line below its header, at least [`NARROWEST`] characters wide; its texts wrap to fit the width.
 fn ruled_table(width: usize) -> TextTable {
     let mut table = TextTable::new();
     table.load_preset(presets::NOTHING);
     table.set_content_arrangement(ContentArrangement::Dynamic);
-    table.set_width(width.clamp(20, usize::from(u16::MAX)) as u16);
+    table.set_width(width.clamp(NARROWEST, usize::from(u16::MAX)) as u16);
     table.set_style(TableComponent::HeaderLines, '-');
     table.set_style(TableComponent::MiddleHeaderIntersections, '-');
     table

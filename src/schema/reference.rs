@@ -6,7 +6,7 @@ use super::scene_schema;
 use super::study_schema::{KindSchema, kinds};
 use crate::inputs::keys::{AxisPlace, KeyAbout, unit_of};
 use crate::inputs::params::{ORDER, sentence};
-use crate::table::short_number;
+use bubbletouch_sim::text::numbers::short_literal;
 use serde_json::Value;
 
 /// Introduction of the page `guide/tables.md`.
@@ -403,7 +403,7 @@ fn range(schema: &Value) -> String {
     let choices = ["anyOf", "oneOf"].map(|choice| schema[choice].as_array());
     let choices = choices.into_iter().flatten().flatten();
     let inner = std::iter::once(&schema["items"]).chain(choices);
-    let own = |keyword: &str| schema[keyword].as_f64().map(short_number);
+    let own = |keyword: &str| schema[keyword].as_f64().map(short_literal);
     let least = own("minimum").map(|number| format!("≥ {number}"));
     let above = own("exclusiveMinimum").map(|number| format!("> {number}"));
     let most = own("maximum").map(|number| format!("≤ {number}"));
@@ -428,7 +428,7 @@ fn default(schema: &Value) -> String {
         Value::Null | Value::Object(_) => String::new(),
         Value::Number(number) => format!(
             "`{}`",
-            number.as_f64().map_or_else(String::new, short_number)
+            number.as_f64().map_or_else(String::new, short_literal)
         ),
         Value::Array(values) if values.is_empty() => String::new(),
         Value::String(text) if text.is_empty() => String::new(),

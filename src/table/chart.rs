@@ -1,6 +1,6 @@
 //! Specification of a chart: its columns, and the type of its marks.
 
-use super::{Column, Table, Value, for_each_mark};
+use super::{Column, Table, Value};
 
 /// Specification of a chart, which is drawn as SVG and PNG; the result page contains the SVG.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -45,16 +45,25 @@ pub struct ChartSpec {
 }
 
 impl Table {
-    /// Creates the specification of a line chart of y against x, with the note of the table.
+    /// Creates the specification of a line chart of y against x, with the note of the table. In the title, the display names of the columns replace `{x}` and
+    /// `{y}`; the title starts with a capital letter.
     pub fn chart(
         &self,
         name: impl Into<String>,
         title: impl Into<String>,
         (y, x): (&str, &str),
     ) -> ChartSpec {
+        let words = |name| {
+            let column = self.column(name);
+            column.map_or_else(String::new, |(column, _)| column.words.to_string())
+        };
+        let title = title.into().replace("{x}", &words(x));
+        let title = title.replace("{y}", &words(y));
+        let mut letters = title.chars();
+        let first = letters.next().map(char::to_uppercase);
         ChartSpec {
             name: name.into(),
-            title: title.into(),
+            title: first.into_iter().flatten().chain(letters).collect(),
             note: self.note.clone(),
             table: self.file,
             x: x.to_owned(),
@@ -84,17 +93,20 @@ pub struct Shown {
     pub value: Value,
 }
 
-macro_rules! declare_mark {
-    ($($(#[$doc:meta])* $name:ident $({ $($columns:tt)* })? $file:ident;)*) => {
-        /// Type of the marks of a chart, such as lines, points or tiles.
-        #[derive(Clone, Debug, Default, PartialEq)]
-        pub enum Mark {
-            $($(#[$doc])* $name $({ $($columns)* })?,)*
-        }
-    };
+/// Type of the marks of a chart, such as lines, points or tiles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Mark {
+    /// Points joined by lines along x. If the x column contains words, the points are not joined.
+    #[default]
+    Line,
+    /// Points that are not joined by lines.
+    Points,
+    /// One coloured tile for each pair of x and y values.
+    Tiles {
+        /// Column that determines the colour of the tiles: outcomes with one colour each, or numbers on a sequential colour scale.
+        fill: String,
+    },
 }
-
-for_each_mark!(declare_mark);
 
 impl Mark {
     /// Returns the name of the column that determines the colour of the marks; `None` if there is no such column.

@@ -1,6 +1,6 @@
 //! Description of a table column: name, display name, unit, scale and role.
 
-use super::value::Value;
+use super::Value;
 use bubbletouch_sim::text::numbers::{short_number, time_words};
 use std::borrow::Cow;
 

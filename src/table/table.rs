@@ -2,7 +2,7 @@
 
 use super::{Better, Column, Role, Scale};
 use crate::error::{Error, Result};
-use crate::table::value::Value;
+use serde::Serialize;
 use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
@@ -42,6 +42,16 @@ pub enum Data {
         /// Index in `levels` of the text in each row.
         codes: Vec<u32>,
     },
+}
+
+/// Value of one table entry: a number or a word.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// Number in the unit of its column.
+    Number(f64),
+    /// Word or code, as written in the file.
+    Word(String),
 }
 
 impl From<f64> for Value {
@@ -95,6 +105,14 @@ impl Data {
         match self {
             Self::Numbers(numbers) => numbers[row].to_bits(),
             Self::Words { codes, .. } => u64::from(codes[row]),
+        }
+    }
+
+    /// Returns the position of a text among the distinct texts of the column; `None` if the column lacks it.
+    pub fn level(&self, word: &str) -> Option<usize> {
+        match self {
+            Self::Numbers(_) => None,
+            Self::Words { levels, .. } => levels.iter().position(|level| level == word),
         }
     }
 

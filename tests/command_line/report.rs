@@ -64,7 +64,7 @@ fn touches_beyond_the_stroke_and_listed_values_that_are_mixed_are_said_once() {
         "{limits}"
     );
     let page = fs::read_to_string(case.path("listed/report.html")).unwrap();
-    assert!(page.contains("<b>12 of 48</b> touches deeper than the stroke"));
+    assert!(page.contains("12 of 48 touches deeper than the stroke"));
     // Nothing is printed about a study that has neither.
     case.file("asked.toml", STUDY);
     let (plan, _) = case.succeeds(&["plan", "asked.toml"]);
@@ -496,11 +496,7 @@ fn with_too_few_trials_there_is_no_p_value_and_with_enough_there_is() {
     );
     case.succeeds(&["run", "other.toml", "--out", "other"]);
     let (said, _) = case.succeeds(&["compare", "few", "other"]);
-    assert!(
-        said.contains("No p-values: 2 trials per setting")
-            && said.contains("at least 4 are needed"),
-        "{said}"
-    );
+    assert!(said.contains("not tested: 4 trials are needed"), "{said}");
     assert!(!said.contains("One trial"), "{said}");
 }
 
@@ -520,7 +516,7 @@ fn two_folders_stand_side_by_side_in_a_page() {
     for part in [
         "accuracy.csv: 4 settings are in both runs",
         "accuracy: 4 the same",
-        "accuracy in both runs",
+        "Accuracy in both runs",
         "p (Holm)",
         "First: asked; second: same.",
     ] {

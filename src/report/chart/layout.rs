@@ -8,7 +8,7 @@ use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::text_width::{shorten, text_width, wrap};
 
 /// Font size of the labels of axis ticks, pixels.
-pub(super) const TICK: f64 = 12.0;
+const TICK: f64 = 12.0;
 /// Font size of axis and panel titles, pixels.
 const LABEL: u32 = 13;
 /// Gap between neighbouring panels, pixels.
@@ -16,7 +16,11 @@ const GAP: f64 = 26.0;
 /// Minimum width of a chart, pixels; leaves enough space for the title.
 const NARROWEST: f64 = 560.0;
 /// Maximum width of the labels to the left of panels or tiles, pixels.
-const WIDEST: f64 = 230.0;
+pub(super) const WIDEST: f64 = 230.0;
+/// Font size of the names at the ends of lines, pixels.
+pub(super) const END_LABEL: f64 = 11.0;
+/// Space between a panel and the name of a line beside it, pixels.
+pub(super) const END_GAP: f64 = 24.0;
 /// Maximum height of a rotated label below a panel, pixels.
 const DEEPEST: f64 = 160.0;
 /// Maximum number of lines of a label below a panel.
@@ -66,21 +70,19 @@ impl Layout {
         let titled = TITLE_LINE * titles.iter().map(Vec::len).max().unwrap_or(0) as f64;
         let above = 10.0 + titled;
         let panels_width = columns as f64 * (size.0 + GAP) - GAP;
-        let width = f64::max(panels_width + left + RIGHT, NARROWEST);
+        let ends = view.lines.names.iter().chain([&view.lines.heading]);
+        let ends = ends.filter(|_| view.has_end_labels());
+        let ends = ends.map(|name| END_GAP + text_width(name, END_LABEL).min(WIDEST));
+        let right = RIGHT + ends.fold(0.0, f64::max);
+        let width = f64::max(panels_width + left + right, NARROWEST);
         let inner = width - LEFT - RIGHT;
         let mut settings = wrap(&view.constants(), CAPTION, inner);
-        let others = settings.split_off(settings.len().min(1)).join(" ");
-        let others = match &others[..] {
-            "" => others,
-            more => format!("Also at {more}"),
-        };
-        if let Some(first) = settings.first_mut()
-            && first.ends_with(',')
-        {
-            first.pop();
-            first.push('.');
+        let mut note = view.spec.note.clone();
+        if settings.len() > 1 {
+            note = format!("{} {note}", view.constants());
+            settings.clear();
         }
-        let caption = [format!("{others} {}", view.spec.note), view.omitted()];
+        let caption = [note, view.omitted()];
         let caption = caption.iter().flat_map(|text| wrap(text, CAPTION, inner));
         let caption = caption.collect();
         let heading = Heading::new(&view.spec.title, settings, entries, inner);
@@ -218,7 +220,7 @@ impl XLabels {
         let labels = scale.ticks.iter().map(|tick| &tick.label[..]);
         let mut is_turned = false;
         let lines: Vec<Vec<String>> = if scale.is_words {
-            let room = width / scale.n_levels as f64 - 4.0;
+            let room = width / scale.levels.len() as f64 - 4.0;
             let lines: Vec<_> = labels
                 .clone()
                 .map(|label| wrap(label, TICK, room))

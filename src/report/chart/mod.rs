@@ -1,16 +1,16 @@
 //! Charts: a [`ChartSpec`] and a table are converted to a [`Drawing`].
 //!
 //! All charts have one renderer. `view` selects rows, lines and panels of the table. `scale` maps values to fractions of an axis. `layout` computes the pixel
-//! positions of the panels. `marks` and `series` draw the data. The page embeds the drawings: each mark is a group with its row number, so that the page's
+//! positions of the panels. `series` and `tiles` draw the data. The page embeds the drawings: each mark is a group with its row number, so that the page's
 //! script finds the row's values.
 
 mod front;
 mod layout;
 mod legend;
-mod marks;
 mod rules;
 mod scale;
 mod series;
+mod tiles;
 mod view;
 
 pub use view::Place;
@@ -34,7 +34,10 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
             "one at least",
         ));
     }
-    (spec.mark.about().draw)(&view)
+    match spec.mark.fill() {
+        Some(fill) => tiles::draw(&view, fill),
+        None => series::draw(&view),
+    }
 }
 
 /// Returns the positions of all drawn rows, as fractions of the panel's width (from the left) and height (from below).

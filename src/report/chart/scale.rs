@@ -1,6 +1,6 @@
 //! Axis scale of charts: maps values to fractions of an axis.
 
-use crate::report::pictures::even_ticks::{even_ticks, tick_step};
+use crate::report::pictures::picture_axes::{even_ticks, tick_step};
 use crate::table::{Along, Column, Role, Scale as Spacing};
 
 /// Fraction of the length of a logarithmic axis that is reserved for the value zero.
@@ -11,13 +11,13 @@ const MAX_SWEPT: usize = 40;
 /// Scale of an axis, which converts values to fractions of the axis length.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scale {
-    /// Values (or their logarithms) in ascending order, each with its position on the axis. Between two values, positions are interpolated linearly.
-    anchors: Vec<(f64, f64)>,
+    /// Values at the ends of a continuous axis, or their logarithms.
+    ends: (f64, f64),
+    /// Values of an axis of texts or tiles, each with its position on the axis; empty for a continuous axis.
+    pub levels: Vec<(f64, f64)>,
     is_log: bool,
     /// End of the part of a logarithmic axis that shows zero, as a fraction of the axis length; `None` if no value is zero.
     pub shelf: Option<f64>,
-    /// Number of distinct positions on an axis of texts or tiles; 0 for a continuous axis.
-    pub n_levels: usize,
     /// Whether the axis shows texts; positions between two texts have no meaning.
     pub is_words: bool,
     /// Ticks that may have a label, in ascending order of their values.
@@ -69,7 +69,7 @@ impl Scale {
             }
         };
         let scale = Self {
-            anchors: vec![(low, shelf.unwrap_or(0.0)), (high, 1.0)],
+            ends: (low, high),
             is_log,
             shelf,
             title: column.title(),
@@ -81,27 +81,24 @@ impl Scale {
     /// Creates a scale with one position for each value of a column. Words keep the given order (from the top along y); numbers of tiles are ascending.
     pub fn of_levels(column: &Column, (values, words): (&[f64], &[String]), along: Along) -> Self {
         let is_words = column.scale == Spacing::Words;
-        let levels = match is_words {
+        let levels: Vec<f64> = match is_words {
             true => (0..words.len()).map(|word| word as f64).collect(),
             false => distinct(values),
         };
-        let part = |place: usize| {
-            let part = (place as f64 + 0.5) / levels.len() as f64;
+        let n = levels.len() as f64;
+        let part = |(place, &level): (usize, &f64)| {
+            let part = (place as f64 + 0.5) / n;
             match is_words && along == Along::Y {
-                true => 1.0 - part,
-                false => part,
+                true => (level, 1.0 - part),
+                false => (level, part),
             }
         };
-        let mut scale = Self {
-            is_log: column.scale == Spacing::Log && levels.iter().all(|&level| level > 0.0),
-            n_levels: levels.len(),
+        let scale = Self {
+            levels: levels.iter().enumerate().map(part).collect(),
             is_words,
             title: column.title(),
             ..Self::default()
         };
-        let anchors = levels.iter().enumerate();
-        let anchors = anchors.map(|(place, &level)| (scale.spaced(level), part(place)));
-        scale.anchors = anchors.collect();
         scale.with_ticks(&levels, |&level| match is_words {
             true => words[level as usize].clone(),
             false => column.tick(level),
@@ -121,32 +118,22 @@ impl Scale {
         self
     }
 
-    fn spaced(&self, value: f64) -> f64 {
-        match self.is_log {
-            true => value.log10(),
-            false => value,
-        }
-    }
-
     /// Returns the position of a value as a fraction of the axis length; `None` if the value has no position.
     pub fn place(&self, value: f64) -> Option<f64> {
+        if !self.levels.is_empty() {
+            let mut levels = self.levels.iter();
+            return levels.find_map(|&(level, part)| (level == value).then_some(part));
+        }
         if self.is_log && value == 0.0 {
             return self.shelf.map(|shelf| 0.5 * shelf);
         }
-        let value = Some(self.spaced(value)).filter(|value| value.is_finite())?;
-        let part = match self.anchors[..] {
-            [] => return None,
-            [(level, part)] if value == level => part,
-            [(level, _)] => f64::from(u8::from(value > level)),
-            _ => {
-                let mut above = self.anchors.iter().skip(1);
-                let above = above.position(|anchor| anchor.0 > value);
-                let below = above.unwrap_or(self.anchors.len() - 2);
-                let ((low, from), (high, to)) = (self.anchors[below], self.anchors[below + 1]);
-                from + (to - from) * (value - low) / (high - low)
-            }
+        let value = match self.is_log {
+            true => value.log10(),
+            false => value,
         };
-        Some(part.clamp(0.0, 1.0))
+        let ((low, high), from) = (self.ends, self.shelf.unwrap_or(0.0));
+        let part = from + (1.0 - from) * (value - low) / (high - low);
+        value.is_finite().then_some(part.clamp(0.0, 1.0))
     }
 }
 
@@ -259,7 +246,7 @@ mod tests {
         assert!(at(0.0) < SHELF && at(1e-6) > SHELF && at(1.0) < 1.0);
         assert_eq!(
             labels(&scale),
-            ["0", "1e-6", "1e-5", "0.0001", "0.001", "0.01", "0.1", "1"]
+            ["0", "10⁻⁶", "10⁻⁵", "0.0001", "0.001", "0.01", "0.1", "1"]
         );
         assert_eq!(scale.place(-1.0), None);
         let none = Scale::new(&column(Spacing::Log, Role::Cost), &[], Along::X);
@@ -308,20 +295,5 @@ mod tests {
             assert!(kept.contains(&power), "{kept:?}");
         }
         assert!(kept.len() < 9);
-    }
-
-    #[test]
-    fn between_tiles_a_limit_stands_in_proportion() {
-        let levels = [1.0, 10.0, 100.0];
-        let scale = Scale::of_levels(
-            &column(Spacing::Log, Role::Choice),
-            (&levels, &[]),
-            Along::X,
-        );
-        let third = 1.0 / 3.0;
-        assert!((scale.place(10f64.sqrt()).unwrap() - third).abs() < 1e-12);
-        assert_eq!(scale.place(1e9), Some(1.0));
-        assert_eq!(scale.place(1e-9), Some(0.0));
-        assert_eq!(scale.n_levels, 3);
     }
 }

@@ -1,7 +1,7 @@
 //! Series of a chart: points with markers and confidence intervals, optionally joined by lines.
 
 use super::front::{self, Front};
-use super::layout::{CAPTION, Layout};
+use super::layout::{CAPTION, END_GAP, END_LABEL, Layout, WIDEST};
 use super::legend::{FRONT, Heading, LEFT, LegendEntry, MARKER_RADIUS, line_stroke};
 use super::rules;
 use super::view::{Place, View};
@@ -14,8 +14,8 @@ use crate::report::text_width::{shorten, text_width, wrap};
 const MANY: usize = 400;
 /// Number of series of one point in a chart with a Pareto front up to which all points have labels, also those behind the front.
 const FEW: usize = 12;
-/// Font size of the labels of points on a Pareto front, pixels.
-const FRONT_LABEL: u32 = 11;
+/// Number of points in a panel above which a label that would cover a point is omitted.
+const CROWD: usize = 60;
 
 /// Width and height of the panel of a small chart, pixels.
 const PART: (f64, f64) = (158.0, 100.0);
@@ -36,8 +36,8 @@ pub(super) fn draw(view: &View) -> Result<Drawing> {
         _ => (3, 176.0, 220.0),
     };
     let height = match view.y.is_words {
-        true if view.spec.label.is_some() => 36.0 * view.y.n_levels as f64,
-        true => 22.0 * view.y.n_levels as f64,
+        true if view.spec.label.is_some() => 36.0 * view.y.levels.len() as f64,
+        true => 22.0 * view.y.levels.len() as f64,
         false if view.spec.square => width,
         false => height,
     };
@@ -103,7 +103,7 @@ fn is_labelled(view: &View) -> bool {
 
 fn legend(view: &View) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
-    if !view.spec.lines.is_empty() && !is_labelled(view) {
+    if !view.spec.lines.is_empty() && !is_labelled(view) && !view.has_end_labels() {
         entries.push(LegendEntry::title(format!("{}:", view.lines.heading)));
         let is_joined = view.is_joined;
         entries.extend(view.lines.names.iter().enumerate().map(|(line, name)| {
@@ -211,6 +211,40 @@ impl Panel<'_> {
             }
         }
         self.draw_labels(drawing);
+        if view.has_end_labels() && self.frame.width > PART.0 {
+            self.draw_ends(drawing, &lines);
+        }
+    }
+
+    /// Writes the name of each line beside its last point, right of the panel, and the heading of the names. Names that would overlap are moved apart.
+    fn draw_ends(&self, drawing: &mut Drawing, lines: &[Vec<&Place>]) {
+        let step = END_LABEL + 4.0;
+        let ends = lines.iter().enumerate();
+        let ends = ends.filter_map(|(line, places)| Some((line, self.at(places.last()?))));
+        let mut ends: Vec<(usize, Point)> = ends.collect();
+        ends.sort_by(|(_, a), (_, b)| a.1.total_cmp(&b.1));
+        let (x, bottom) = self.frame.at(1.0, 0.0);
+        let style = TextStyle::new(END_LABEL as u32);
+        // What the names are stands above the first one.
+        let mut top = self.frame.y + step;
+        for (place, &(line, end)) in ends.iter().enumerate() {
+            let n_below = ends.len() - 1 - place;
+            let y = end.1.max(top).min(bottom - step * n_below as f64);
+            top = y + step;
+            if place == 0 {
+                let at = (x + 8.0, y + 4.0 - step);
+                drawing.text(at, &self.view.lines.heading, style.colour(MUTED));
+            }
+            let colour = line_stroke(line).colour;
+            let name = &self.view.lines.names[line];
+            let text = shorten(name, END_LABEL, WIDEST);
+            drawing.line(end, (x + 10.0, y), Stroke::new(colour, 0.8));
+            drawing.group(&[("toggle", name)], |drawing| {
+                drawing.marker(line, (x + 12.0, y), 0.8 * MARKER_RADIUS, colour);
+                let at = (x + END_GAP - 4.0, y + 4.0);
+                drawing.text(at, &text, style);
+            });
+        }
     }
 
     /// Draws a part of a line in an SVG group with the name of the line; a chart with a single line has no group.
@@ -241,9 +275,7 @@ impl Panel<'_> {
         let view = self.view;
         if view.is_joined && places.len() > 1 {
             let points: Vec<Point> = places.iter().map(|place| self.at(place)).collect();
-            let path = view.spec.mark.about().path;
-            let path = path.map_or(Vec::new(), |path| path(&points));
-            drawing.polyline(&path, line_stroke(line));
+            drawing.polyline(&points, line_stroke(line));
         }
         let is_on_front = |place: &&Place| self.front.has(place.row);
         let (ahead, behind): (Vec<&Place>, Vec<&Place>) =
@@ -328,12 +360,20 @@ impl Panel<'_> {
         let marker = 2.0 * MARKER_RADIUS;
         let around = |(place, _): &(&Place, String)| Area::around(self.at(place), (marker, marker));
         let mut taken: Vec<Area> = labels.iter().map(around).collect();
+        let here = self
+            .view
+            .places
+            .iter()
+            .filter(|place| place.panel == self.panel);
+        let points: Vec<Area> = here
+            .map(|place| Area::around(self.at(place), (marker, marker)))
+            .collect();
         let (over, under) = (-8.0, 14.0);
         let (outer, inner) = match front::is_more_better(self.view) {
             true => (over, under),
             false => (under, over),
         };
-        let size = f64::from(FRONT_LABEL);
+        let size = END_LABEL;
         let frame = self.frame;
         for (place, text) in labels {
             let text = shorten(&text, size, 0.9 * frame.width);
@@ -357,9 +397,13 @@ impl Panel<'_> {
                     && at.1 < frame.y + frame.height;
                 is_inside && !taken.iter().any(|other| other.overlaps(&area(at)))
             };
-            if let Some(at) = spots.into_iter().find(is_free) {
+            // A place that covers no other point is preferred.
+            let is_clear = |at: &&Point| !points.iter().any(|point| point.overlaps(&area(at)));
+            let free: Vec<Point> = spots.into_iter().filter(is_free).collect();
+            let covering = free.first().filter(|_| points.len() <= CROWD);
+            if let Some(&at) = free.iter().find(is_clear).or(covering) {
                 taken.push(area(&at));
-                drawing.text(at, &text, TextStyle::new(FRONT_LABEL));
+                drawing.text(at, &text, TextStyle::new(END_LABEL as u32));
             }
         }
     }

@@ -3,12 +3,14 @@
 use super::scale::Scale;
 use crate::error::{Error, Result};
 use crate::report::pictures::drawing::Drawing;
-use crate::report::swept::Setting;
-use crate::table::{Along, At, ChartSpec, Data, Role, Scale as Spacing, Table, Value};
+use crate::report::swept::{Setting, constant_phrases};
+use crate::table::{Along, At, ChartSpec, Data, Mark, Scale as Spacing, Table, Value};
 use std::collections::{HashMap, HashSet};
 
 /// Maximum number of lines for which confidence intervals are drawn as bands. More bands would hide each other, so error bars replace them.
 const MAX_BANDS: usize = 4;
+/// Maximum number of lines with names at their ends; more names do not fit beside a panel.
+const MAX_ENDS: usize = 16;
 /// Maximum number of points with error bars; more error bars cannot be distinguished.
 const MAX_WHISKERS: usize = 80;
 
@@ -87,8 +89,7 @@ impl<'a> View<'a> {
             Ok(Groups::new(table, &settings?, &rows))
         };
         let (lines, panels) = (groups(&spec.lines)?, groups(spec.panels.as_slice())?);
-        let mark = spec.mark.about();
-        let is_tiles = mark.is_tiled;
+        let is_tiles = spec.mark.fill().is_some();
         let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
         x.column = spec.x_is.as_ref().unwrap_or(x.column);
         let y_values = values(&y, &rows, &[]);
@@ -143,7 +144,7 @@ impl<'a> View<'a> {
                     Along::Y
                 },
             ),
-            is_joined: mark.path.is_some() && !is_broken,
+            is_joined: spec.mark == Mark::Line && !is_broken,
             places: Vec::new(),
         };
         view.places = view.place_all((&x_values.0, &y_values.0), interval);
@@ -178,11 +179,11 @@ impl<'a> View<'a> {
 
     /// Returns the horizontal offset of a line on an axis of texts; offsets keep error bars of different lines apart.
     fn beside(&self, line: usize) -> f64 {
-        if !self.x.is_words || self.spec.mark.about().path.is_none() {
+        if !self.x.is_words || self.spec.mark != Mark::Line {
             return 0.0;
         }
         let n = self.lines.names.len() as f64;
-        let step = f64::min(0.14, 0.6 / n) / self.x.n_levels as f64;
+        let step = f64::min(0.14, 0.6 / n) / self.x.levels.len() as f64;
         step * (line as f64 - 0.5 * (n - 1.0))
     }
 
@@ -191,10 +192,17 @@ impl<'a> View<'a> {
         self.has_interval() && self.is_joined && self.lines.names.len() <= MAX_BANDS
     }
 
+    /// Returns whether each line has its name at its end instead of in the legend: the lines of a single panel that are many, but not too many for its height.
+    pub fn has_end_labels(&self) -> bool {
+        let is_single = self.panels.names.len() == 1 && self.spec.parts.is_empty();
+        let n = self.lines.names.len();
+        self.is_joined && is_single && n > MAX_BANDS && n <= MAX_ENDS
+    }
+
     /// Returns whether confidence intervals are drawn, as bands or as error bars.
     pub fn has_interval(&self) -> bool {
-        let is_joinable = self.spec.mark.about().path.is_some();
-        let is_many = !is_joinable && !self.spec.front && self.places.len() > MAX_WHISKERS;
+        let is_many =
+            self.spec.mark != Mark::Line && !self.spec.front && self.places.len() > MAX_WHISKERS;
         !is_many && self.places.iter().any(|place| place.interval.is_some())
     }
 
@@ -316,18 +324,10 @@ impl<'a> View<'a> {
         rows.sort_unstable();
         let axes = [&spec.x, &spec.y].into_iter();
         let used: Vec<&String> = axes.chain(&spec.lines).chain(&spec.panels).collect();
-        let is_constant = |one: &Setting| {
-            let is_used = used.iter().any(|name| *name == one.column.name.as_ref());
-            let value = rows.first().and_then(|&row| one.data.value(row));
-            !is_used && value.is_some() && !one.varies(&rows)
-        };
-        let constant =
-            Setting::of_roles(self.table, &[Role::Choice, Role::Condition]).filter(is_constant);
-        let phrases = constant.map(|one| one.phrase(rows[0]).replace(' ', "\u{a0}"));
-        let phrases: Vec<String> = phrases.collect();
-        match phrases.is_empty() {
-            true => String::new(),
-            false => format!("At {}.", phrases.join(", ")),
+        let is_used = |one: &Setting| used.iter().any(|name| **name == one.column.name);
+        match &constant_phrases(self.table, &rows, |one| !is_used(one))[..] {
+            [] => String::new(),
+            said => format!("At {}.", said.join(", ")),
         }
     }
 }

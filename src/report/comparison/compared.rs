@@ -8,10 +8,9 @@ use crate::report::entries::{ColumnEntries, TableEntries};
 use crate::report::page::StudyAbout;
 use crate::report::rank_agreement::RankAgreement;
 use crate::report::study_content::Found;
-use crate::report::study_folder::{MAX_CHARTS, page_of};
+use crate::report::study_folder::{Beyond, files_with};
 use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
-use crate::statistics::p_status::PStatus;
 use crate::table::{
     Along, At, Better, ChartSpec, File, Mark, Role, Rule, Shown, Table, short_number,
 };
@@ -44,7 +43,7 @@ pub fn sentences_text(sentences: &[String], width: usize) -> String {
 pub fn differences_page(
     (found, ranks, entries): (&[ColumnDifferences], Option<&RankAgreement>, &[String]),
     (first, second): (&str, &str),
-) -> Result<String> {
+) -> Result<Vec<u8>> {
     let note =
         format!("First: {first}; second: {second}. The most significant differences come first.");
     let about = StudyAbout {
@@ -57,21 +56,17 @@ pub fn differences_page(
     let charts = found.iter().filter(|one| !is_cost(one));
     let charts =
         charts.filter_map(|one| Some(chart(&values, one, one.rows.first()?, (first, second))));
-    let charts: Vec<ChartSpec> = charts.take(MAX_CHARTS).collect();
+    let charts: Vec<ChartSpec> = charts.collect();
     let costs = table(&COSTS, found.iter().filter(|one| is_cost(one)))?;
-    page_of(
-        &about,
-        &Found {
-            tables: &[values, costs],
-            charts: &charts,
-            answers: &[
-                sentences(found),
-                entries.to_vec(),
-                ranks.map_or_else(Vec::new, RankAgreement::words),
-            ]
-            .concat(),
-        },
-    )
+    let ranks = ranks.map_or_else(Vec::new, RankAgreement::words);
+    let found = Found {
+        tables: &[values, costs],
+        charts: &charts,
+        answers: &[sentences(found), entries.to_vec(), ranks].concat(),
+    };
+    // The page is the last file.
+    let page = files_with(&about, &found, || Ok(Beyond::default()))?.pop();
+    Ok(page.map_or_else(Vec::new, |(_, page)| page))
 }
 
 /// Returns a chart of one column: values of the second run against values of the first run.
@@ -147,14 +142,10 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
             said.push((3, settings));
         }
         let is_equal = one.counts(|_| true) == [0, 0];
-        match is_cost(one) {
-            true => said.push((2, cost_words(one))),
-            false => said.extend(
-                value_words(one)
-                    .into_iter()
-                    .map(|words| (usize::from(is_equal), words)),
-            ),
-        }
+        said.push(match is_cost(one) {
+            true => (2, cost_words(one)),
+            false => (usize::from(is_equal), value_words(one)),
+        });
     }
     said.sort_by_key(|(rank, _)| *rank);
     said.into_iter().map(|(_, words)| words).collect()
@@ -275,46 +266,30 @@ fn cost_words(one: &ColumnDifferences) -> String {
     format!("{words}: median {middle} times that of the first run, {least} to {most} times.{small}")
 }
 
-/// Returns sentences about the differences in a value column: the numbers of better and worse settings, and how many are significant.
-fn value_words(one: &ColumnDifferences) -> Vec<String> {
-    let words = match one.column.role {
+/// Returns a sentence about the differences in a value column: the numbers of better and worse settings, and how many are significant.
+fn value_words(one: &ColumnDifferences) -> String {
+    let [more, less] = match one.column.role {
         Role::Value(Better::Neither) => ["larger", "smaller"],
         _ => ["better", "worse"],
     };
     let [better, worse] = one.counts(|_| true);
-    let n_same = one.rows.len() - better - worse;
-    let all = format!(
-        "{}: {n_same} the same, {better} {} in the second, {worse} {}.",
-        one.column.words, words[0], words[1]
-    );
-    let [better, worse] = one.counts(|row| row.significance == Significance::Significant);
-    let surely = format!(
-        "More than chance explains: {better} {}, {worse} {}",
-        words[0], words[1]
-    );
-    let rows = || one.rows.iter();
-    let n_tested = rows().filter(|row| row.p_holm.is_some()).count();
-    let has_intervals = rows().any(|row| {
-        matches!(
-            row.significance,
-            Significance::Significant | Significance::NotSignificant
-        )
-    });
-    let too_few = rows().find(|row| row.p_status == Some(PStatus::TooFewTrials));
-    let needed =
-        too_few.and_then(|row| Some((counted(row.n_trials, "trial"), row.n_trials_needed?)));
-    let tested = if n_tested > 0 {
-        format!(
-            "{surely} (t-test paired over trials, corrected for their overlap, p < 0.05 after Holm's correction for {n_tested} settings)."
-        )
-    } else if let Some((trials, needed)) = needed {
-        format!("No p-values: {trials} per setting; at least {needed} are needed.")
-    } else if rows().any(|row| row.p_status.is_some()) {
-        "No p-values: trials repeat too few splits, more rows are tested than trained on, or trials are missing.".to_owned()
-    } else if has_intervals {
-        format!("{surely} (intervals that are apart).")
-    } else {
-        return vec![all];
+    let is_significant = |row: &Difference| row.significance == Significance::Significant;
+    let [surely_better, surely_worse] = one.counts(is_significant);
+    let is_tested = |row: &Difference| {
+        let untested = [Significance::Untested, Significance::Same];
+        row.p_holm.is_some() || !untested.contains(&row.significance)
     };
-    vec![all, tested]
+    let mut needed = one.rows.iter().filter_map(|row| row.n_trials_needed);
+    let tested = if one.rows.iter().any(is_tested) {
+        format!("more than chance explains: {surely_better} {more}, {surely_worse} {less}")
+    } else if let Some(n) = needed.next() {
+        format!("not tested: {n} trials are needed")
+    } else {
+        "not tested".to_owned()
+    };
+    let n_same = one.rows.len() - better - worse;
+    format!(
+        "{}: {n_same} the same, {better} {more} in the second, {worse} {less}; {tested}.",
+        one.column.words
+    )
 }

@@ -5,6 +5,7 @@
 //! intervals and no trials, a difference is significant if the two intervals are disjoint.
 
 use crate::error::{Error, Result};
+use crate::report::entries::{Configurations, key};
 use crate::report::swept::Setting;
 use crate::row;
 use crate::statistics::comparison::TrialSize;
@@ -13,7 +14,7 @@ use crate::statistics::p_status::{CONFIDENCE, PStatus};
 use crate::statistics::repeats::{Paired, Repeat};
 use crate::table::{Better, Column, Role, Table};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 
 /// Statistical significance of a difference between two runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -151,14 +152,9 @@ impl<'a> Settings<'a> {
         })
     }
 
-    /// Returns the setting of a row as a set of texts, each a value with its unit, without absent values.
-    fn key(&self, row: usize) -> BTreeSet<String> {
-        let columns = self.columns.iter();
-        let said = columns.filter_map(|Setting { column, data }| {
-            let value = data.value(row)?;
-            Some(format!("{} {} {value};", column.name, column.unit))
-        });
-        said.collect()
+    /// Returns the setting of a row as text, which does not depend on the order of the columns.
+    fn key(&self, row: usize) -> String {
+        key(&self.columns, row, &Configurations::new())
     }
 
     /// Returns the settings of a row as text, limited to columns whose values vary.
@@ -208,7 +204,7 @@ impl<'a> Settings<'a> {
 
 fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<ColumnDifferences> {
     let known = first.groups.iter().map(|rows| (first.key(rows[0]), rows));
-    let known: HashMap<BTreeSet<String>, &Vec<usize>> = known.collect();
+    let known: HashMap<String, &Vec<usize>> = known.collect();
     let mut rows = Vec::new();
     let mut n_both = 0;
     for ours in &second.groups {

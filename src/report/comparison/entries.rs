@@ -72,7 +72,7 @@ pub fn files_of_one<'a>(one: &'a [Table], other: &[Table]) -> Vec<&'a str> {
 }
 
 /// Settings of each configuration as text; the key is the number of the configuration.
-type Configurations = HashMap<u64, String>;
+pub(super) type Configurations = HashMap<u64, String>;
 
 fn configurations(tables: &[Table]) -> Configurations {
     let mut known = Configurations::new();
@@ -91,9 +91,7 @@ fn configurations(tables: &[Table]) -> Configurations {
                 if known.contains_key(&number) {
                     continue;
                 }
-                let said = columns.iter();
-                let said = said.filter_map(|one| entry(*one, row, &Configurations::new()));
-                let said: String = said.collect();
+                let said = key(&columns, row, &Configurations::new());
                 // If the settings already have a number, the number was changed between rows.
                 if named.insert(said.clone()) {
                     known.insert(number, said);
@@ -104,11 +102,15 @@ fn configurations(tables: &[Table]) -> Configurations {
     known
 }
 
-/// Returns the settings of a table row as text with units. An absent entry and an absent column are treated alike: the setting does not apply.
-fn settings(table: &Table, row: usize, roles: &[Role], configurations: &Configurations) -> String {
-    let columns = Setting::of_roles(table, roles);
-    let said = columns.filter_map(|one| entry(one, row, configurations));
-    said.collect()
+/// Returns the values of some columns in a row as text with units, which does not depend on the order of the columns. An absent entry and an absent column are
+/// treated alike: the setting does not apply.
+pub(super) fn key(columns: &[Setting], row: usize, configurations: &Configurations) -> String {
+    let entries = columns
+        .iter()
+        .filter_map(|one| entry(*one, row, configurations));
+    let mut entries: Vec<String> = entries.collect();
+    entries.sort();
+    entries.concat()
 }
 
 /// Returns the entry of a row as text, with the display name and unit of its column. A configuration number is replaced by the settings of the configuration.
@@ -126,7 +128,8 @@ fn of_table(tables: [&Table; 2], configurations: &[Configurations; 2]) -> TableE
     let roles = KEY_ROLES;
     let mut places: HashMap<String, Vec<usize>> = HashMap::new();
     let [first, second] = tables;
-    let key = |side: usize, row| settings(tables[side], row, &roles, &configurations[side]);
+    let columns = tables.map(|table| Setting::of_roles(table, &roles).collect::<Vec<_>>());
+    let key = |side: usize, row| key(&columns[side], row, &configurations[side]);
     for row in (0..first.n_rows).rev() {
         places.entry(key(0, row)).or_default().push(row);
     }

@@ -3,16 +3,13 @@
 //! The inputs are tables, charts as SVG, pictures, and the name and question of the study. The output is HTML with all charts and tables. The script adds
 //! tooltips, hides series, and sorts, searches and saves tables.
 
-mod about;
 mod choices;
 mod frame;
-mod picture;
 mod provenance;
 mod study;
 mod table;
 
-pub use about::StudyAbout;
+pub use crate::report::study_content::StudyAbout;
 pub use frame::Section;
-pub(crate) use frame::definition;
-pub(crate) use picture::png_element;
+pub(crate) use frame::{definition, png_element, sentences_html};
 pub(crate) use study::{Beside, page as study_page};

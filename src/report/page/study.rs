@@ -1,14 +1,11 @@
 //! Page of a study of any kind.
 
-use super::about::StudyAbout;
 use super::choices::choices_html;
-use super::frame::{Section, html, sentences_html, unbroken};
-use super::picture::{figure, png_element};
+use super::frame::{Section, figure, html, png_element, sentences_html, unbroken};
 use super::provenance::provenance_html;
 use super::table::table_html;
-use crate::report::chart_format::ChartFormat;
 use crate::report::pictures::drawing::escape;
-use crate::report::study_content::{Beyond, Found, NamedPicture};
+use crate::report::study_content::{Beyond, ChartFormat, Found, NamedPicture, StudyAbout};
 use crate::table::{ChartSpec, Table, short_number};
 
 /// Maximum size of all charts on a page together, bytes. With a larger value, the page is slow; with a smaller value, charts of some hundred points become
@@ -87,7 +84,7 @@ fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
             Some(column) => escape(&column.words),
             None => words(&chart.x),
         };
-        let kind = match chart.mark.about().is_tiled {
+        let kind = match chart.mark.fill().is_some() {
             true => "card chart tiles",
             false => "card chart",
         };

@@ -5,7 +5,8 @@ use crate::files::write_bytes;
 use crate::report::pictures::colours::{GRID, INK, LINES, MUTED, PAINT, Rgb, text_on};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::pictures::picture_axes::draw_scale_bar;
-use crate::report::recording::cells::Cells;
+use crate::report::recording::cells::{Cells, typical_spacing};
+use crate::report::recording::projected::view_from;
 use crate::report::recording::{ForceKind, RecordedPatch};
 use crate::report::text_width::text_width;
 use crate::world::Layout;
@@ -30,8 +31,8 @@ const BEHIND: Rgb = [0xc9, 0xcd, 0xd2];
 
 /// Writes a picture of a layout as `.svg` or `.png`, as the file extension requires. The heading of the picture is `name`.
 ///
-/// The map shows each taxel with its number, from 0. Curved layouts are unrolled or seen from one or two sides, as in pictures of recordings. The oblique view
-/// shows the taxels and their axes in the frame of the layout.
+/// The map shows each taxel with its number, from 0. Curved layouts are seen from one or two sides, as in pictures of recordings. The oblique view shows the
+/// taxels and their axes in the frame of the layout.
 ///
 /// # Errors
 /// If the extension is another one, the picture cannot be rendered, or the file cannot be written.
@@ -214,34 +215,12 @@ fn oblique(axes: &[DVec3]) -> DMat3 {
     } else {
         DVec3::NEG_Y
     };
-    let up = if front.z.abs() > 0.7 {
-        DVec3::Y
-    } else {
-        DVec3::Z
-    };
-    let right = up.cross(front).normalize();
-    let upright = front.cross(right);
     let (sin, cos) = 40f64.to_radians().sin_cos();
     // Horizontal skins are drawn from a viewpoint below on the page, vertical skins from above.
-    let above = if up == DVec3::Y { -0.84 } else { 0.84 };
-    let aside = (0.55 * right + above * upright).normalize();
-    let eye = cos * front + sin * aside;
-    let right = up.cross(eye).normalize();
-    DMat3::from_cols(right, eye.cross(right), eye).transpose()
-}
-
-/// Returns the median distance of a taxel to its nearest neighbour, metres, estimated from about 200 taxels; 1 mm for a single taxel.
-fn typical_spacing(centers: &[DVec3]) -> f64 {
-    let sample = centers.iter().step_by(centers.len().div_ceil(200));
-    let nearest = sample.filter_map(|center| {
-        let distances = centers.iter().map(|other| other.distance(*center));
-        distances
-            .filter(|distance| *distance > 0.0)
-            .min_by(f64::total_cmp)
-    });
-    let mut distances: Vec<f64> = nearest.collect();
-    distances.sort_by(f64::total_cmp);
-    distances.get(distances.len() / 2).copied().unwrap_or(1e-3)
+    let above = if front.z.abs() > 0.7 { -0.84 } else { 0.84 };
+    let upright = view_from(front);
+    let aside = (0.55 * upright.row(0) + above * upright.row(1)).normalize();
+    view_from(cos * front + sin * aside)
 }
 
 #[cfg(test)]
@@ -263,7 +242,7 @@ mod tests {
         for taxel in 0..n {
             assert!(svg.contains(&format!(">{taxel}</text>")), "{taxel}");
         }
-        assert!(svg.contains("flattened from a sphere of radius 9 mm"));
+        assert!(svg.contains("seen from"));
         assert_eq!(svg, texts(&cap));
     }
 

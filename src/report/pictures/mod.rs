@@ -2,7 +2,6 @@
 
 pub mod colours;
 pub mod drawing;
-pub(crate) mod even_ticks;
 pub mod fit_picture;
 pub mod frame_files;
 pub mod heat_map;

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use bubbletouch_sim::raster::pixels::{halved, without_opacity};
 use bubbletouch_sim::raster::{BACKGROUND, Canvas, Hit, Lighting, Rgb};
+use std::collections::HashMap;
 
 /// Opaque raster picture: rows of pixels from the top, 3 bytes per pixel.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,14 +22,50 @@ impl Picture {
     /// # Errors
     /// If the picture has no pixels.
     pub fn png(&self) -> Result<Vec<u8>> {
+        self.encoded(png::ColorType::Rgb, &self.rgb, Vec::new())
+    }
+
+    /// Returns the picture as a PNG file of about a third of the size, with a palette of at most 256 colours. Colours are rounded as little as this requires.
+    pub(crate) fn small_png(&self) -> Result<Vec<u8>> {
+        let mut steps = [1, 2, 4, 8, 16].into_iter();
+        match steps.find_map(|step| self.indexed(step)) {
+            Some((indices, palette)) => self.encoded(png::ColorType::Indexed, &indices, palette),
+            None => self.png(),
+        }
+    }
+
+    fn encoded(&self, kind: png::ColorType, data: &[u8], palette: Vec<u8>) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
-        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_color(kind);
         encoder.set_depth(png::BitDepth::Eight);
+        if kind == png::ColorType::Indexed {
+            encoder.set_palette(palette);
+            encoder.set_filter(png::Filter::NoFilter);
+        }
         let mut writer = encoder.write_header().map_err(unfit)?;
-        writer.write_image_data(&self.rgb).map_err(unfit)?;
+        writer.write_image_data(data).map_err(unfit)?;
         writer.finish().map_err(unfit)?;
         Ok(bytes)
+    }
+
+    /// Returns the index of each pixel's colour, and the palette, if channels are rounded to multiples of `step`; `None` if there are more than 256 colours.
+    fn indexed(&self, step: u16) -> Option<(Vec<u8>, Vec<u8>)> {
+        let mut known = HashMap::new();
+        let mut palette = Vec::new();
+        let pixels = self.rgb.as_chunks().0.iter();
+        let indices = pixels.map(|pixel: &Rgb| {
+            let rounded = |channel| (u16::from(channel) + step / 2) / step * step;
+            let colour = pixel.map(|channel| rounded(channel).min(255) as u8);
+            let next = known.len();
+            let index = *known.entry(colour).or_insert(next);
+            if index == next {
+                palette.extend(colour);
+            }
+            u8::try_from(index).ok()
+        });
+        let indices: Option<Vec<u8>> = indices.collect();
+        Some((indices?, palette))
     }
 
     /// Decodes an opaque PNG file.
@@ -95,4 +132,33 @@ impl Picture {
 /// Converts an error of the PNG library or the drawing library to an error of this crate.
 pub(crate) fn unfit(said: impl std::fmt::Display) -> Error {
     Error::input("picture", said, "a size that fits into a PNG file")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_file_has_a_palette_and_the_colours_up_to_a_rounding() {
+        let (width, height) = (100, 80);
+        for (n_blues, most) in [(1, 0), (90, 8)] {
+            let rgb = (0..width * height).flat_map(|place| {
+                let shade = (place * place % 7919 % 200) as u8;
+                [shade, 255 - shade, (place / 200 % n_blues) as u8]
+            });
+            let rgb: Vec<u8> = rgb.collect();
+            let picture = Picture { width, height, rgb };
+            let (small, whole) = (picture.small_png().unwrap(), picture.png().unwrap());
+            assert!(small.len() < whole.len());
+            let mut decoder = png::Decoder::new(std::io::Cursor::new(&small));
+            decoder.set_transformations(png::Transformations::EXPAND);
+            let mut reader = decoder.read_info().unwrap();
+            assert_eq!(reader.info().color_type, png::ColorType::Indexed);
+            let mut found = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut found).unwrap();
+            let pairs = found.iter().zip(&picture.rgb);
+            let error = pairs.map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(error <= Some(most), "{error:?}");
+        }
+    }
 }

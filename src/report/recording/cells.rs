@@ -1,7 +1,7 @@
 //! Cells of a skin picture: adjacent squares for a grid, discs at the taxels for other layouts.
 
 use super::header::RecordedPatch;
-use super::unrolled::unroll;
+use super::projected::project;
 use crate::report::pictures::colours::{GRID, INK, Rgb};
 use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
 use crate::report::pictures::heat_map::{block_sentence, grid_sentence};
@@ -9,7 +9,7 @@ use crate::report::pictures::picture::Picture;
 use crate::report::pictures::picture_axes::{Side, draw_map_axis, draw_scale_bar};
 use crate::world::Grid;
 use bubbletouch_sim::raster::pixels::{CellShape, paint_cells};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// Height of a patch in its picture, pixels; the width is at most twice the height.
 const SIDE: f64 = 400.0;
@@ -84,10 +84,9 @@ impl Cells {
     }
 
     fn of_skin(patch: &RecordedPatch) -> Self {
-        let unrolled = unroll(&patch.centers, &patch.axes);
-        let places = unrolled.places;
-        // For a single taxel, the radius assumes a neighbour at a distance of 1 mm.
-        let radius = 0.47 * typical_distance(&places).unwrap_or(1e-3);
+        let projected = project(&patch.centers, &patch.axes);
+        let places = projected.places;
+        let radius = 0.47 * typical_spacing(&patch.centers);
         let margin = DVec2::splat(1.6 * radius);
         let low = places.iter().fold(DVec2::INFINITY, |a, &b| a.min(b)) - margin;
         let high = places.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b)) + margin;
@@ -105,7 +104,7 @@ impl Cells {
             radius: scale * radius,
             shape: CellShape::Disc,
             block: 1,
-            sentence: format!("{} taxel{plural}, {}", places.len(), unrolled.sentence),
+            sentence: format!("{} taxel{plural}, {}", places.len(), projected.sentence),
             pixels_per_metre: scale,
         }
     }
@@ -132,17 +131,17 @@ pub(crate) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
     (room / n_cells as f64).floor().max(1.0)
 }
 
-/// Returns the median distance of a taxel to its nearest neighbour, metres, estimated from about 200 taxels. The distance affects only the appearance of the
-/// picture.
-fn typical_distance(places: &[DVec2]) -> Option<f64> {
-    let sample = places.iter().step_by(places.len().div_ceil(200).max(1));
-    let nearest = sample.filter_map(|place| {
-        let squares = places.iter().map(|other| other.distance_squared(*place));
-        // Taxels that overlap in the picture are ignored.
-        let apart = squares.filter(|&square| square > 1e-12);
-        apart.min_by(f64::total_cmp).map(f64::sqrt)
+/// Returns the median distance of a taxel to its nearest neighbour, metres, estimated from about 200 taxels; 1 mm for a single taxel. The distance affects only
+/// the appearance of pictures.
+pub(crate) fn typical_spacing(centers: &[DVec3]) -> f64 {
+    let sample = centers.iter().step_by(centers.len().div_ceil(200).max(1));
+    let nearest = sample.filter_map(|center| {
+        let distances = centers.iter().map(|other| other.distance(*center));
+        distances
+            .filter(|distance| *distance > 0.0)
+            .min_by(f64::total_cmp)
     });
     let mut distances: Vec<f64> = nearest.collect();
     distances.sort_by(f64::total_cmp);
-    distances.get(distances.len() / 2).copied()
+    distances.get(distances.len() / 2).copied().unwrap_or(1e-3)
 }

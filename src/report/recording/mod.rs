@@ -25,11 +25,11 @@
 pub mod animation;
 pub(super) mod cells;
 mod header;
+pub(super) mod projected;
 mod reader;
 mod scene_view;
 pub mod skin_picture;
 mod summary;
-mod unrolled;
 mod writer;
 
 pub use header::{ForceKind, RecordedPatch, RecordingHeader};

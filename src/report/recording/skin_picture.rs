@@ -29,9 +29,8 @@ pub struct SkinPicture {
 impl SkinPicture {
     /// Prepares the drawing of several pictures of a patch with one common colour scale.
     ///
-    /// A grid is drawn as a heat map with axes in millimetres. In any other layout, each taxel is drawn as a disc. A flat patch is seen from above, a cylinder
-    /// is unrolled, and a part of a sphere is flattened about its middle. Any other patch is seen from the side to which its axes point, and from behind. The
-    /// picture states the view and has a scale bar.
+    /// A grid is drawn as a heat map with axes in millimetres. In any other layout, each taxel is drawn as a disc. The patch is
+    /// seen from the side to which its axes point and, if some taxels face away, from behind. The picture states the view and has a scale bar.
     ///
     /// # Errors
     /// If the picture cannot be rendered.

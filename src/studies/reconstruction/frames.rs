@@ -76,7 +76,7 @@ impl ReconstructionStudy {
         Ok(vec![NamedPicture {
             name: "frames".to_owned(),
             title: "Sample frames and what came back of them".to_owned(),
-            png: picture.png()?,
+            png: picture.small_png()?,
             size: (picture.width / 2, picture.height / 2),
         }])
     }

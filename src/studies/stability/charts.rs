@@ -77,11 +77,11 @@ fn scored_methods(
         let key = |rows: &[usize]| {
             let [stiffness, mass, taxels, step, taxel] =
                 SCENE.map(|column| configurations.number(column, rows[0]));
-            [-stiffness, mass, taxels, step, -taxel]
+            // A ball whose motion is imposed has no mass.
+            [-stiffness, mass.max(0.0), taxels, step, -taxel]
         };
-        let pairs = key(a).into_iter().zip(key(b));
-        let orders = pairs.map(|(a, b)| a.total_cmp(&b));
-        orders.fold(std::cmp::Ordering::Equal, |order, next| order.then(next))
+        let order = key(a).partial_cmp(&key(b));
+        order.expect("all are numbers")
     });
     let varies = |column: &str| groups(&[column]).len() > 1;
     let words = |columns: &[&str], row: usize| {

@@ -57,10 +57,9 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
     charts.into_iter().flatten().collect()
 }
 
-/// Returns answers about the time from touch to decision, its growth with the skin, steps per second, memory, and recognition.
+/// Returns answers about the time from touch to decision and about memory; the charts show the rest.
 pub(super) fn answers(tables: &[Table]) -> Vec<String> {
-    let (cases, recognition) = (&tables[0], &tables[1]);
-    let (timing, steps) = (&tables[3], &tables[4]);
+    let (cases, timing) = (&tables[0], &tables[3]);
     let mut answers = Vec::new();
     let us = |row: usize| timing.number("us_median", row);
     let whole = (0..timing.n_rows).filter(|&row| timing.word("stage", row) == "whole");
@@ -71,51 +70,10 @@ pub(super) fn answers(tables: &[Table]) -> Vec<String> {
             "From touch to answer on {taxels} taxels: at most {at_most} (median over steps; scene {scene}, {compression})."
         )
     }));
-    let skins = (0..steps.n_rows).filter(|&row| steps.word("series", row) == "skin");
-    for rungs in steps.groups(&["touched"], skins) {
-        let n_taxels = |row: &usize| steps.number("n_taxels", *row);
-        let by_size = |a: &usize, b: &usize| n_taxels(a).total_cmp(&n_taxels(b));
-        let ends = (
-            rungs.iter().copied().min_by(by_size),
-            rungs.iter().copied().max_by(by_size),
-        );
-        let (Some(first), Some(last)) = ends else {
-            continue;
-        };
-        if n_taxels(&first) == n_taxels(&last) {
-            continue;
-        }
-        let touched = rungs
-            .iter()
-            .map(|&row| steps.number("touched_mean", row).round());
-        let fewest = touched.clone().fold(f64::INFINITY, f64::min);
-        let most = touched.fold(0.0, f64::max);
-        let touched = match fewest == most {
-            true => short_number(most),
-            false => format!("{} to {}", short_number(fewest), short_number(most)),
-        };
-        let growth = steps.number("us_median", last) / steps.number("us_median", first);
-        let [smallest, taxels] = [first, last].map(|row| steps.words("n_taxels", row));
-        answers.push(format!(
-            "From {smallest} to {taxels} taxels with {touched} touched, the time of a step is {} times as long: {} ({} steps/s).",
-            short_number((100.0 * growth).round() / 100.0),
-            steps.words("us_median", last),
-            short_number(steps.number("steps_per_s", last).round())
-        ));
-    }
     let bytes = cases.numbers("bytes_per_taxel").unwrap_or_default();
     answers.extend(bytes.iter().copied().reduce(f64::max).map(|most| {
         let most = short_number(most);
         format!("A body at rest takes at most {most} bytes a taxel.")
-    }));
-    answers.extend((0..recognition.n_rows).map(|row| {
-        let [objects, m, compression] = ["n_objects", "n_measurements", "compression"]
-            .map(|name| recognition.words(name, row));
-        let [accuracy, low, high] = ["accuracy", "accuracy_low", "accuracy_high"]
-            .map(|name| recognition.number(name, row));
-        format!(
-            "{objects} objects from {m} measurements of {compression}: accuracy {accuracy:.3} [{low:.3}, {high:.3}]."
-        )
     }));
     answers
 }
@@ -129,7 +87,7 @@ fn of_series(table: &Table, series: &str) -> Option<Shown> {
 
 /// Returns the chart of recognition accuracy against the memory of the measurement matrix per taxel, with the Pareto front. Returns `None` if the table has
 /// no rows.
-pub(super) fn memory_chart(recognition: &Table) -> Option<ChartSpec> {
+fn memory_chart(recognition: &Table) -> Option<ChartSpec> {
     (recognition.n_rows > 0).then(|| ChartSpec {
         lines: vec!["compression".to_owned()],
         mark: Mark::Points,

@@ -130,6 +130,30 @@ fn a_number_that_stands_for_none_is_named_and_no_line_leads_to_it() {
 }
 
 #[test]
+fn many_lines_have_their_names_at_their_ends_one_below_the_other() {
+    let tables = tables();
+    let mut spec = charts().swap_remove(0);
+    let svg = |spec: &ChartSpec| draw(spec, &tables).unwrap().svg_with_data("");
+    assert!(svg(&spec).contains(">classifier:<"));
+    spec.shown = charts()[2].shown[..2].to_vec();
+    spec.lines.push("ensemble".to_owned());
+    spec.panels = None;
+    let svg = svg(&spec);
+    assert!(!svg.contains(">classifier, ensemble:<"));
+    let heights = svg.split("data-toggle").skip(1).map(|end| {
+        let (_, text) = end.split_once("<text").unwrap();
+        let (_, height) = text.split_once(" y=\"").unwrap();
+        height.split('"').next().unwrap().parse().unwrap()
+    });
+    let heights: Vec<f64> = heights.collect();
+    assert!(heights.len() > 4, "{heights:?}");
+    assert!(
+        heights.windows(2).all(|pair| pair[1] - pair[0] >= 14.0),
+        "{heights:?}"
+    );
+}
+
+#[test]
 fn the_legend_stands_above_all_data() {
     let tables = tables();
     for spec in charts() {

@@ -224,7 +224,7 @@ fn a_ladder_of_joints_carries_the_same_on_each_and_is_charted() {
     let svg = fs::read_to_string(case.path("out/stability_joints.svg")).unwrap();
     for text in [
         "unstable near 280",
-        "taxel mass 1e-5 kg",
+        "taxel mass 10⁻⁵ kg",
         "real time",
         "not right",
     ] {
@@ -320,8 +320,7 @@ fn rows_of_other_programs_stand_in_the_parts_that_contain_their_scenes_and_other
                   simulated_s,wall_s,per_simulated_s,pitch_mm,stroke_mm,program,version,date\n";
     let asked = "1,rest,mujoco_discrete,,8,10,1e-7,1e-3,1e-3,1e4,2e-4,0.1,,right,1e-9,2e-5,500,0.5,1.0,2.0,4,2,MuJoCo,4.0.0,2026-11-22\n";
     case.file("peers.csv", format!("{header}{asked}"));
-    let (with, _) = case.succeeds(&["run", "study.toml", "--out", "with"]);
-    assert!(with.contains("MuJoCo"), "{with}");
+    case.succeeds(&["run", "study.toml", "--out", "with"]);
     let configurations: Vec<StabilityConfiguration> =
         read_rows(&case.path("with/stability.csv")).unwrap();
     let peers = configurations

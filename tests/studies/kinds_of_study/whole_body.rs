@@ -197,7 +197,7 @@ fn scaling_points_are_named_and_grouped_by_what_was_measured() {
     let case = case(&changed);
     let (said, _) = case.succeeds(&["plan", "study.toml"]);
     assert!(said.contains("on a body of about 18118 taxels"), "{said}");
-    let (said, _) = case.succeeds(&["run", "study.toml", "--out", "1"]);
+    case.succeeds(&["run", "study.toml", "--out", "1"]);
     let path = case.path("1/steps.csv");
     let cases: Vec<BodyCase> = read_rows(&path).unwrap();
     let steps: Vec<BodyTouch> = read_rows(&path).unwrap();
@@ -219,12 +219,9 @@ fn scaling_points_are_named_and_grouped_by_what_was_measured() {
             _ => {}
         }
     }
-    // Of the sizes of one touch, all belong to one group; no growth is stated for a single size.
+    // Of the sizes of one touch, all belong to one group.
     assert_eq!(groups[..3], [200.0; 3]);
     assert_eq!(groups.len(), 4);
-    assert_eq!(said.matches("the time of a step is").count(), 1, "{said}");
-    let smallest = cases.iter().map(|case| case.n_taxels).min().unwrap();
-    assert!(said.contains(&format!("From {smallest} to ")), "{said}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::smoothing::narrow;
 use super::{Calibration, Estimate};
-use crate::text::numbers::short_number;
+use crate::text::numbers::short_literal;
 
 /// Limit below which values are written as zero: half of the last written digit.
 const NONE: f64 = 5e-5;
@@ -51,7 +51,7 @@ fn line(key: &str, estimate: &Estimate) -> String {
         } => {
             let shown = |number: f64| match number.abs() < NONE {
                 true => "0".to_owned(),
-                false => short_number(number),
+                false => short_literal(number),
             };
             let [value, low, high] = [*value, *low, *high].map(shown);
             format!("{key} = {value}  # 95 % interval {low} to {high}\n")

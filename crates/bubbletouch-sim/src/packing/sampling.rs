@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Aabb;
 use crate::mesh::{BoxTree, Triangle};
 use crate::objects::MAX_SPHERES;
+use crate::text::numbers::short_number;
 use glam::DVec3;
 
 /// Surface point that some ball must cover, as a representative of the surface around it.
@@ -84,8 +85,9 @@ pub(super) fn sample(target: &Target) -> Result<Sampling> {
         return Err(Error::input(
             "tolerance",
             format!(
-                "{:.3e} mm, which takes about {n_spheres:.1e} spheres for {:.1} cm² of surface",
+                "{:.3e} mm, which takes about {} spheres for {:.1} cm² of surface",
                 1e3 * target.e,
+                short_number(n_spheres),
                 1e4 * surface.mesh().area()
             ),
             format!("a larger one, of at most {MAX_SPHERES} spheres"),

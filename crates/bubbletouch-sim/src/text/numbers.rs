@@ -1,7 +1,31 @@
 //! Formatting of numbers for display.
 
-/// Formats a number with four significant digits and without trailing zeros.
+/// Formats a number for readers with four significant digits and without trailing zeros, such as `2.05 million` or `3 × 10⁻⁵`.
 pub fn short_number(number: f64) -> String {
+    let power = number.abs().log10().floor();
+    let (unit, word) = match power {
+        6.0..9.0 => (1e6, " million"),
+        9.0..12.0 => (1e9, " billion"),
+        _ if (-4.0..6.0).contains(&power) || !power.is_finite() => return short_literal(number),
+        _ => (10f64.powf(power), ""),
+    };
+    let digits = short_literal(number / unit);
+    if !word.is_empty() {
+        return digits + word;
+    }
+    let raised = |letter: char| match letter.to_digit(10) {
+        Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
+        None => '⁻',
+    };
+    let exponent: String = power.to_string().chars().map(raised).collect();
+    match &digits[..] {
+        "1" => format!("10{exponent}"),
+        _ => format!("{digits} × 10{exponent}"),
+    }
+}
+
+/// Formats a number with four significant digits and without trailing zeros as a literal of a TOML file, such as `2.05e6`.
+pub fn short_literal(number: f64) -> String {
     if number == 0.0 {
         return "0".to_owned();
     }
@@ -49,11 +73,17 @@ mod tests {
             (1024.0, "1024"),
             (102.4, "102.4"),
             (12345.6, "12346"),
-            (1e-5, "1e-5"),
-            (2.5e7, "2.50e7"),
+            (1e-5, "10⁻⁵"),
+            (2.5e7, "25 million"),
+            (-2.0512e6, "-2.051 million"),
+            (3e9, "3 billion"),
+            (2.5e-12, "2.5 × 10⁻¹²"),
+            (2e15, "2 × 10¹⁵"),
+            (f64::INFINITY, "inf"),
         ] {
             assert_eq!(short_number(number), text);
         }
+        assert_eq!([1e-5, 2.5e7].map(short_literal), ["1e-5", "2.50e7"]);
     }
 
     #[test]

@@ -4,11 +4,12 @@ use crate::report::advice::{Candidate, Candidates};
 use crate::report::csv_tables::{CAPPED_FITS, LIMITS_FILE, MISSED_TOUCHES};
 use crate::report::study_folder::words_of;
 use crate::report::terminal::paragraph;
-use crate::studies::recognition::charts::chance::ChanceLevels;
-use crate::studies::recognition::charts::filled::filled;
-use crate::studies::recognition::charts::robustness::robustness_words;
 use crate::studies::recognition::charts::table_charts::{Changes, best_row};
-use crate::studies::recognition::charts::tables::{CHANGED, CHANGED_TO, CONFIGURATIONS};
+use crate::studies::recognition::tables::chance::ChanceLevels;
+use crate::studies::recognition::tables::robustness::robustness_words;
+use crate::studies::recognition::tables::table_files::{
+    CHANGED, CHANGED_TO, CONFIGURATIONS, filled,
+};
 use crate::table::{Table, Value, short_number};
 
 /// Maximum number of values that a sentence lists; also the maximum number of conditions for which sentences are written.
@@ -32,7 +33,7 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
         let diagonal = "Every test decision of the most accurate configuration is right: its confusion matrix is diagonal.";
         sentences.push(diagonal.to_owned());
     }
-    sentences.extend(missed(tables));
+    sentences.extend(limit_words(tables, MISSED_TOUCHES));
     sentences.extend(remarks(tables));
     sentences
 }
@@ -47,7 +48,7 @@ pub fn words(tables: &[Table], width: usize) -> String {
         "robustness.csv",
     ];
     let shown = shown.into_iter().filter_map(|file| filled(tables, file));
-    let missed = missed(tables);
+    let missed = limit_words(tables, MISSED_TOUCHES);
     let mut answers = answers(tables);
     answers.retain(|answer| Some(answer) != missed.as_ref());
     let words = words_of(&shown.collect::<Vec<_>>(), &answers, width);
@@ -58,8 +59,8 @@ pub fn words(tables: &[Table], width: usize) -> String {
         })
 }
 
-/// Returns sentences on a study in which single settings are changed: the lowest accuracy that a setting alone leaves, the settings that stay within the
-/// interval of the unchanged study, and the sentence `breaking`, which is the first one if all settings leave the interval. Returns `None` for other studies.
+/// Returns sentences on a study in which single settings are changed: the lowest accuracy that a setting alone leaves, and the sentence `breaking`, which is the
+/// first one if all settings leave the interval of the unchanged study. Returns `None` for other studies.
 fn change_words(configurations: &Table, breaking: Option<String>) -> Option<Vec<String>> {
     let Changes { base, drawn, .. } = Changes::new(configurations)?;
     let accuracy = |row: usize| configurations.number("accuracy", row);
@@ -77,7 +78,6 @@ fn change_words(configurations: &Table, breaking: Option<String>) -> Option<Vec<
         format!("{} {value} ({:.2})", name(row), accuracy(*row))
     });
     let said: Vec<String> = said.collect();
-    let others: Vec<&str> = others.iter().map(name).collect();
     let unchanged = configurations.bounded(column, base);
     let costs = match said.is_empty() {
         true => format!(
@@ -89,34 +89,32 @@ fn change_words(configurations: &Table, breaking: Option<String>) -> Option<Vec<
         ),
     };
     let mut sentences = vec![costs];
-    if !others.is_empty() {
-        sentences.push(format!(
-            "Within the interval at all values: {}.",
-            others.join(", ")
-        ));
-    }
-    let place = if others.is_empty() {
-        0
-    } else {
-        sentences.len()
-    };
+    let place = usize::from(!others.is_empty());
     sentences.splice(place..place, breaking);
     Some(sentences)
 }
 
-/// Returns a note on the number of touches without any deflected taxel; `None` if there are none.
-fn missed(tables: &[Table]) -> Option<String> {
-    limit_words(tables, MISSED_TOUCHES)
+/// Returns the limits of `limits.csv` that were reached: the name of each, and a sentence on the number of times.
+pub(super) fn limits(tables: &[Table]) -> Vec<(&str, String)> {
+    let limits = filled(tables, LIMITS_FILE).into_iter();
+    let sentences = limits.flat_map(|limits| {
+        let number = move |column: &str, row| limits.number(column, row);
+        let reached = (0..limits.n_rows).filter(move |&row| number("count", row) > 0.0);
+        reached.map(move |row| {
+            let (count, of) = (number("count", row), number("total", row));
+            let share = short_number(100.0 * count / of.max(1.0));
+            let [limit, meaning] = ["limit", "meaning"].map(|name| limits.word(name, row));
+            let words = format!("{count} of {of} {limit} ({share} %): {meaning}.");
+            (limit, words)
+        })
+    });
+    sentences.collect()
 }
 
-/// Returns a sentence on the number of times that a limit of `limits.csv` was reached; `None` if it was not reached.
+/// Returns the sentence on a limit; `None` if it was not reached.
 fn limit_words(tables: &[Table], limit: &str) -> Option<String> {
-    let limits = filled(tables, LIMITS_FILE)?;
-    let row = (0..limits.n_rows).find(|&row| limits.word("limit", row) == limit)?;
-    let (count, of) = (limits.number("count", row), limits.number("total", row));
-    let share = short_number(100.0 * count / of);
-    let meaning = limits.word("meaning", row);
-    (count > 0.0).then(|| format!("{count} of {of} {limit} ({share} %): {meaning}."))
+    let mut limits = limits(tables).into_iter();
+    limits.find_map(|(name, words)| (name == limit).then_some(words))
 }
 
 /// Returns sentences on the best configuration for each condition, which is a combination of external settings such as noise. If there are many conditions,
@@ -156,19 +154,12 @@ fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
         words => format!("{} at {words}", accuracy(offer)),
     };
     let mut sentences = vec![format!("Best accuracy{with}{colon} {}.", said(&best))];
-    let (_, measured) = offers.table.column(&offers.cost.name)?;
     if as_good != best {
         let as_good = said(&as_good);
-        sentences.insert(
-            0,
-            format!(
-                "Within the interval of the best{with}, with the fewest measurements: {as_good}."
-            ),
+        let cheapest = format!(
+            "Within the interval of the best{with}, with the fewest measurements: {as_good}."
         );
-    } else if measured.varies(0..offers.table.n_rows) {
-        sentences.push(format!(
-            "No configuration with fewer measurements reaches the interval of the best{with}."
-        ));
+        sentences.insert(0, cheapest);
     }
     Some(sentences)
 }

@@ -1,18 +1,22 @@
 //! Page sections that only recognition studies have: settings, and the limits that were reached.
 
-use crate::report::csv_tables::LIMITS_FILE;
-use crate::report::page::{Section, definition};
+use crate::report::page::{Section, definition, sentences_html};
 use crate::report::pictures::drawing::escape;
 use crate::report::swept::Swept;
-use crate::studies::recognition::charts::filled::filled;
-use crate::studies::recognition::charts::tables::CONFIGURATIONS;
-use crate::table::{Table, short_number};
+use crate::studies::recognition::charts::answers::limits;
+use crate::studies::recognition::tables::table_files::{CONFIGURATIONS, filled};
+use crate::table::Table;
 
 /// Returns the page sections about settings, and the number of times that each limit of the simulation or training was reached.
 pub fn sections(settings: &[(String, String)], tables: &[Table]) -> Vec<Section> {
+    let limits = limits(tables).into_iter().map(|(_, words)| words);
+    let limits = match &sentences_html(&limits.collect::<Vec<_>>())[..] {
+        "" => "<p>No limit was reached.</p>".to_owned(),
+        items => items.to_owned(),
+    };
     vec![
         Section::new("settings", "Settings", settings_html(settings, tables)),
-        Section::new("limits", "Limits", limits_html(tables)),
+        Section::new("limits", "Limits", limits),
     ]
 }
 
@@ -36,22 +40,4 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
         }
     }
     format!("<dl>{html}</dl>")
-}
-
-/// Returns HTML that lists the limits of the simulation and of the solver that were reached, with their counts.
-fn limits_html(tables: &[Table]) -> String {
-    let Some(table) = filled(tables, LIMITS_FILE) else {
-        return String::new();
-    };
-    let item = |row: usize| {
-        let (count, of) = (table.number("count", row), table.number("total", row));
-        let share = short_number(100.0 * count / of.max(1.0));
-        let [what, meaning] = ["limit", "meaning"].map(|name| escape(table.word(name, row)));
-        format!("<li><b>{count} of {of}</b> {what} ({share} %). {meaning}</li>")
-    };
-    let reached = (0..table.n_rows).filter(|&row| table.number("count", row) > 0.0);
-    match reached.map(item).collect::<String>() {
-        items if items.is_empty() => "<p>No limit was reached.</p>".to_owned(),
-        items => format!("<ul>{items}</ul>"),
-    }
 }

@@ -8,12 +8,11 @@ use crate::report::advice::Candidates;
 use crate::report::pictures::colours::LINES;
 use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
-use crate::studies::recognition::charts::chance::ChanceLevels;
-use crate::studies::recognition::charts::filled::filled;
-use crate::studies::recognition::charts::robustness::{LOG_RATIO, ROBUSTNESS, breaks};
-use crate::studies::recognition::charts::tables::{
+use crate::studies::recognition::tables::chance::ChanceLevels;
+use crate::studies::recognition::tables::robustness::{LOG_RATIO, ROBUSTNESS, breaks};
+use crate::studies::recognition::tables::table_files::{
     CHANCE, CHANGED, CHANGED_TO, CONFIGURATIONS, OVER_FOLDS, OVER_TRIAL, SELECTED_TAXELS,
-    UNCHANGED, note_of_groups,
+    UNCHANGED, filled, note_of_groups,
 };
 use crate::table::{
     Along, At, ChartSpec, Column, Dot, Mark, Role, Rule, Scale, Shown, Table, Value,
@@ -161,16 +160,15 @@ fn sheet(
         };
         part.dots = (0..n_rows).filter_map(dot).collect();
     }
-    let least = |part: &ChartSpec| {
+    // The costliest settings come first in the column.
+    let order = configurations.column(CHANGED);
+    parts.sort_by_key(|part| {
         let words = configurations
             .column(&part.x)
             .map(|(column, _)| &column.words);
-        let rows = 0..configurations.n_rows;
-        let own = rows.filter(|&row| words.is_some_and(|w| w == configurations.word(CHANGED, row)));
-        let accuracy = own.map(|row| configurations.number("accuracy", row));
-        accuracy.fold(f64::INFINITY, f64::min)
-    };
-    parts.sort_by(|a, b| least(a).total_cmp(&least(b)));
+        let place = order.and_then(|(_, order)| order.level(words?));
+        place.unwrap_or(usize::MAX)
+    });
     let lines = parts
         .first()
         .map_or_else(Vec::new, |part| part.lines.clone());
@@ -309,49 +307,58 @@ fn charts_along(
     let with_parts = |one: Option<String>| one.into_iter().chain(parts.iter().map(name_of));
     let n_along = x.map_or(0, |x| x.levels(rows).len());
     let x = x.map_or_else(|| "ratio".to_owned(), |x| name_of(&x));
-    let of_rows = |rows: Vec<usize>| {
-        let here = fixed.iter().map(|one| &one.column.name);
-        let here = here.filter_map(|name| configurations.shown(name, rows[0]));
-        ChartSpec {
-            name: format!("accuracy_by_{}{}", word(&x), name_ending(fixed, rows[0])),
-            title: title(configurations, &x, fixed, rows[0]),
-            shown: chart.shown.iter().cloned().chain(here).collect(),
-            x: x.clone(),
-            lines: with_parts(lines.clone()).collect(),
-            panels: panels.clone(),
-            ..chart.clone()
-        }
+    let along = |x: &str, lines: Vec<String>| ChartSpec {
+        lines,
+        panels: panels.clone(),
+        shown: chart.shown.clone(),
+        rules: chart.rules.clone(),
+        note: chart.note.clone(),
+        ..configurations.chart(
+            format!("accuracy_by_{}", word(x)),
+            "Accuracy by {x}",
+            ("accuracy", x),
+        )
     };
-    let mut charts: Vec<ChartSpec> = swept.groups(fixed, rows).into_iter().map(of_rows).collect();
+    let main = along(&x, with_parts(lines.clone()).collect());
+    let mut charts: Vec<ChartSpec> = for_each(configurations, rows, fixed, main).collect();
     let is_axis = others
         .first()
         .is_some_and(|one| one.is_number() && one.applies(rows));
     let is_whole = fixed.is_empty() && parts.is_empty();
     if is_whole && is_axis && n_along <= LINES.len() && panels.is_none() {
-        charts.extend(lines.map(|lines| ChartSpec {
-            name: format!("accuracy_by_{}", word(&lines)),
-            title: title(configurations, &lines, &[], rows[0]),
-            x: lines,
-            lines: vec![x],
-            ..charts[0].clone()
-        }));
+        charts.extend(lines.map(|lines| along(&lines, vec![x])));
     }
     charts
 }
 
-fn name_of(setting: &Setting) -> String {
-    setting.column.name.to_string()
+/// Returns a copy of a chart for each combination of the values of some settings, which stand in its file name and its title.
+fn for_each(
+    table: &Table,
+    rows: &[usize],
+    settings: &[Setting],
+    chart: ChartSpec,
+) -> impl Iterator<Item = ChartSpec> {
+    let groups = Setting::groups(settings, table, rows).into_iter();
+    groups.map(move |rows| {
+        let row = rows[0];
+        let here = settings
+            .iter()
+            .filter_map(|one| table.shown(&one.column.name, row));
+        let words: Vec<String> = settings.iter().map(|one| one.phrase(row)).collect();
+        ChartSpec {
+            name: chart.name.clone() + &name_ending(settings, row),
+            title: match &words.join(", ")[..] {
+                "" => chart.title.clone(),
+                words => format!("{} ({words})", chart.title),
+            },
+            shown: chart.shown.iter().cloned().chain(here).collect(),
+            ..chart.clone()
+        }
+    })
 }
 
-/// Returns the title of a chart, such as `Accuracy by compression (noise 10 %)`; its legend and panels name the other settings.
-fn title(configurations: &Table, x: &str, fixed: &[Setting], row: usize) -> String {
-    let column = configurations.column(x);
-    let along = column.map_or(x, |(column, _)| &column.words);
-    let fixed: Vec<String> = fixed.iter().map(|one| one.phrase(row)).collect();
-    match &fixed.join(", ")[..] {
-        "" => format!("Accuracy by {along}"),
-        fixed => format!("Accuracy by {along} ({fixed})"),
-    }
+fn name_of(setting: &Setting) -> String {
+    setting.column.name.to_string()
 }
 
 /// Returns a column name in the form that the file names of charts use.
@@ -492,32 +499,13 @@ fn selected_charts(selected: &Table) -> Vec<ChartSpec> {
         used.all(|used| used.column.name != one.column.name)
     };
     let fixed: Vec<Setting> = swept.free.iter().filter(is_fixed).copied().collect();
-    let chart = |rows: Vec<usize>| {
-        let here = fixed.iter().map(|one| &one.column.name);
-        let words: Vec<String> = fixed.iter().map(|one| one.phrase(rows[0])).collect();
-        let title = match words.is_empty() {
-            true => "Selected taxels".to_owned(),
-            false => format!("Selected taxels ({})", words.join(", ")),
-        };
-        ChartSpec {
-            shown: here
-                .filter_map(|name| selected.shown(name, rows[0]))
-                .collect(),
-            lines: method.as_ref().map(name_of).into_iter().collect(),
-            panels: condition.as_ref().map(name_of),
-            mark: Mark::Points,
-            square: true,
-            ..selected.chart(
-                format!("selected_taxels{}", name_ending(&fixed, rows[0])),
-                title,
-                ("y_mm", "x_mm"),
-            )
-        }
+    let chart = ChartSpec {
+        lines: method.as_ref().map(name_of).into_iter().collect(),
+        panels: condition.as_ref().map(name_of),
+        mark: Mark::Points,
+        square: true,
+        ..selected.chart("selected_taxels", "Selected taxels", ("y_mm", "x_mm"))
     };
-    let groups = swept.groups(&fixed, &rows).into_iter();
-    groups
-        .filter(|rows| !rows.is_empty())
-        .take(MAX_PLACES)
-        .map(chart)
-        .collect()
+    let charts = for_each(selected, &rows, &fixed, chart);
+    charts.take(MAX_PLACES).collect()
 }

@@ -221,16 +221,10 @@ impl RecognitionStudy {
         let pictures = sets.map(|(name, set)| {
             let picture = snapshots(set)?;
             let size = (picture.width / 2, picture.height / 2);
-            // Every object at full resolution would make the page twice as large.
-            let picture = if name == "touches" {
-                picture.halved()
-            } else {
-                picture
-            };
             Ok(NamedPicture {
                 name: name.to_owned(),
                 title: set.caption.clone(),
-                png: picture.png()?,
+                png: picture.small_png()?,
                 size,
             })
         });

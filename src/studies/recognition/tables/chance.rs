@@ -9,7 +9,7 @@ const UNEQUAL: f64 = 1.1;
 
 /// Chance level of a configuration.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Chance<'t> {
+pub(crate) struct Chance<'t> {
     /// Fraction of the test decisions that are on the most frequent object, 0 to 1; 1 in `n_objects` if all objects have about equal numbers.
     pub accuracy: f64,
     /// Most frequent object of the test decisions; `None` if all objects have about equal numbers.
@@ -47,7 +47,7 @@ impl<'t> Chance<'t> {
 }
 
 /// Chance levels of all configurations, from the confusion matrices.
-pub(super) struct ChanceLevels<'t> {
+pub(crate) struct ChanceLevels<'t> {
     of_cells: HashMap<u64, Chance<'t>>,
     of_all: Chance<'t>,
 }

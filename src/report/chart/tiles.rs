@@ -1,16 +1,14 @@
 //! Tile charts: one tile for each pair of x and y, coloured by an outcome or a number.
 
-use super::MarkAbout;
+use super::layout::Layout;
+use super::legend::LegendEntry;
+use super::view::View;
 use crate::error::Result;
-use crate::report::chart::layout::{Layout, TICK};
-use crate::report::chart::legend::LegendEntry;
-use crate::report::chart::rules;
-use crate::report::chart::view::{Place, View};
 use crate::report::pictures::colours::{INK, LINES, PAPER, Rgb, text_on, tint};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::swept::Setting;
 use crate::report::text_width::text_width;
-use crate::table::{Data, Mark, Role, Scale, Value};
+use crate::table::{Data, Value};
 
 /// Colours of the outcomes in a chart, in the order of the column's names, or else of first occurrence. The colours also differ in lightness.
 const OUTCOMES: [Rgb; 8] = [
@@ -36,19 +34,10 @@ struct Look<'a> {
     ends: (f64, f64),
 }
 
-pub(super) const ABOUT: MarkAbout = MarkAbout {
-    draw,
-    path: None,
-    is_tiled: true,
-};
-
-/// Draws a chart of tiles.
-fn draw(view: &View) -> Result<Drawing> {
-    let Mark::Tiles { fill } = &view.spec.mark else {
-        unreachable!("the descriptor of a mark draws this mark");
-    };
+/// Draws a chart of tiles, coloured by the column `fill`.
+pub(super) fn draw(view: &View, fill: &str) -> Result<Drawing> {
     let look = Look::new(view, view.column(fill)?);
-    let (across, down) = (view.x.n_levels, view.y.n_levels);
+    let (across, down) = (view.x.levels.len(), view.y.levels.len());
     let columns = view.panels.names.len().min(PANELS_ACROSS);
     let is_many = across.min(down) >= MANY || across * columns >= MANY;
     let (margin, high) = if is_many { (4.0, 18.0) } else { (8.0, 22.0) };
@@ -56,9 +45,7 @@ fn draw(view: &View) -> Result<Drawing> {
         .rows
         .iter()
         .map(|&row| text_width(&look.sign(row), f64::from(SIGN)));
-    let ticks = view.x.ticks.iter().filter(|_| !view.x.is_words);
-    let ticks = ticks.map(|tick| text_width(&tick.label, TICK));
-    let widest = signs.chain(ticks).fold(9.0, f64::max) + margin;
+    let widest = signs.fold(9.0, f64::max) + margin;
     let most = 640.0 / (across * columns) as f64;
     let size = (widest.max(most.min(64.0)), high);
     let panel = (size.0 * across as f64, size.1 * down as f64);
@@ -68,56 +55,33 @@ fn draw(view: &View) -> Result<Drawing> {
     for panel in 0..view.titles.len() {
         let frame = layout.frame(panel);
         layout.draw_axes(&mut drawing, view, panel);
-        let places = view.places.iter();
-        let here = places.filter(|place| place.panel == panel);
-        let here = here.filter(|place| look.fill.data.value(place.row).is_some());
-        let tiles: Vec<(&Place, Area, Rgb, String)> = here
-            .map(|place| {
-                let area = Area::around(frame.at(place.x, place.y), size);
-                (place, area, look.colour(place.row), look.sign(place.row))
-            })
-            .collect();
-        for (place, area, colour, _) in &tiles {
+        let here = view.places.iter().filter(|place| place.panel == panel);
+        for place in here.filter(|place| look.fill.data.value(place.row).is_some()) {
+            let area = Area::around(frame.at(place.x, place.y), size);
+            let (colour, sign) = (look.colour(place.row), look.sign(place.row));
             view.draw_mark(&mut drawing, place, |drawing| {
-                drawing.area(*area, *colour);
-                drawing.frame(*area, Stroke::new(PAPER, 1.0));
+                drawing.area(area, colour);
+                drawing.frame(area, Stroke::new(PAPER, 1.0));
             });
-        }
-        rules::draw(&mut drawing, view, panel, frame);
-        for (_, area, colour, sign) in &tiles {
-            draw_sign(&mut drawing, *area, *colour, sign);
+            if !sign.is_empty() {
+                let (x, y) = area.at(0.5, 0.5);
+                let style = TextStyle::new(SIGN).align(Align::Middle);
+                drawing.text((x, y + 4.0), &sign, style.colour(text_on(colour)));
+            }
         }
         drawing.frame(frame, Stroke::new(INK, 1.0));
     }
     Ok(drawing)
 }
 
-/// Draws the text of a tile on its own background, so that reference lines do not cross the text; an empty text is not drawn.
-fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
-    if sign.is_empty() {
-        return;
-    }
-    let width = text_width(sign, f64::from(SIGN)) + 4.0;
-    let (x, y) = place.at(0.5, 0.5);
-    drawing.area(Area::around((x, y), (width, 14.0)), colour);
-    let style = TextStyle::new(SIGN).align(Align::Middle);
-    drawing.text((x, y + 4.0), sign, style.colour(text_on(colour)));
-}
-
 impl<'a> Look<'a> {
     fn new(view: &View, fill: Setting<'a>) -> Self {
-        let column = fill.column;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         if let Data::Numbers(numbers) = fill.data {
             let shown = view.places.iter().map(|place| numbers[place.row]);
-            for number in
-                shown.filter(|&n| n.is_finite() && (column.scale != Scale::Log || n > 0.0))
-            {
+            for number in shown.filter(|n| n.is_finite()) {
                 (low, high) = (low.min(number), high.max(number));
             }
-        }
-        if column.scale == Scale::Share && column.role != Role::Condition {
-            (low, high) = (low.min(0.0), high.max(1.0));
         }
         Self {
             fill,
@@ -145,13 +109,9 @@ impl<'a> Look<'a> {
     }
 
     fn part(&self, number: f64) -> f64 {
-        let spaced = |n: f64| match self.fill.column.scale {
-            Scale::Log => n.max(1e-300).log10(),
-            _ => n,
-        };
-        let (low, high) = (spaced(self.ends.0), spaced(self.ends.1));
+        let (low, high) = self.ends;
         match high > low {
-            true => (spaced(number) - low) / (high - low),
+            true => (number - low) / (high - low),
             false => 0.5,
         }
     }
@@ -188,7 +148,6 @@ impl<'a> Look<'a> {
                 }
             }
         }
-        entries.extend(rules::entries(view));
         entries
     }
 }

@@ -16,13 +16,13 @@ use crate::random::Seed;
 use crate::report::swept::{Setting, Swept};
 use crate::row;
 use crate::statistics::p_status::CONFIDENCE;
-use crate::studies::recognition::charts::chance::ChanceLevels;
+use crate::studies::recognition::tables::chance::ChanceLevels;
 use crate::table::{Column, Data, File, Role, Table};
 use rand_distr::{Beta, Distribution};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-pub(super) const ROBUSTNESS: File<Robustness> = File::new(
+pub(crate) const ROBUSTNESS: File<Robustness> = File::new(
     "robustness.csv",
     "Robustness",
     "The value of a condition at which half of the accuracy above chance is lost, for each configuration that is most accurate along it.",
@@ -97,7 +97,7 @@ const MIN_VALUES: usize = 3;
 const ZERO_DECADES: f64 = 0.5;
 
 /// Ratio of the largest to the smallest positive value of a condition above which its chart axis is logarithmic.
-pub(super) const LOG_RATIO: f64 = 16.0;
+pub(crate) const LOG_RATIO: f64 = 16.0;
 
 /// Mean accuracy of a design at each value of a condition, in ascending order of the values.
 struct Curve {
@@ -223,7 +223,7 @@ fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
 ///
 /// # Errors
 /// If an accuracy of the summary is not between 0 and 1, or a row cannot be written to a file.
-pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Table>> {
+pub(crate) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Table>> {
     let accuracies = (0..summary.n_rows).map(|row| summary.number("accuracy", row));
     if let Some((row, accuracy)) = (2..)
         .zip(accuracies)
@@ -349,7 +349,7 @@ const MAX_LISTED: usize = 3;
 
 /// Returns the values of a condition at which half of the accuracy above chance is lost, from the first to the last design that loses it: one text per direction,
 /// such as `18–21 mm`, and none if no design loses it. Returns `None` if the table lacks the condition.
-pub(super) fn breaks(robustness: &Table, condition: &Column) -> Option<Vec<String>> {
+pub(crate) fn breaks(robustness: &Table, condition: &Column) -> Option<Vec<String>> {
     let rows = 0..robustness.n_rows;
     let own = rows.filter(|&row| robustness.word("condition", row) == condition.name);
     let directions = robustness.groups(&["direction"], own);
@@ -374,7 +374,7 @@ pub(super) fn breaks(robustness: &Table, condition: &Column) -> Option<Vec<Strin
 
 /// Returns a sentence on the conditions in which half of the accuracy above chance is lost, with their values if they are few, and on the conditions in which no
 /// design loses it. Returns `None` if the study drives no condition.
-pub(super) fn robustness_words(tables: &[Table]) -> Option<String> {
+pub(crate) fn robustness_words(tables: &[Table]) -> Option<String> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     let (summary, table) = (of("summary.csv")?, of(ROBUSTNESS.name())?);
     let (mut lost, mut never) = (Vec::new(), Vec::new());

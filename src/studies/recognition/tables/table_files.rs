@@ -8,18 +8,24 @@ use crate::report::swept::Swept;
 use crate::statistics::bootstrap::coverage_of_95;
 use crate::statistics::grouped::FEW_GROUPS;
 use crate::statistics::p_status::CONFIDENCE;
-use crate::studies::recognition::charts::chance::ChanceLevels;
-use crate::studies::recognition::charts::robustness::{ROBUSTNESS, robustness};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
     Comparison, ConfigurationScore, Confused, Confusion, Limit, Pareto, Prediction, Predictions,
     Published, Recall, SelectedTaxel, StageTime, Tables, TrialScore, TrialTime, Variance,
 };
 use crate::studies::recognition::spec::study::StudySpec;
+use crate::studies::recognition::tables::chance::ChanceLevels;
+use crate::studies::recognition::tables::robustness::{ROBUSTNESS, robustness};
 use crate::studies::study::AnyFile;
 use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
 use serde::Serialize;
 use std::path::Path;
+
+/// Returns the table with the given file name; `None` if there is no such table or if it has no rows.
+pub(crate) fn filled<'a>(tables: &'a [Table], file: &str) -> Option<&'a Table> {
+    let mut tables = tables.iter();
+    tables.find(|table| table.file == file && table.n_rows > 0)
+}
 
 /// Name of the combined table of all results of each configuration; the table is not written to a file.
 pub const CONFIGURATIONS: &str = "configurations.csv";
@@ -152,34 +158,22 @@ impl From<'_> {
             self.table(&PUBLISHED, |tables| &tables.published, &axes)?,
         ];
         // Tables that only some studies have.
-        let has = |name: &str, is_filled: fn(&Tables) -> bool| match self {
-            Self::Rows(tables) => is_filled(tables),
-            Self::Folder(folder) => has_table(folder, name),
-        };
-        if has(VARIANCE.name(), |tables| !tables.variance.is_empty()) {
-            tables.push(self.table(&VARIANCE, |tables| &tables.variance, &[])?);
-        }
-        if has(SELECTED_TAXELS, |tables| !tables.selected.is_empty()) {
-            tables.push(self.table(&SELECTED, |tables| &tables.selected, &axes)?);
-        }
-        if has(RECALL.name(), |tables| !tables.recall.is_empty()) {
-            tables.push(self.table(&RECALL, |tables| &tables.recall, &[])?);
-        }
-        if has(PREDICTIONS.name(), |tables| {
-            !tables.predictions.rows.is_empty()
-        }) {
-            tables.push(match self {
-                Self::Rows(tables) => {
-                    predictions(Path::new(PREDICTIONS.name()), csv_of(&tables.predictions)?)?
-                }
-                Self::Folder(folder) => {
-                    let path = folder.join(PREDICTIONS.name());
-                    let csv = crate::files::read(&path).map_err(|e| {
-                        Error::unreadable(&path, "a table that bubbletouch run wrote", e)
-                    })?;
-                    predictions(&path, csv)?
-                }
-            });
+        tables.extend(self.filled(&VARIANCE, |tables| &tables.variance, &[])?);
+        tables.extend(self.filled(&SELECTED, |tables| &tables.selected, &axes)?);
+        tables.extend(self.filled(&RECALL, |tables| &tables.recall, &[])?);
+        let name = PREDICTIONS.name();
+        match self {
+            Self::Rows(rows) if !rows.predictions.rows.is_empty() => {
+                tables.push(predictions(Path::new(name), csv_of(&rows.predictions)?)?);
+            }
+            Self::Folder(folder) if has_table(folder, name) => {
+                let path = folder.join(name);
+                let csv = crate::files::read(&path);
+                let a_table = "a table that bubbletouch run wrote";
+                let csv = csv.map_err(|e| Error::unreadable(&path, a_table, e))?;
+                tables.push(predictions(&path, csv)?);
+            }
+            _ => {}
         }
         tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
         tables.iter_mut().for_each(say);
@@ -211,6 +205,20 @@ impl From<'_> {
         let configurations = cells_of(&tables).map(with_changes);
         tables.extend(configurations);
         Ok(tables)
+    }
+
+    /// Returns a table that only some studies have; `None` if it has no rows or no file.
+    fn filled<R: Columns + Serialize>(
+        &self,
+        file: &File<R>,
+        rows: fn(&Tables) -> &Vec<R>,
+        axes: &[Column],
+    ) -> Result<Option<Table>> {
+        let is_there = match self {
+            Self::Rows(tables) => !rows(tables).is_empty(),
+            Self::Folder(folder) => has_table(folder, file.name()),
+        };
+        is_there.then(|| self.table(file, rows, axes)).transpose()
     }
 
     fn table<R: Columns + Serialize>(
