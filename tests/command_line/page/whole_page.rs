@@ -1,5 +1,6 @@
 //! Texts of a recognition study for readers: the terminal table, the answers and the page.
 
+use crate::command::says;
 use crate::report_synthetic::{
     ReportPage, about, add_headlines, configuration, many_cells, noise_cells, quickstart_cells,
     tables,
@@ -173,11 +174,9 @@ fn many_cells_stand_compactly_and_what_is_left_out_is_said() {
     let made = tables(many_cells(), 3, 24);
     let text = words_of(&made, 100);
     assert!(text.contains("100:1"));
-    assert!(
-        text.contains(
-            "Left out here: 20 of 60 lines, 0 of 5 columns; all 300 rows are in the tables."
-        ),
-        "{text}"
+    says(
+        &text,
+        &["Left out here: 20 of 60 lines, 0 of 5 columns; all 300 rows are in the tables."],
     );
     let narrow = words_of(&made, 60);
     assert!(
@@ -265,9 +264,9 @@ fn each_condition_has_a_best_of_its_own_and_one_answer_to_fewest_measurements() 
 fn too_few_trials_for_a_p_value_are_said() {
     let made = tables(noise_cells(), 1, 24);
     let said = answers_of(&made).join(" ");
-    assert!(
-        said.contains("No p-values where trials are too few: 2 are needed."),
-        "{said}"
+    says(
+        &said,
+        &["No p-values where trials are too few: 2 are needed."],
     );
     assert!(html(&made, &about()).contains("too_few_trials"));
 }
