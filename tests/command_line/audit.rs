@@ -1,6 +1,6 @@
 //! `bubbletouch audit` reads recordings as studies do, writes a page with tables, and its errors state what is wrong.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use bubbletouch::random::Seed;
 use bubbletouch::study::{write_integers, write_npy, write_texts};
 use ndarray::{Array3, Array4, s};
@@ -55,10 +55,7 @@ fn verdicts(case: &Case, folder: &str, check: &str) -> Vec<String> {
 fn a_folder_becomes_a_page_with_tables() {
     let case = with_recording();
     let (said, _) = case.succeeds(&audit(&["skin"]));
-    assert!(
-        said.contains("Page: results/skin_audit/report.html"),
-        "{said}"
-    );
+    says(&said, &["Page: results/skin_audit/report.html"]);
     let page = std::fs::read_to_string(case.path("results/skin_audit/report.html")).unwrap();
     assert!(page.contains("id=\"findings\"") && page.contains("picture-taxels"));
     assert_eq!(
@@ -104,7 +101,7 @@ fn axes_texts_and_archives_of_sessions_are_read() {
     // The frame before contact is exactly zero and therefore carries no information about the class.
     assert_eq!(verdicts(&case, "timed", "before_contact"), ["passed"]);
     let findings = std::fs::read_to_string(case.path("timed/findings.csv")).unwrap();
-    assert!(findings.contains("chance is 33 %"), "{findings}");
+    says(&findings, &["chance is 33 %"]);
     std::fs::create_dir(case.path("sessions")).unwrap();
     for (session, from) in [("a", 0), ("b", 30), ("c", 60)] {
         let path = case.path("sessions").join(format!("{session}.npz"));
@@ -128,9 +125,7 @@ fn bad_input_is_named_and_nothing_is_written() {
     let case = with_recording();
     write_integers(&case.path("few.npy"), 0..N - 1).unwrap();
     let refused = |arguments: &[&str], said: &str| {
-        let output = case.run(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        let error = String::from_utf8(output.stderr).unwrap();
+        let error = case.refuses(arguments);
         assert!(error.contains(said), "{arguments:?}: {error}");
         assert!(!case.path("results").exists(), "{arguments:?}");
     };
@@ -183,7 +178,7 @@ fn a_given_test_set_is_read_from_the_folder_or_from_recorded_toml() {
     write_integers(&case.path("skin/labels_test.npy"), (0..30).map(label)).unwrap();
     case.succeeds(&audit(&["skin"]));
     let beside = table("skin");
-    assert!(beside.contains("\ngiven,"), "{beside}");
+    says(&beside, &["\ngiven,"]);
     // Sessions are those of the training touches, followed by those of the test set.
     write_integers(&case.path("skin/sessions.npy"), (0..N + 30).map(|k| k / 8)).unwrap();
     case.succeeds(&audit(&["skin"]));
@@ -212,17 +207,14 @@ fn a_given_test_set_is_read_from_the_folder_or_from_recorded_toml() {
     };
     std::fs::remove_file(case.path("skin/labels_test.npy")).unwrap();
     let error = said(&["skin"]);
-    assert!(
-        error.contains("frames_test.npy") && error.contains("labels_test"),
-        "{error}"
-    );
+    says(&error, &["frames_test.npy", "labels_test"]);
     write_npy(
         &case.path("other/u.npy"),
         &test.slice(s![.., 1.., ..]).to_owned(),
     )
     .unwrap();
     let error = said(&["other"]);
-    assert!(error.contains("u.npy") && error.contains("64"), "{error}");
+    says(&error, &["u.npy", "64"]);
 }
 
 /// The file lists the touches from the last to the first in time.

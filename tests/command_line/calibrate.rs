@@ -1,6 +1,6 @@
 //! `bubbletouch calibrate` writes a table that studies read, and its errors state what is wrong.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use bubbletouch::random::Seed;
 use bubbletouch::study::write_npy;
 use ndarray::{Array1, Array3};
@@ -22,23 +22,7 @@ fn frames() -> Array3<f32> {
 
 const UNTOUCHED: &str = "0..50,100..150,200..250,300..350,400..450,500..550";
 
-const STUDY: &str = r#"
-question = "?"
-[objects]
-sets = ["balls"]
-[skin]
-pitch_mm = 4.0
-taxels = 8
-stroke_mm = 5.0
-[touches]
-per_object = 8
-offset_x_mm = { uniform = [-4.0, 4.0] }
-depth_mm = 2.0
-[sensing]
-measurements = 16
-[recognition]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/calibrate.toml");
 
 #[test]
 fn what_it_writes_is_the_signal_of_a_study() {
@@ -56,7 +40,7 @@ fn what_it_writes_is_the_signal_of_a_study() {
     let noise = signal["noise_std_full_scale"].as_float().unwrap();
     assert!((noise - 0.01).abs() < 0.0005, "{table}");
     assert_eq!(signal["adc_bits"].as_integer(), Some(0), "{table}");
-    assert!(table.contains("# gain_std: not identifiable: "), "{table}");
+    says(&table, &["# gain_std: not identifiable: "]);
     case.file("study.toml", format!("{STUDY}{table}"));
     case.succeeds(&["plan", "study.toml"]);
     // With `--output`, the command writes the table to a file.
@@ -172,9 +156,7 @@ fn frames_that_tell_nothing_are_refused_or_say_so() {
         ),
         (&["frames.npy", "--output", "signal.txt"], "signal.txt"),
     ] {
-        let output = case.run(&[&["calibrate"], arguments].concat());
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+        let error = case.refuses(&[&["calibrate"], arguments].concat());
         assert!(error.contains(said), "{arguments:?}: {error}");
     }
     let (table, _) = case.succeeds(&["calibrate", "frames.npy", "--zero", "100"]);
@@ -199,7 +181,7 @@ fn counts_with_an_offset_have_a_zero_and_no_drift() {
         "500",
     ];
     let (table, _) = case.succeeds(&given);
-    assert!(table.contains("The zero is 100."), "{table}");
+    says(&table, &["The zero is 100."]);
     let read: toml::Table = table.parse().unwrap();
     let value = |key: &str| match &read["signal"][key] {
         toml::Value::Integer(number) => *number as f64,

@@ -1,6 +1,6 @@
 //! `bubbletouch classify` accepts any folder of features, and checks it before training.
 
-use crate::command::Case;
+use crate::command::{Case, says, words};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::classifiers::classifier::Classifier;
 use bubbletouch::recognition::data::dataset::dataset;
@@ -163,9 +163,7 @@ fn people_get_lines() {
 /// Runs the command on a folder, and asserts that it fails with a message that contains all `words`.
 fn refused(case: &Case, arguments: &[&str], words: &[&str]) {
     let all = [&["classify", "."], arguments].concat();
-    let output = case.run(&[&all[..], &["--predictions", "out.npy"]].concat());
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{error}");
+    let error = case.refuses(&[&all[..], &["--predictions", "out.npy"]].concat());
     for word in words {
         assert!(error.contains(word), "no {word:?} in: {error}");
     }
@@ -631,17 +629,8 @@ fn another_or_a_damaged_file_of_a_classifier_is_refused() {
         &text.replacen("\"classes\":[0,1", "\"classes\":[1,0", 1),
         "was changed",
     );
-    let output = case.run(&[
-        "classify",
-        ".",
-        "--classifier",
-        "linfa_svm",
-        "--save",
-        "m.json",
-    ]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("cannot be saved"), "{said}");
+    let said = case.refuses(&words("classify . --classifier linfa_svm --save m.json"));
+    says(&said, &["cannot be saved"]);
     let both = ["classify", ".", "--model", "model.json", "--n-trees", "3"];
     assert_eq!(case.run(&both).status.code(), Some(2));
 }

@@ -6,26 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 const GUIDE: &str = include_str!("../../guide/events.md");
 
-const STUDY: &str = r#"
-question = "What is told?"
-trials = 3
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors"]
-surface_error_mm = 1.0
-[skin]
-pitch_mm = [4.0, 8.0]
-size_mm = 64.0
-stroke_mm = 5.0
-[touches]
-per_object = 8
-offset_x_mm = { uniform = [-5.0, 5.0] }
-depth_mm = 3.0
-[sensing]
-ratio = [4, 16]
-[recognition]
-classifier = ["linear_svm", "k_nearest"]
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/events.toml");
 
 /// Returns the types of each event's fields, from the table of the guide.
 fn schema() -> BTreeMap<String, BTreeMap<String, String>> {

@@ -14,38 +14,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Study with SVMs of every kernel that choose C by folds, and with frames that are projected by matrix products.
-const STUDY: &str = r#"
-question = "Do processors agree?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "bowl"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 4.0
-taxels = 12
-stroke_mm = 5.0
-
-[touches]
-per_object = 30
-offset_x_mm = { uniform = [-8.0, 8.0] }
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = 3.0
-
-[signal]
-noise_std_full_scale = 0.1
-
-[sensing]
-ensemble = ["gaussian", "block_average"]
-measurements = 36
-
-[recognition]
-classifier = ["linear_svm", "rbf_svm", "polynomial_svm", "laplacian_svm", "logistic_regression", "k_nearest"]
-c_grid = [0.1, 1.0, 10.0]
-cv_folds = 3
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/instructions.toml");
 
 /// Runs the command on this machine or on an emulated processor, and asserts success.
 fn succeeds(case: &Case, emulated: Option<(&Path, &str)>, arguments: &[&str]) -> String {

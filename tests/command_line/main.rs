@@ -42,5 +42,4 @@ mod shell;
 mod simulate;
 mod surface;
 mod touches;
-mod unused;
 mod wrong_recordings;

@@ -1,6 +1,6 @@
 //! Meshes on the command line: their descriptions, and presses and studies of exact meshes.
 
-use crate::command::Case;
+use crate::command::{Case, says, words};
 use bubbletouch::mesh::LengthUnit;
 use bubbletouch::study::{ModelSpec, ObjectsSpec, load_objects};
 
@@ -35,7 +35,7 @@ fn a_mesh_is_described() {
         said.starts_with("size        40.0 × 40.0 × 40.0 mm\n"),
         "{said}"
     );
-    assert!(said.contains("\nvolume      64.00 cm³\n"), "{said}");
+    says(&said, &["\nvolume      64.00 cm³\n"]);
     assert!(said.ends_with("\nfaults      none\n"), "{said}");
 }
 
@@ -103,7 +103,7 @@ fn a_closed_mesh_that_faces_inwards_is_turned_with_a_note() {
     ));
     // The description of the file itself is unchanged.
     let (said, _) = case.succeeds(&words("objects mesh turned.obj --unit mm"));
-    assert!(said.contains("faces that face inwards"), "{said}");
+    says(&said, &["faces that face inwards"]);
 }
 
 #[test]
@@ -142,12 +142,10 @@ fn skin_over_a_mesh_points_outwards_whichever_way_the_file_faces() {
         assert!((-16.0..-8.0).contains(&force), "{text}");
     }
     case.file("scene.toml", scene.replace("FILE", "open.obj"));
-    let output = case.run(&words("simulate scene.toml --out open"));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(
-        said.contains("open.obj: an open mesh whose faces face inwards; "),
-        "{said}"
+    let said = case.refuses(&words("simulate scene.toml --out open"));
+    says(
+        &said,
+        &["open.obj: an open mesh whose faces face inwards; "],
     );
 }
 
@@ -169,11 +167,8 @@ fn a_mesh_is_touched_as_it_is_unless_vertex_spheres_are_named() {
         );
     }
     let said = press(" --model vertex_spheres");
-    assert!(said.contains("note: vertex spheres are up to "), "{said}");
-    assert!(
-        said.contains("more than half the pitch of 2.1 mm"),
-        "{said}"
-    );
+    says(&said, &["note: vertex spheres are up to "]);
+    says(&said, &["more than half the pitch of 2.1 mm"]);
     assert!(!said.contains("\n400 of"), "{said}");
 }
 
@@ -203,7 +198,7 @@ fn a_study_touches_meshes_as_they_are_and_writes_that_down() {
     case.file("study.toml", study.replace("MODEL", ""));
     case.succeeds(&words("run study.toml --out results"));
     let resolved = std::fs::read_to_string(case.path("results/study.toml")).unwrap();
-    assert!(resolved.contains("model = \"mesh\""), "{resolved}");
+    says(&resolved, &["model = \"mesh\""]);
 }
 
 #[test]
@@ -217,13 +212,8 @@ fn a_free_object_of_a_mesh_is_packed() {
     case.file("scene.toml", scene.replace("FILE", "cube.obj"));
     case.succeeds(&words("simulate scene.toml --out simulated"));
     case.file("scene.toml", scene.replace("FILE", "open.obj"));
-    let output = case.run(&words("simulate scene.toml --out open"));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(
-        said.contains("open.obj: a hole") && said.contains("vertex_spheres"),
-        "{said}"
-    );
+    let said = case.refuses(&words("simulate scene.toml --out open"));
+    says(&said, &["open.obj: a hole", "vertex_spheres"]);
 }
 
 #[test]
@@ -245,7 +235,7 @@ fn what_takes_minutes_says_so_before_it_begins() {
         first.starts_with("note: cube.obj: a surface error of 2e-3 mm takes about "),
         "{first}"
     );
-    assert!(first.contains("min of one processor"), "{first}");
+    says(&first, &["min of one processor"]);
 }
 
 #[test]
@@ -271,8 +261,7 @@ fn packed_spheres_are_written_and_shown_beside_the_mesh() {
         "objects show mug --panel-px 10 --out other.png",
         "objects show cube.obj --spheres none.csv --out other.png",
     ] {
-        let output = case.run(&wrong.split(' ').collect::<Vec<_>>());
-        assert_eq!(output.status.code(), Some(2), "{wrong}");
+        case.refuses(&wrong.split(' ').collect::<Vec<_>>());
     }
     assert!(!case.path("other.png").exists());
 }
@@ -299,10 +288,7 @@ fn a_hole_is_named_with_its_file_and_what_can_be_done() {
     let output = with(&["--close-holes-mm", "2"]);
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{said}");
-    assert!(
-        said.contains("cube.obj: closed 1 hole, 0.90 mm wide"),
-        "{said}"
-    );
+    says(&said, &["cube.obj: closed 1 hole, 0.90 mm wide"]);
     assert!(with(&["--as-sheet"]).status.success());
     let both = with(&["--as-sheet", "--close-holes-mm", "1"]);
     assert_eq!(both.status.code(), Some(2));
@@ -330,43 +316,16 @@ fn a_study_closes_holes_only_where_it_is_told_to() {
     assert_eq!(load(ModelSpec::Mesh, None).unwrap().n_triangles(), 17);
     for too_narrow in [None, Some(0.8)] {
         let error = load(ModelSpec::Packed, too_narrow).unwrap_err().to_string();
-        assert!(error.contains("cube.obj: a hole 0.90 mm wide"), "{error}");
-        assert!(error.contains("objects.close_holes_mm"), "{error}");
+        says(&error, &["cube.obj: a hole 0.90 mm wide"]);
+        says(&error, &["objects.close_holes_mm"]);
     }
     let error = load(ModelSpec::VertexSpheres, Some(1.0)).unwrap_err();
     assert!(error.to_string().contains("close_holes_mm"), "{error}");
 }
 
-#[test]
-fn words_that_no_mesh_has_are_refused() {
-    let case = Case::new();
-    case.file("cube.obj", cube());
-    case.file("cube.step", cube());
-    let refused = |arguments: &str| {
-        let output = case.run(&arguments.split(' ').collect::<Vec<_>>());
-        assert_eq!(output.status.code(), Some(2), "{arguments}");
-        String::from_utf8(output.stderr).unwrap()
-    };
-    assert!(refused("objects mesh cube.obj --unit ft").contains("expected one of m, cm, mm, in"));
-    assert!(
-        refused("objects mesh cube.step")
-            .contains("a name that ends in .ply, .obj, .stl, .dae, .glb or .gltf")
-    );
-    assert!(refused("objects mesh none.stl").contains("none.stl: cannot be opened"));
-    assert!(
-        refused("press --mesh cube.obj --model cage")
-            .contains("expected one of `vertex_spheres`, `mesh`, `packed`")
-    );
-    assert!(refused("press --object mug --model mesh").contains("--mesh"));
-}
-
 /// Returns a die of 17 mm in millimetres.
 fn die() -> String {
     cube().replace("20", "8.5").replace("40", "17")
-}
-
-fn words(line: &str) -> Vec<&str> {
-    line.split(' ').collect()
 }
 
 #[test]
@@ -416,9 +375,7 @@ fn a_die_of_seventeen_metres_is_refused_everywhere_unless_its_unit_is_given() {
         ("simulate mesh_without.toml --out simulated_mesh", ""),
         ("simulate csv_without.toml --out simulated_csv", ""),
     ] {
-        let output = case.run(&words(without));
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{without}: {said}");
+        let said = case.refuses(&words(without));
         assert!(
             said.contains("17 m wide, if its unit is the metre; "),
             "{without}: {said}"
@@ -438,7 +395,7 @@ fn own_objects_are_named_by_the_same_option_everywhere() {
     let example = example.split("```").next().unwrap();
     case.file("hardware.toml", example);
     let (said, _) = case.succeeds(&words("objects --objects hardware.toml"));
-    assert!(said.contains(" nut ") && said.contains(" bolt "), "{said}");
+    says(&said, &[" nut ", " bolt "]);
     assert!(!said.contains("mug"), "{said}");
     case.succeeds(&words(
         "objects nut bolt --objects hardware.toml --out both.png",
@@ -448,7 +405,7 @@ fn own_objects_are_named_by_the_same_option_everywhere() {
     ));
     let pack = "objects pack nut --objects hardware.toml --surface-error-mm 0.1 --out nut.csv";
     let (said, _) = case.succeeds(&words(pack));
-    assert!(said.contains("gap         max 0.0"), "{said}");
+    says(&said, &["gap         max 0.0"]);
     // A ring of taxels touches the nut; taxels over its hole touch nothing.
     let press = "press --objects hardware.toml --object nut --taxels 17x17 --pitch-mm 1 --depth-mm 1 --out nut.npz";
     let (_, said) = case.succeeds(&words(press));
@@ -491,9 +448,7 @@ fn own_objects_are_named_by_the_same_option_everywhere() {
         "press --object nut --objects wrong.toml",
         "run study.toml --objects wrong.toml --out other",
     ] {
-        let output = case.run(&words(wrong));
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{wrong}: {said}");
+        let said = case.refuses(&words(wrong));
         let expected = "wrong.toml, line 8, object `nut`, part 1 (hexagonal_prism): height_mm = -2; a finite positive length";
         assert!(said.contains(expected), "{wrong}: {said}");
     }

@@ -1,73 +1,17 @@
 //! No command overwrites a file that it reads, or a file in an output folder that it did not write.
 
-use crate::command::Case;
+use crate::command::{Case, says, words};
 use ndarray::{Array1, Array3};
 use ndarray_npy::write_npy;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const STUDY: &str = r#"
-question = "Whose files are these?"
-trials = 2
+const STUDY: &str = include_str!("../fixtures/texts/outputs.toml");
 
-[objects]
-sets = ["household"]
-names = ["mug", "banana"]
-surface_error_mm = 2.0
+const RECORDED: &str = include_str!("../fixtures/texts/outputs_recorded.toml");
 
-[skin]
-pitch_mm = 8.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 20
-depth_mm = 3.0
-yaw_deg = { uniform = [0.0, 360.0] }
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-"#;
-
-const RECORDED: &str = r#"
-question = "Whose frames are these?"
-
-[recorded]
-frames = "frames.npy"
-labels = "labels.npy"
-
-[skin]
-pitch_mm = 4.0
-stroke_mm = 5.0
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-"#;
-
-const SCENE: &str = r#"
-title = "A ball above a bed"
-output_hz = 20.0
-dt_ms = 5.0
-duration_s = 0.1
-
-[[patches]]
-name = "bed"
-layout = { grid = { nx = 8, ny = 8, pitch_mm = 4.0 } }
-stroke_mm = 15.0
-stiffness_n_per_m = 100.0
-
-[[objects]]
-name = "ball"
-object = "tennis"
-at = { position_mm = [1.3, 0.7, 60.0] }
-"#;
+const SCENE: &str = include_str!("../fixtures/texts/outputs_scene_2.toml");
 
 /// Returns all files below a folder with their bytes; links are followed.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
@@ -93,9 +37,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 /// Runs a command; asserts that it is refused with the name of the file, and changes nothing.
 fn refused(case: &Case, arguments: &[&str], file: &str) {
     let before = files(case.folder());
-    let output = case.run(arguments);
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+    let error = case.refuses(arguments);
     assert!(error.contains(file), "{arguments:?}: {error}");
     let after = files(case.folder());
     let names = |all: &BTreeMap<PathBuf, Vec<u8>>| all.keys().cloned().collect::<Vec<_>>();
@@ -171,19 +113,9 @@ fn a_study_is_not_replaced_by_its_results() {
 fn a_run_refuses_each_file_of_somebody_else_that_it_would_write() {
     let case = with_study();
     fs::create_dir(case.path("found")).unwrap();
-    let names = [
-        "summary.csv",
-        "accuracy.csv",
-        "limits.csv",
-        "failures.csv",
-        "variance.csv",
-        "report.html",
-        "study.toml",
-        "manifest.json",
-        "journal.jsonl",
-        "confusion.svg",
-        "accuracy_by_ratio.png",
-    ];
+    let names = words(
+        "summary.csv accuracy.csv limits.csv failures.csv variance.csv report.html study.toml manifest.json journal.jsonl confusion.svg accuracy_by_ratio.png",
+    );
     for name in names {
         let path = case.file(&format!("found/{name}"), "a user's own\n");
         refused(&case, &["run", "study.toml", "--out", "found"], name);
@@ -220,7 +152,7 @@ fn a_folder_of_results_takes_its_study_again() {
     case.succeeds(&run);
     assert!(fs::read(case.path("found/summary.csv")).unwrap() == first);
     let (_, said) = case.succeeds(&["run", "study.toml", "--out", "found", "--fresh"]);
-    assert!(said.contains("found.1"), "{said}");
+    says(&said, &["found.1"]);
     assert!(fs::read(case.path("found/summary.csv")).unwrap() == first);
     // Folder of an earlier version, whose manifest lists only tables.
     let manifest = case.path("found/manifest.json");
@@ -286,9 +218,7 @@ fn every_edit_of_a_folder_of_results_is_noticed_and_its_file_named() {
         let longer = [&bytes[..], b"\n1,2,3\n"].concat();
         for damaged in [edited, longer, bytes[..middle].to_vec()] {
             fs::write(&path, damaged).unwrap();
-            let output = case.run(&["verify", "found", "--configurations", "1"]);
-            let error = String::from_utf8(output.stderr).unwrap();
-            assert_eq!(output.status.code(), Some(2), "{name}: {error}");
+            let error = case.refuses(&["verify", "found", "--configurations", "1"]);
             assert!(error.contains(&format!("found/{name}")), "{name}: {error}");
         }
         fs::write(&path, bytes).unwrap();
@@ -311,9 +241,7 @@ fn edits_that_the_manifest_hides_are_noticed_when_all_work_runs_again() {
         let hidden = manifest.replace(&from, &to);
         assert_ne!(hidden, manifest);
         fs::write(case.path("found/manifest.json"), hidden).unwrap();
-        let output = case.run(&["verify", "found", "--configurations", "1000"]);
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{name}: {error}");
+        let error = case.refuses(&["verify", "found", "--configurations", "1000"]);
         assert!(error.contains(&format!("found/{name}")), "{name}: {error}");
         fs::write(&path, &table).unwrap();
         fs::write(case.path("found/manifest.json"), &manifest).unwrap();
@@ -419,54 +347,22 @@ fn a_single_output_is_no_input() {
         }
     }
     case.file("poses.csv", "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n");
-    let poses = [
-        "press",
-        "--spheres",
-        "a.csv",
-        "--poses",
-        "poses.csv",
-        "--out",
-        "a.npy",
-    ];
+    let poses = words("press --spheres a.csv --poses poses.csv --out a.npy");
     case.succeeds(&poses);
     // A file that is not an input is replaced.
     case.file("b.csv", "old");
     case.succeeds(&["press", "--spheres", "a.csv", "--out", "b.csv"]);
     assert_ne!(fs::read_to_string(case.path("b.csv")).unwrap(), "old");
     case.file("box.obj", box_obj());
-    let pack = [
-        "objects",
-        "pack",
-        "box.obj",
-        "--surface-error-mm",
-        "4",
-        "--out",
-        "box.csv",
-    ];
+    let pack = words("objects pack box.obj --surface-error-mm 4 --out box.csv");
     case.succeeds(&pack);
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink("box.obj", case.path("out.csv")).unwrap();
-        let pack = [
-            "objects",
-            "pack",
-            "box.obj",
-            "--surface-error-mm",
-            "4",
-            "--out",
-            "out.csv",
-        ];
+        let pack = words("objects pack box.obj --surface-error-mm 4 --out out.csv");
         refused(&case, &pack, "out.csv");
         std::os::unix::fs::symlink("a.csv", case.path("out.png")).unwrap();
-        let show = [
-            "objects",
-            "show",
-            "mug",
-            "--spheres",
-            "a.csv",
-            "--out",
-            "out.png",
-        ];
+        let show = words("objects show golf --spheres a.csv --out out.png");
         refused(&case, &show, "out.png");
         let case = with_recorded();
         std::os::unix::fs::symlink("frames.npy", case.path("signal.toml")).unwrap();
@@ -490,25 +386,10 @@ fn comparisons_replace_neither_of_the_folders_nor_write_one_output_of_two() {
         &["compare", "a", "b", "--html", "b/report.html"],
         "report.html",
     );
-    let both = [
-        "compare",
-        "a",
-        "b",
-        "--out",
-        "new.csv",
-        "--html",
-        "b/report.html",
-    ];
+    let both = words("compare a b --out new.csv --html b/report.html");
     refused(&case, &both, "report.html");
     case.succeeds(&["features", "study.toml", "--out", "rows"]);
-    let predictions = [
-        "classify",
-        "rows",
-        "--classifier",
-        "linear_svm",
-        "--predictions",
-        "rows/labels.npy",
-    ];
+    let predictions = words("classify rows --classifier linear_svm --predictions rows/labels.npy");
     refused(&case, &predictions, "labels.npy");
 }
 

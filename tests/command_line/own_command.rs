@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use crate::bad_input::refused;
-use crate::command::Case;
+use crate::command::{Case, says};
 use bubbletouch::study::write_integers;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -272,51 +272,6 @@ fn a_command_that_fails_is_named_with_its_message() {
 }
 
 #[test]
-fn wrong_keys_of_a_command_are_refused() {
-    let case = case_of_first_object();
-    let before = case.names().len() + 1;
-    for (classifier, words) in [
-        (
-            "{ command = [] }",
-            ["an empty command", "a program and its arguments"],
-        ),
-        (
-            "{ command = [\"sh\"], time_limit_s = 0.0 }",
-            ["time_limit_s = 0", "above 0"],
-        ),
-        (
-            "{ command = [\"sh\"], name = \"linear_svm\" }",
-            ["linear_svm", "a name that no other classifier has"],
-        ),
-        (
-            "{ command = [\"sh\"], name = \"a b\" }",
-            ["a b", "letters, digits"],
-        ),
-        (
-            "{ command = [\"sh\"], version = \"1@2\" }",
-            ["1@2", "letters, digits"],
-        ),
-        ("{ command = \"sh\" }", ["invalid type", "sequence"]),
-        ("{ commands = [\"sh\"] }", ["commands", "command"]),
-        ("{ name = \"mine\" }", ["missing field", "command"]),
-        (
-            "[{ command = [\"sh\"] }, { command = [\"sh\", \"-e\"] }]",
-            ["\"sh\" twice", "each value once"],
-        ),
-        ("\"mine\"", ["mine", "linear_svm"]),
-        ("3", ["invalid type", "the name of a classifier"]),
-    ] {
-        case.file("study.toml", study(classifier));
-        refused(
-            &case.run(&["run", "study.toml"]),
-            2,
-            &["study.toml:8", words[0], words[1]],
-        );
-        assert_eq!(case.names().len(), before, "nothing is written");
-    }
-}
-
-#[test]
 fn a_classifier_that_cannot_be_trained_is_refused_before_a_file_is_written() {
     let case = case_of_first_object();
     for (classifier, words) in [
@@ -394,7 +349,7 @@ fn a_program_that_only_the_nodes_have_is_a_note_of_slurm() {
         assert_eq!(error.matches(&line).count(), 1, "{error}");
     }
     let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.contains("submitted 2 of 2 shards as job 7"), "{said}");
+    says(&said, &["submitted 2 of 2 shards as job 7"]);
 }
 
 #[test]

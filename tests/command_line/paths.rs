@@ -1,63 +1,16 @@
 //! Paths in a study file are relative to that file; paths in a resolved study are absolute.
 
-use crate::command::Case;
+use crate::command::{Case, says, words};
 use ndarray::{Array1, Array3};
 use ndarray_npy::write_npy;
 use std::fs;
 use std::path::Path;
 
-const RECORDED: &str = r#"
-question = "Where are the frames?"
+const RECORDED: &str = include_str!("../fixtures/texts/paths_recorded.toml");
 
-[recorded]
-frames = "data/frames.npy"
-labels = "data/labels.npy"
-groups = "data/groups.npy"
+const OBJECTS: &str = include_str!("../fixtures/texts/paths_objects.toml");
 
-[skin]
-pitch_mm = 4.0
-stroke_mm = 5.0
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-"#;
-
-const OBJECTS: &str = r#"
-question = "Where are the objects?"
-
-[objects]
-sets = ["own/objects.toml"]
-meshes = "own/meshes"
-model = "mesh"
-
-[skin]
-pitch_mm = 8.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 20
-depth_mm = 3.0
-yaw_deg = { uniform = [0.0, 360.0] }
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-"#;
-
-const BALL: &str = r#"
-[[object]]
-name = "ball"
-source = "our own"
-  [[object.part]]
-  shape = "ball"
-  diameter_mm = 40
-"#;
+const BALL: &str = include_str!("../fixtures/texts/paths_ball.toml");
 
 const MESH: &str = "v 0 0 0\nv .04 0 0\nv 0 .04 0\nv 0 0 .04\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
@@ -146,16 +99,16 @@ fn a_path_that_exists_only_from_the_current_folder_works_with_a_note() {
     case.file("lab/study.toml", RECORDED);
     write_frames(&case.path("data"), 0);
     let (_, said) = case.succeeds(&["run", "lab/study.toml", "--out", "found"]);
-    assert!(
-        said.contains("note: data/frames.npy is relative to the current folder"),
-        "{said}"
+    says(
+        &said,
+        &["note: data/frames.npy is relative to the current folder"],
     );
     fs::write(case.path("lab/study.toml"), OBJECTS).unwrap();
     write_objects(case.folder());
     let (_, said) = case.succeeds(&["run", "lab/study.toml", "--out", "objects"]);
-    assert!(
-        said.contains("note: own/objects.toml is relative to the current folder"),
-        "{said}"
+    says(
+        &said,
+        &["note: own/objects.toml is relative to the current folder"],
     );
 }
 
@@ -165,14 +118,7 @@ fn a_folder_that_is_asked_for_is_relative_to_the_current_one() {
     fs::create_dir(case.path("lab")).unwrap();
     case.file("lab/study.toml", RECORDED.replace("data/", ""));
     write_frames(&case.path("elsewhere"), 0);
-    let (_, said) = case.succeeds(&[
-        "run",
-        "lab/study.toml",
-        "--objects",
-        "elsewhere",
-        "--out",
-        "found",
-    ]);
+    let (_, said) = case.succeeds(&words("run lab/study.toml --objects elsewhere --out found"));
     assert!(!said.contains("note"), "{said}");
 }
 
@@ -181,10 +127,8 @@ fn a_file_that_is_missing_is_looked_for_beside_the_study() {
     let case = Case::new();
     fs::create_dir(case.path("lab")).unwrap();
     case.file("lab/study.toml", RECORDED);
-    let output = case.run(&["run", "lab/study.toml", "--out", "found"]);
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(error.contains("lab/data/frames.npy"), "{error}");
+    let error = case.refuses(&["run", "lab/study.toml", "--out", "found"]);
+    says(&error, &["lab/data/frames.npy"]);
 }
 
 #[test]

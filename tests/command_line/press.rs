@@ -1,6 +1,6 @@
 //! `bubbletouch press`: one reading as numbers, as arrays, as a picture, and as text in the terminal.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use ndarray::{Array1, Array2, Axis, s};
 use ndarray_npy::NpzReader;
 use std::fs::{self, File};
@@ -138,7 +138,7 @@ fn a_built_in_object_is_pressed_to_its_depth() {
     );
     let case = Case::new();
     let (_, said) = case.succeeds(&["press", "--object", "mug", "--depth-mm", "3"]);
-    assert!(said.contains("deepest 3.000 mm"), "{said}");
+    says(&said, &["deepest 3.000 mm"]);
     let stopped = pressed("--object mug --depth-mm 3 --stroke-mm 2");
     assert_eq!(deepest(&stopped), 2e-3);
 }
@@ -302,9 +302,9 @@ fn a_press_to_a_force_carries_it_and_is_not_beside_a_depth() {
         String::from_utf8(output.stderr).unwrap()
     };
     let both = refused("press --object mug --force 5 --depth-mm 3");
-    assert!(both.contains("--depth-mm"), "{both}");
+    says(&both, &["--depth-mm"]);
     let much = refused("press --object golf --force 1e6");
-    assert!(much.contains("touch force: 1000000 N; up to "), "{much}");
+    says(&much, &["touch force: 1000000 N; up to "]);
     let none = refused("press --object golf --force 0");
-    assert!(none.contains("touch force: 0 N; a finite"), "{none}");
+    says(&none, &["touch force: 0 N; a finite"]);
 }

@@ -1,39 +1,11 @@
 //! The commands that make a folder's page again from its tables, and compare two folders on a page.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use std::fs;
 use std::path::Path;
 
 /// Study that takes a second.
-const STUDY: &str = r#"
-question = "What does the page say?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 8.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 16
-offset_x_mm = { uniform = [-8.0, 8.0] }
-depth_mm = 3.0
-
-[signal]
-noise_std_full_scale = 0.05
-
-[sensing]
-ensemble = "gaussian"
-ratio = [4, 16]
-
-[recognition]
-classifier = ["linear_svm", "naive_bayes"]
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/report.toml");
 
 #[test]
 fn touches_beyond_the_stroke_and_listed_values_that_are_mixed_are_said_once() {
@@ -55,14 +27,8 @@ fn touches_beyond_the_stroke_and_listed_values_that_are_mixed_are_said_once() {
     let (_, said) = case.succeeds(&["run", "listed.toml", "--out", "listed"]);
     assert_eq!(said.matches(note).count(), 1, "{said}");
     let limits = fs::read_to_string(case.path("listed/limits.csv")).unwrap();
-    assert!(
-        limits.contains("touches that met nothing,0,48,"),
-        "{limits}"
-    );
-    assert!(
-        limits.contains("touches deeper than the stroke,12,48,"),
-        "{limits}"
-    );
+    says(&limits, &["touches that met nothing,0,48,"]);
+    says(&limits, &["touches deeper than the stroke,12,48,"]);
     let page = fs::read_to_string(case.path("listed/report.html")).unwrap();
     assert!(page.contains("12 of 48 touches deeper than the stroke"));
     // Nothing is printed about a study that has neither.
@@ -114,16 +80,14 @@ fn charts_are_svg_files_unless_another_format_is_given() {
     let note = "missing charts, pictures or page: 1 files; bubbletouch report png draws them";
     assert!(said.contains(note), "{said}");
     case.file(&format!("svg/{}", svg[0]), "<svg/>");
-    let verified = case.run(&["verify", "svg", "--configurations", "1"]);
-    assert_eq!(verified.status.code(), Some(2));
+    case.refuses(&["verify", "svg", "--configurations", "1"]);
     let refused = case.run(&["run", "asked.toml", "--out", "new", "--chart-format", "pdf"]);
     assert_eq!(refused.status.code(), Some(2));
     let said = String::from_utf8(refused.stderr).unwrap();
-    assert!(said.contains("`svg`, `png`, `both`"), "{said}");
+    says(&said, &["`svg`, `png`, `both`"]);
     // A shard draws no charts.
     let shard = ["run", "asked.toml", "--shard", "1/2", "--out", "new"];
-    let refused = case.run(&[&shard[..], &["--chart-format", "png"]].concat());
-    assert_eq!(refused.status.code(), Some(2));
+    case.refuses(&[&shard[..], &["--chart-format", "png"]].concat());
     assert!(!case.path("new").exists());
 }
 
@@ -198,13 +162,8 @@ fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are
         &["plan", "sizes.toml"][..],
         &["run", "sizes.toml", "--out", "sizes"],
     ] {
-        let refused = case.run(command);
-        assert_eq!(refused.status.code(), Some(2));
-        let said = String::from_utf8(refused.stderr).unwrap();
-        assert!(
-            said.contains("confusion") && said.contains("differ"),
-            "{said}"
-        );
+        let said = case.refuses(command);
+        says(&said, &["confusion", "differ"]);
     }
     assert!(!case.path("sizes").exists());
 }
@@ -248,10 +207,8 @@ fn verify_takes_a_few_work_items_of_a_study_with_groups_and_repeated_splits() {
     case.file("found/accuracy.csv", edited);
     for draw in 0..8 {
         let draw = draw.to_string();
-        let verified = case.run(&["verify", "found", "--configurations", "1", "--draw", &draw]);
-        assert_eq!(verified.status.code(), Some(2));
-        let said = String::from_utf8(verified.stderr).unwrap();
-        assert!(said.contains("found/accuracy.csv:"), "{said}");
+        let said = case.refuses(&["verify", "found", "--configurations", "1", "--draw", &draw]);
+        says(&said, &["found/accuracy.csv:"]);
     }
 }
 
@@ -280,22 +237,14 @@ fn the_page_comes_again_from_the_tables() {
     // Without a manifest, the command prints that the origin of the tables is unknown.
     fs::remove_file(case.path("found/manifest.json")).unwrap();
     let (_, remarks) = case.succeeds(&["report", "found"]);
-    assert!(
-        remarks.contains("there is no found/manifest.json"),
-        "{remarks}"
-    );
+    says(&remarks, &["there is no found/manifest.json"]);
     let page = fs::read_to_string(&file).unwrap();
-    assert!(page.contains("<h1>found</h1>"), "{page}");
+    says(&page, &["<h1>found</h1>"]);
     // The error names a missing table.
     for name in ["limits.csv", "summary.csv"] {
         fs::remove_file(case.path("found").join(name)).unwrap();
-        let output = case.run(&["report", "found"]);
-        assert_eq!(output.status.code(), Some(2));
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(
-            said.contains(&format!("found/{name}: is missing")),
-            "{said}"
-        );
+        let said = case.refuses(&["report", "found"]);
+        says(&said, &[&format!("found/{name}: is missing")]);
     }
 }
 
@@ -378,8 +327,7 @@ fn a_run_removes_the_results_that_it_no_longer_makes() {
     }
     // A command does not replace the file of the user.
     case.file("edited.toml", &swept);
-    let refused = case.run(&["run", "edited.toml", "--out", "kept"]);
-    assert_eq!(refused.status.code(), Some(2));
+    case.refuses(&["run", "edited.toml", "--out", "kept"]);
     assert_eq!(fs::read_to_string(&robustness).unwrap(), changed);
 }
 
@@ -464,10 +412,7 @@ fn noise_in_mm_is_not_noise_in_full_scale() {
     }
     let (said, _) = case.succeeds(&["compare", "share", "mm"]);
     let said = said.replace('\n', " ");
-    assert!(
-        said.contains("reconstruction.csv: 0 rows are in both runs"),
-        "{said}"
-    );
+    says(&said, &["reconstruction.csv: 0 rows are in both runs"]);
     let (said, _) = case.succeeds(&["compare", "mm", "mm"]);
     assert!(!said.contains("0 rows are in both runs"), "{said}");
 }
@@ -524,8 +469,7 @@ fn two_folders_stand_side_by_side_in_a_page() {
     }
     // Values and costs of both folders.
     assert!(page.matches("<tr").count() > 2 * (1 + 4));
-    let refused = case.run(&["compare", "asked", "same", "--html", "moved.txt"]);
-    assert_eq!(refused.status.code(), Some(2));
+    case.refuses(&["compare", "asked", "same", "--html", "moved.txt"]);
     let apart = case.run(&["compare", "asked", "noisy", "--html", "apart.html"]);
     assert_eq!(apart.status.code(), Some(2), "no cell has the same noise");
     assert!(!case.path("apart.html").exists());

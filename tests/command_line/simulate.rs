@@ -1,7 +1,7 @@
 //! `bubbletouch simulate`: from the shipped scenes to the output files.
 #![cfg(unix)]
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use bubbletouch::scene::{Frame, ScenePlan, Simulation, Stepping};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,10 +31,7 @@ fn every_shipped_scene_says_what_it_asks_and_runs() {
         let stem = scene.file_stem().unwrap().to_str().unwrap();
         let scene = scene.to_str().unwrap();
         let (said, _) = case.succeeds(&["simulate", scene, "--out", stem, "--until-s", "0.3"]);
-        assert!(
-            said.contains("deepest (mm)") && said.contains("at the end"),
-            "{said}"
-        );
+        says(&said, &["deepest (mm)", "at the end"]);
         let mut files = fs::read_dir(case.path(stem))
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -121,15 +118,15 @@ fn what_is_not_read_of_a_robots_file_is_noted_on_standard_error() {
     let [xml, sensor] = notes.as_slice() else {
         panic!("{said}");
     };
-    assert!(
-        xml.contains("r.urdf: a comment or space before the XML declaration"),
-        "{xml}"
+    says(
+        &xml,
+        &["r.urdf: a comment or space before the XML declaration"],
     );
-    assert!(
-        sensor.contains(
-            "r.urdf, line 3: <tactile> without taxels; an <array> or <taxel>s: tactile sensor `pad_tactile` on link `base` is not read"
-        ),
-        "{sensor}"
+    says(
+        &sensor,
+        &[
+            "r.urdf, line 3: <tactile> without taxels; an <array> or <taxel>s: tactile sensor `pad_tactile` on link `base` is not read",
+        ],
     );
     let (_, quiet) = case.succeeds(&["simulate", scene, "--out", "p", "--quiet"]);
     assert_eq!(quiet, "");
@@ -152,9 +149,7 @@ fn a_scene_that_cannot_be_leaves_no_file_and_exits_with_2() {
             "-1",
         ],
     ] {
-        let output = case.run(arguments);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{said}");
+        let said = case.refuses(arguments);
         assert!(
             said.starts_with("error: ") && said.lines().count() == 1,
             "{said}"

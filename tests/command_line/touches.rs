@@ -1,6 +1,6 @@
 //! `bubbletouch touches`: the files of a data set agree with each other and with the library, and are written with little memory.
 
-use crate::command::Case;
+use crate::command::{Case, filled, says, words};
 use crate::study::Study;
 use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::geometry::Pose;
@@ -14,35 +14,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 /// Study with two arrays; some touches miss the object, some saturate a taxel.
-const STUDY: &str = r#"
-question = "What is in the files?"
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = [4.0, 2.0]
-size_mm = 48.0
-stroke_mm = 3.0
-
-[touches]
-rest = "stable"
-per_object = 300
-offset_x_mm = [-6.0, 3.0, 400.0]
-offset_y_mm = { uniform = [-8.0, 8.0] }
-yaw_deg = { uniform = [0.0, 360.0] }
-tilt_x_deg = [-5.0, 5.0]
-tilt_y_deg = { uniform = [-5.0, 5.0] }
-depth_mm = { uniform = [1.0, 4.0] }
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/touches.toml");
 
 /// Row of `touches.csv`.
 #[derive(serde::Deserialize)]
@@ -145,7 +117,7 @@ fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
         );
     case.file("study.toml", study);
     let (_, said) = case.succeeds(&["touches", "study.toml", "--out", "clean"]);
-    assert!(said.contains("without noise"), "{said}");
+    says(&said, &["without noise"]);
     // Array 1 (24 × 24) with noise of 10 % is configuration 3.
     let configuration = ["--configuration", "3", "--trial", "0"];
     let (_, said) = case.succeeds(
@@ -155,7 +127,7 @@ fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
         ]
         .concat(),
     );
-    assert!(said.contains("as configuration 3 reads them"), "{said}");
+    says(&said, &["as configuration 3 reads them"]);
     case.succeeds(
         &[
             &["features", "study.toml", "--out", "features"],
@@ -184,15 +156,7 @@ fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
         let bytes = |folder: &str| std::fs::read(case.path(folder).join(name)).unwrap();
         assert!(bytes("clean/24x24_at_2_mm") == bytes("read"), "{name}");
     }
-    let refused = case.run(&[
-        "touches",
-        "study.toml",
-        "--out",
-        "x",
-        "--configuration",
-        "99",
-    ]);
-    assert_eq!(refused.status.code(), Some(2));
+    case.refuses(&words("touches study.toml --out x --configuration 99"));
 }
 
 #[test]
@@ -323,25 +287,9 @@ fn one_array_needs_no_folder_of_its_own_and_threads_change_no_byte() {
 
 /// Returns a study of touches of two balls on 16 × 16 taxels.
 fn balls(per_object: usize) -> String {
-    format!(
-        r#"
-question = "How much memory?"
-[objects]
-sets = ["balls"]
-names = ["golf", "baseball"]
-[skin]
-pitch_mm = 4.0
-taxels = 16
-stroke_mm = 5.0
-[touches]
-per_object = {per_object}
-offset_x_mm = {{ uniform = [-10.0, 10.0] }}
-depth_mm = 3.0
-[sensing]
-ratio = 4
-[recognition]
-classifier = "linear_svm"
-"#
+    filled(
+        include_str!("../fixtures/texts/touches_balls.toml"),
+        &[("per_object", &per_object)],
     )
 }
 
@@ -394,33 +342,7 @@ fn fifty_thousand_touches_need_no_more_memory_than_five_hundred() {
 }
 
 /// Study of small frames with axes of its own.
-const AXES: &str = r#"
-question = "Is every array written?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 4.0
-taxels = 8
-stroke_mm = 5.0
-
-[touches]
-per_object = 20
-yaw_deg = { uniform = [0.0, 360.0] }
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-
-[axes]
-"touches.depth_mm" = [1.0, 4.0]
-"#;
+const AXES: &str = include_str!("../fixtures/texts/touches_axes.toml");
 
 #[test]
 fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
@@ -493,14 +415,9 @@ fn the_manifest_has_the_units_of_all_channels() {
     // Values in metres are within the stroke; values in newtons exceed it.
     assert!(frames.iter().all(|&d| (0.0..=5e-3).contains(&d)));
     assert!(across.iter().any(|&force| force.abs() > 5e-3));
-    case.succeeds(&[
-        "touches",
-        "shear.toml",
-        "--out",
-        "configuration",
-        "--configuration",
-        "0",
-    ]);
+    case.succeeds(&words(
+        "touches shear.toml --out configuration --configuration 0",
+    ));
     let three = serde_json::json!(["N", "N", "N"]);
     assert_eq!(units("configuration", "frames.npy"), three);
     assert!(!case.path("configuration/shear.npy").exists());

@@ -175,20 +175,7 @@ fn scenes() {
 
 #[test]
 fn objects() {
-    let lollipop = r#"
-[[object]]
-name = "lollipop"
-source = "measured with a ruler"
-  [[object.part]]
-  shape = "ball"
-  diameter_mm = 30
-  position_mm = [0, 0, 85]
-  [[object.part]]
-  shape = "cylinder"
-  diameter_mm = 4
-  height_mm = 70
-  position_mm = [0, 0, 35]
-"#;
+    let lollipop = include_str!("../fixtures/texts/fuzz_lollipop.toml");
     let mut seeds = files("objects", "toml", 60_000);
     seeds.extend(std::iter::repeat_n(
         lollipop.as_bytes().to_vec(),
@@ -539,29 +526,7 @@ fn way_points() {
 
 /// Returns the tables of a study of two small configurations.
 fn study_tables() -> Vec<Table> {
-    const TEXT: &str = r#"
-question = "What do tables look like?"
-trials = 4
-projections_per_split = 2
-[objects]
-sets = ["household"]
-names = ["mug", "banana"]
-surface_error_mm = 2.0
-[skin]
-pitch_mm = 8.0
-size_mm = 64.0
-stroke_mm = 5.0
-[touches]
-per_object = 6
-offset_x_mm = { uniform = [-20.0, 20.0] }
-depth_mm = 3.0
-[sensing]
-measurements = 4
-[recognition]
-classifier = ["linear_svm", "k_nearest"]
-[report]
-published = [{ claim = "all", accuracy = 1.0, source = "nobody" }]
-"#;
+    const TEXT: &str = include_str!("../fixtures/texts/fuzz_text.toml");
     tables_of(&crate::study::Study::new(TEXT).run()).unwrap()
 }
 

@@ -1,7 +1,7 @@
 //! An interrupted run can be continued: for any interruption, the tables equal the tables of an undisturbed run.
 #![cfg(unix)]
 
-use crate::command::Case;
+use crate::command::{Case, words};
 use crate::faults::{pieces, said, signal, start};
 use crate::kinds::Kind;
 use bubbletouch::study::write_integers;
@@ -250,15 +250,7 @@ fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_i
 /// Runs a longer study in a copy of the folder, and from nothing; asserts equal tables and the given number of finished items.
 fn assert_grows(case: &Case, (more, n_before, n_all): (&str, usize, usize)) {
     case.file("more.toml", more);
-    case.succeeds(&[
-        "run",
-        "more.toml",
-        "--out",
-        "fresh",
-        "--fresh",
-        "--threads",
-        "3",
-    ]);
+    case.succeeds(&words("run more.toml --out fresh --fresh --threads 3"));
     let folder = format!("grown_{n_all}");
     fs::create_dir(case.path(&folder)).unwrap();
     let journal = case.path(&folder).join("journal.jsonl");
@@ -337,32 +329,7 @@ fn other_words_refuse_nothing_and_train_nothing() {
 }
 
 /// Study in which five training touches per object are too few for an own classifier, and twenty are enough.
-const FAILING: &str = r#"
-question = "What if some cells cannot be?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 8.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 60
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = 3.0
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = ["linear_svm", { command = ["sh", "many.sh"], version = "1" }]
-train_touches = [5, 20]
-"#;
+const FAILING: &str = include_str!("../fixtures/texts/resume_failing.toml");
 
 #[test]
 fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
@@ -411,14 +378,7 @@ fn more_shards_than_groups_from_folders_of_their_own_make_the_same_tables() {
         let (shard, folder) = (format!("{index}/20"), format!("machine_{}", index % 2));
         case.succeeds(&["run", "study.toml", "--out", &folder, "--shard", &shard]);
     }
-    case.succeeds(&[
-        "merge",
-        "study.toml",
-        "--out",
-        "machine_0",
-        "--from",
-        "machine_1",
-    ]);
+    case.succeeds(&words("merge study.toml --out machine_0 --from machine_1"));
     assert_same_tables(&case, "machine_0");
     case.file("other.toml", STUDY.replace("trials = 2", "trials = 3"));
     let other = case.run(&["merge", "other.toml", "--out", "machine_0"]);

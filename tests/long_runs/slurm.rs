@@ -1,7 +1,7 @@
 //! A study as a job array on a real Slurm cluster of one node, which the test starts. One shard is killed, and the same command continues it.
 #![cfg(target_os = "linux")]
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use bubbletouch::study::journal::Journal;
 use std::fs;
 use std::io::Write;
@@ -12,35 +12,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-const STUDY: &str = r#"
-question = "Do jobs of a cluster make the same tables?"
-trials = 48
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 60
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = 3.0
-
-[signal]
-noise_std_full_scale = [0.05, 0.2]
-
-[sensing]
-ratio = [1, 4]
-
-[recognition]
-classifier = ["linear_svm", "rbf_svm"]
-c_grid = [0.1, 1.0, 10.0]
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/slurm.toml");
 
 /// Daemons of a cluster of one node; they end with the test.
 struct Cluster {
@@ -210,7 +182,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     };
     case.file("study.toml", STUDY);
     let said = cluster.submit(&case);
-    assert!(said.contains("submitted 8 of 8 shards"), "{said}");
+    says(&said, &["submitted 8 of 8 shards"]);
     // While the jobs are in the queue, they are not submitted again.
     let said = cluster.submit(&case);
     assert!(
@@ -236,7 +208,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
         "{finished} cells of the killed job"
     );
     let said = cluster.submit(&case);
-    assert!(said.contains("submitted 1 of 8 shards"), "{said}");
+    says(&said, &["submitted 1 of 8 shards"]);
     cluster.wait_until_empty();
     assert!(n_configurations(&journal) > finished);
     case.succeeds(&["run", "study.toml", "--out", "whole"]);
@@ -251,7 +223,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
         assert!(read("whole") == read("jobs"), "{name}");
     }
     let said = cluster.submit(&case);
-    assert!(said.contains("all 8 shards are done"), "{said}");
+    says(&said, &["all 8 shards are done"]);
     cluster.wait_until_empty();
 }
 
@@ -263,42 +235,12 @@ fn without_slurm_the_command_says_so() {
     let output = command.env("PATH", case.folder()).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     let error = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        error.contains("squeue: the command is not installed"),
-        "{error}"
-    );
+    says(&error, &["squeue: the command is not installed"]);
     assert!(!case.path("results").exists(), "a folder was written");
 }
 
 /// Small study of two shards with at least two work items each.
-const SMALL: &str = r#"
-question = "Which work items are done?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 8.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 20
-depth_mm = 3.0
-yaw_deg = { uniform = [0.0, 360.0] }
-
-[signal]
-noise_std_full_scale = [0.0, 0.1]
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-"#;
+const SMALL: &str = include_str!("../fixtures/texts/slurm_small.toml");
 
 /// Creates a queue in which jobs stay until the test removes them: `squeue` and `sbatch` scripts that keep names in a file.
 fn fake_slurm(case: &Case) {
@@ -387,13 +329,8 @@ fn characters_that_slurm_interprets_do_not_change_what_a_job_is_called_or_where_
         assert!(output.starts_with("50%%j/slurm/bubbletouch-"), "{output}");
         assert!(output.ends_with(".%j.txt"), "{output}");
     }
-    let output = case.run(&["slurm", "a,b.toml", "--array", "2", "--out", "a\\b"]);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(
-        error.contains("--out") && error.contains("without backslashes"),
-        "{error}"
-    );
+    let error = case.refuses(&["slurm", "a,b.toml", "--array", "2", "--out", "a\\b"]);
+    says(&error, &["--out", "without backslashes"]);
     assert!(!case.path("a\\b").exists());
 }
 
@@ -474,8 +411,8 @@ fn a_shard_with_a_failed_work_item_is_submitted_again() {
     case.succeeds(&["run", "study.toml", "--out", "whole"]);
     write_shards(&case, "failed", |_| [Some(true), Some(false)]);
     let said = submit_two(&case, &["--out", "failed"]);
-    assert!(said.contains("submitted 1 of 2 shards"), "{said}");
+    says(&said, &["submitted 1 of 2 shards"]);
     write_shards(&case, "done", |_| [Some(false), Some(false)]);
     let said = submit_two(&case, &["--out", "done"]);
-    assert!(said.contains("all 2 shards are done"), "{said}");
+    says(&said, &["all 2 shards are done"]);
 }

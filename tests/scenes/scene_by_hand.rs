@@ -1,5 +1,6 @@
 //! Manual control of scenes: manual steps equal the steps of the time loop, and invalid settings are refused.
 
+use crate::command::{filled, says};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Catalogue, Model};
 use bubbletouch::scene::{
@@ -49,33 +50,9 @@ const MOTION: &str = "motion = { phases = [
 
 /// Returns a scene in which a pear slides over a damped skin with friction and noise, and a ball is pushed onto another skin.
 fn sliding(motion: &str) -> String {
-    format!(
-        r#"{CLOCK}
-        [[patches]]
-        name = "skin"
-        layout = {{ grid = {{ nx = 24, ny = 16, pitch_mm = 3.0 }} }}
-        stroke_mm = 6.0
-        damping_n_s_per_m = 3.0
-        friction = 0.6
-        shear_stiffness_n_per_m = 80.0
-        signal = ["force", {{ drift_std_full_scale = 0.05 }}, {{ noise_std_n = 0.01 }}]
-        [[patches]]
-        name = "scale"
-        at = {{ position_mm = [300.0, 0.0, 0.0] }}
-        layout = {{ hexagonal = {{ nx = 16, ny = 16, pitch_mm = 4.0 }} }}
-        stroke_mm = 5.0
-        [[objects]]
-        name = "pear"
-        object = "pear"
-        at = {{ position_mm = [-10.0, 3.0, 3.0] }}
-        {motion}
-        [[objects]]
-        name = "ball"
-        object = "tennis"
-        at = {{ position_mm = [300.0, 0.0, 3.0] }}
-        {motion}
-        press = {{ patch = "scale", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 40.0, travel_mm = 12.0 }}
-        "#
+    filled(
+        include_str!("../fixtures/texts/scene_by_hand_sliding.toml"),
+        &[("CLOCK", &CLOCK), ("motion", &motion)],
     )
 }
 
@@ -235,18 +212,9 @@ fn a_frame_is_made_once_and_the_first_is_the_scenes() {
 
 #[test]
 fn a_free_object_that_was_lost_is_put_back() {
-    let text = format!(
-        "{CLOCK}
-        [[patches]]
-        name = \"sheet\"
-        layout = {{ grid = {{ nx = 24, ny = 24, pitch_mm = 5.0 }} }}
-        stroke_mm = 8.0
-        [[objects]]
-        name = \"mug\"
-        object = \"mug\"
-        surface_error_mm = 2.0
-        at = {{ position_mm = [900.0, 0.0, 40.0] }}
-        free = {{ mass_kg = 0.118 }}"
+    let text = filled(
+        include_str!("../fixtures/texts/scene_by_hand_a_free_object_that.toml"),
+        &[("CLOCK", &CLOCK)],
     );
     let plan = plan(&text);
     let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
@@ -289,39 +257,22 @@ fn objects_in_memory_are_those_of_the_catalogue() {
         plan_of(text, models).unwrap_err().to_string()
     };
     let twice = said(&named, &models);
-    assert!(
-        twice.contains("objects.pear.object: given beside an object in memory"),
-        "{twice}"
+    says(
+        &twice,
+        &["objects.pear.object: given beside an object in memory"],
     );
     let unknown = said(
         &named,
         &BTreeMap::from([("peer".to_owned(), model("pear"))]),
     );
-    assert!(
-        unknown.contains("a model for `peer`") && unknown.contains("pear"),
-        "{unknown}"
-    );
+    says(&unknown, &["a model for `peer`", "pear"]);
 }
 
 #[test]
 fn what_cannot_be_set_is_refused_and_nothing_moves() {
-    let text = format!(
-        "{CLOCK}
-        [[robots]]
-        name = \"arm\"
-        urdf = \"objects/robots/arm.urdf\"
-        joints = {{ time_s = [0.0], positions = {{ shoulder_turn_deg = [0.0], shoulder_bend_deg = [0.0], arm_turn_deg = [0.0], elbow_bend_deg = [0.0], forearm_turn_deg = [0.0], wrist_bend_deg = [0.0], flange_turn_deg = [0.0] }} }}
-        [[patches]]
-        name = \"sheet\"
-        layout = {{ grid = {{ nx = 4, ny = 4, pitch_mm = 5.0 }} }}
-        stroke_mm = 8.0
-        [[objects]]
-        name = \"ball\"
-        object = \"golf\"
-        robot = \"arm\"
-        [[objects]]
-        name = \"other\"
-        object = \"golf\""
+    let text = filled(
+        include_str!("../fixtures/texts/scene_by_hand_what_cannot_be_set.toml"),
+        &[("CLOCK", &CLOCK)],
     );
     let plan = plan(&text);
     let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);

@@ -12,22 +12,7 @@ fn frames(plan: &ScenePlan) -> Vec<Frame> {
 
 #[test]
 fn the_frames_of_a_scene_that_ends_early_are_its_first_ones() {
-    let text = r#"
-        title = "A ball on a damped skin whose zeros drift"
-        output_hz = 20.0
-        [[patches]]
-        name = "pad"
-        layout = { grid = { nx = 8, ny = 8, pitch_mm = 4.0 } }
-        stroke_mm = 5.0
-        damping_n_s_per_m = 2.0
-        friction = 0.4
-        signal = [{ drift_std_full_scale = 0.05 }, { noise_std_full_scale = 0.01 }]
-        [[objects]]
-        name = "ball"
-        object = "golf"
-        at = { position_mm = [0.0, 0.0, 4.0] }
-        motion = { phases = [{ duration_s = 1.0, linear_mm_per_s = [2.0, 0.0, -5.0] }] }
-        "#;
+    let text = include_str!("../fixtures/texts/scene_cut_text.toml");
     let spec = SceneSpec::parse("s.toml", text).unwrap();
     let whole = ScenePlan::new("s.toml", Path::new(""), spec).unwrap();
     let all = frames(&whole);

@@ -1,5 +1,6 @@
 //! Laws of scenes with friction, with different taxels, and with objects that are pressed to a force.
 
+use crate::command::filled;
 use bubbletouch::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
 use bubbletouch::geometry::Pose;
 use bubbletouch::report::scene_files::SceneFiles;
@@ -28,26 +29,9 @@ fn frames(plan: &ScenePlan) -> Vec<Frame> {
 
 /// Returns a scene in which a pear is pressed into a palm, moved along it and turned; `palm` contains more keys of the patch.
 fn drawn(palm: &str) -> String {
-    format!(
-        r#"
-        title = "A pear is drawn over a palm"
-        output_hz = 100.0
-        [[patches]]
-        name = "palm"
-        layout = {{ grid = {{ nx = 20, ny = 14, pitch_mm = 3.0 }} }}
-        stroke_mm = 6.0
-        {palm}
-        [[objects]]
-        name = "pear"
-        object = "pear"
-        at = {{ position_mm = [-10.0, 3.0, 3.0] }}
-        motion = {{ phases = [
-            {{ duration_s = 0.25, linear_mm_per_s = [0.0, 0.0, -20.0] }},
-            {{ duration_s = 0.2, linear_mm_per_s = [40.0, 5.0, 0.0], angular_deg_per_s = [0.0, 0.0, 50.0] }},
-            {{ duration_s = 0.2, linear_mm_per_s = [-40.0, 0.0, 0.0] }},
-            {{ duration_s = 0.1, linear_mm_per_s = [0.0, 0.0, 200.0] }},
-        ] }}
-        "#
+    filled(
+        include_str!("../fixtures/texts/scene_forces_drawn.toml"),
+        &[("palm", &palm)],
     )
 }
 
@@ -156,24 +140,9 @@ fn a_drawn_object_and_a_patch_drawn_the_other_way_feel_the_same_friction() {
             { duration_s = 0.25, linear_mm_per_s = [0.0, 0.0, 20.0] },
             { duration_s = 0.2, linear_mm_per_s = [-40.0, 0.0, 0.0] },
         ] }"#;
-    let patch = plan(&format!(
-        r#"
-        title = "A palm is drawn under a pear"
-        [[robots]]
-        name = "gripper"
-        floating = true
-        {motion}
-        [[patches]]
-        name = "palm"
-        robot = "gripper"
-        layout = {{ grid = {{ nx = 20, ny = 14, pitch_mm = 3.0 }} }}
-        stroke_mm = 6.0
-        {ROUGH}
-        [[objects]]
-        name = "pear"
-        object = "pear"
-        at = {{ position_mm = [-10.0, 3.0, 3.0] }}
-        "#
+    let patch = plan(&filled(
+        include_str!("../fixtures/texts/scene_forces_a_drawn_object_and.toml"),
+        &[("motion", &motion), ("ROUGH", &ROUGH)],
     ));
     let text = drawn(ROUGH).replace(
         "[40.0, 5.0, 0.0], angular_deg_per_s = [0.0, 0.0, 50.0]",
@@ -230,30 +199,9 @@ fn on_a_tray(folder: &Path, friction: f64) -> Vec<Frame> {
     let rows = places.map(|(x, y)| format!("{x},{y},0,4\n"));
     let table = format!("x,y,z,r\n{}", rows.collect::<String>());
     fs::write(folder.join("plate.csv"), table).unwrap();
-    let text = format!(
-        r#"
-        title = "A plate on a tray"
-        output_hz = 20.0
-        [[robots]]
-        name = "tray"
-        floating = true
-        motion = {{ phases = [
-            {{ duration_s = 0.5, linear_mm_per_s = [40.0, 20.0, 0.0] }},
-            {{ duration_s = 1.0, angular_deg_per_s = [0.0, 12.0, 0.0] }},
-        ] }}
-        [[patches]]
-        name = "bed"
-        robot = "tray"
-        layout = {{ grid = {{ nx = 24, ny = 24, pitch_mm = 2.0 }} }}
-        stroke_mm = 6.0
-        friction = {friction}
-        [[objects]]
-        name = "plate"
-        spheres = "plate.csv"
-        unit = "mm"
-        at = {{ position_mm = [0.3, -0.2, 4.0] }}
-        free = {{ mass_kg = 0.15, center_of_mass_mm = [0.0, 0.0, 0.0] }}
-        "#
+    let text = filled(
+        include_str!("../fixtures/texts/scene_forces_on_a_tray.toml"),
+        &[("friction", &friction)],
     );
     frames(&try_plan(&text, folder).unwrap())
 }
@@ -348,95 +296,11 @@ fn a_list_of_equal_numbers_is_the_number() {
     assert_eq!(frames(&plan(&drawn(&each))), frames(&plan(&drawn(ROUGH))));
 }
 
-#[test]
-fn bad_numbers_of_taxels_are_refused_with_key_file_line_and_column() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("t.csv");
-    let said = |palm: &str| {
-        let error = try_plan(&drawn(palm), folder.path()).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        error.to_string().replace(path.to_str().unwrap(), "t.csv")
-    };
-    assert_eq!(
-        said("stiffness_n_per_m = [1.0, 2.0]"),
-        "s.toml, key patches.palm.stiffness_n_per_m: 2 numbers; 280, one a taxel"
-    );
-    let mut numbers = vec![0.0; 280];
-    numbers[6] = -1.0;
-    assert_eq!(
-        said(&format!("friction = {numbers:?}")),
-        "s.toml, key patches.palm.friction, taxel 7: -1; zero or a positive number"
-    );
-    assert_eq!(
-        said("shear_stiffness_n_per_m = 10.0"),
-        "s.toml, key patches.palm.shear_stiffness_n_per_m: given without friction; friction = μ beside it"
-    );
-    assert!(said("friction = \"high\"").contains("a number, or a list of numbers"));
-    let stroke = drawn("").replace("stroke_mm = 6.0", "");
-    assert_eq!(
-        try_plan(&stroke, folder.path()).unwrap_err().to_string(),
-        "s.toml, key patches.palm.stroke_mm: nothing; a number, a list, or a column of taxels_csv"
-    );
-    let table = "taxels_csv = \"t.csv\"";
-    assert!(said(table).contains("key patches.palm.taxels_csv: t.csv, which cannot be opened"));
-    for (text, expected) in [
-        (
-            "friction\n0.5\n",
-            "t.csv: 1 rows; 280, one a taxel".to_owned(),
-        ),
-        (
-            "fricton\n",
-            "t.csv, line 1: column `fricton`; perhaps `friction`".to_owned(),
-        ),
-        (
-            "friction,friction\n",
-            "t.csv, line 1: column `friction` twice; each once".to_owned(),
-        ),
-        (
-            "friction\n0.5\nhigh\n",
-            "t.csv, line 3, column friction: `high`; a finite number".to_owned(),
-        ),
-        (
-            &format!("friction\n0.5\n-2\n{}", "0.5\n".repeat(278)),
-            "t.csv, line 3, column friction: -2; zero or a positive number".to_owned(),
-        ),
-        (
-            &format!("stroke_mm\n{}", "2\n".repeat(280)),
-            "s.toml, key patches.palm.stroke_mm: here and as a column of t.csv; one of them"
-                .to_owned(),
-        ),
-    ] {
-        fs::write(&path, text).unwrap();
-        assert_eq!(said(table), expected);
-    }
-    fs::write(&path, "friction,stroke_mm\n0.5\n").unwrap();
-    assert_eq!(
-        said(table),
-        "t.csv, line 2: 1 columns; 2 columns in every row"
-    );
-}
-
 /// Returns a scene with a ball over a palm that moves aside. `press` contains the keys of its force control, `palm` more keys of the patch.
 fn pushed(press: &str, palm: &str) -> String {
-    format!(
-        r#"
-        title = "A ball is pushed onto a palm"
-        output_hz = 100.0
-        [[patches]]
-        name = "palm"
-        layout = {{ grid = {{ nx = 24, ny = 16, pitch_mm = 3.0 }} }}
-        stroke_mm = 6.0
-        {palm}
-        [[objects]]
-        name = "ball"
-        object = "tennis"
-        at = {{ position_mm = [-10.0, 0.0, 4.3] }}
-        motion = {{ phases = [
-            {{ duration_s = 0.5 }},
-            {{ duration_s = 0.5, linear_mm_per_s = [30.0, 0.0, 2.0] }},
-        ] }}
-        press = {{ patch = "palm", direction = [0.1, 0.0, -2.0], {press} }}
-        "#
+    filled(
+        include_str!("../fixtures/texts/scene_forces_pushed.toml"),
+        &[("palm", &palm), ("press", &press)],
     )
 }
 
@@ -573,71 +437,6 @@ fn a_force_is_held_by_one_object_among_those_that_stand_there() {
     }
 }
 
-#[test]
-fn what_cannot_be_pushed_is_refused_with_its_key() {
-    let said = |press: &str| {
-        let error = try_plan(&pushed(press, ""), Path::new("")).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        error.to_string()
-    };
-    let good = "speed_mm_per_s = 20.0, travel_mm = 20.0";
-    let key = "s.toml, key objects.ball.press";
-    assert_eq!(
-        said(&format!("force_n = -1.0, {good}")),
-        format!("{key}.force_n: -1; zero or a positive number of newtons")
-    );
-    assert_eq!(
-        said(&format!("force_n = [1.0, 2.0], {good}")),
-        format!("{key}.force_n: 2 forces; 0, one a time of time_s, and at least one")
-    );
-    assert_eq!(
-        said(&format!("time_s = [1.0], force_n = 2.0, {good}")),
-        format!("{key}.force_n: one force beside time_s; a list, one a time; or no time_s")
-    );
-    assert_eq!(
-        said(&format!(
-            "time_s = [1.0, 1.0], force_n = [2.0, 3.0], {good}"
-        )),
-        format!("{key}.time_s: 1 s after 1 s; strictly ascending times")
-    );
-    assert_eq!(
-        said("force_n = 1.0, speed_mm_per_s = 0.0, travel_mm = 1.0"),
-        format!("{key}.speed_mm_per_s: 0; a positive number")
-    );
-    let text = pushed(&format!("force_n = 1.0, {good}"), "");
-    let said = |from: &str, to: &str| {
-        assert!(text.contains(from));
-        let error = try_plan(&text.replace(from, to), Path::new("")).unwrap_err();
-        error.to_string()
-    };
-    assert_eq!(
-        said("patch = \"palm\"", "patch = \"plam\""),
-        format!("{key}.patch: `plam`; perhaps `palm`")
-    );
-    assert_eq!(
-        said("[0.1, 0.0, -2.0]", "[0.0, 0.0, 0.0]"),
-        format!("{key}.direction: [0, 0, 0]; a vector that is not zero")
-    );
-    let second = text
-        .split("[[objects]]")
-        .nth(1)
-        .unwrap()
-        .replace("\"ball\"", "\"second\"");
-    let error = try_plan(&format!("{text}[[objects]]{second}"), Path::new("")).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "s.toml, key objects.second.press.patch: patch `palm`, which `ball` is pushed onto; one object a patch"
-    );
-    let free = "[[objects]]\nname = \"free\"\nobject = \"golf\"\nfree = { mass_kg = 0.1 }";
-    let error = try_plan(&format!("{text}{free}"), Path::new("")).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        format!(
-            "{key}: an object that is pushed beside the free object `free`; no free objects in the scene"
-        )
-    );
-}
-
 /// Layouts of a patch below an object.
 const LAYOUTS: [&str; 5] = [
     "grid = { nx = 16, ny = 16, pitch_mm = 4.0 }",
@@ -720,21 +519,7 @@ fn forces_of_a_frame_sum_to_the_wrench_on_every_layout_for_every_kind_of_object(
 
 #[test]
 fn the_stop_that_carries_a_heavy_ball_is_in_the_recorded_forces() {
-    let text = r#"
-        title = "A ball of 50 kg on a rough palm"
-        output_hz = 10.0
-        duration_s = 0.1
-        [[patches]]
-        name = "palm"
-        layout = { grid = { nx = 16, ny = 16, pitch_mm = 4.0 } }
-        stroke_mm = 2.0
-        friction = 0.5
-        [[objects]]
-        name = "ball"
-        object = "team_handball"
-        at = { position_mm = [1.0, 2.0, 5.0] }
-        free = { mass_kg = 50.0 }
-        "#;
+    let text = include_str!("../fixtures/texts/scene_forces_text.toml");
     let plan = plan(text);
     let folder = tempfile::tempdir().unwrap();
     let mut files = SceneFiles::create(folder.path(), &plan).unwrap();

@@ -1,5 +1,6 @@
 //! Laws of scenes: time steps, frames of reference, shortcuts and free objects, each compared with a slower or simpler computation.
 
+use crate::command::filled;
 use bubbletouch::contact::equilibrium::{
     EquilibriumSolver, FreeObject, Ground, Obstacle, PlacedSkin, Touched,
 };
@@ -36,35 +37,9 @@ fn frames(plan: &ScenePlan, stepping: Stepping) -> Vec<Frame> {
 
 /// Returns a scene in which a ball is lowered onto two patches, slides and turns. `damping` applies to one of the patches.
 fn sliding(dt_ms: f64, damping: f64) -> ScenePlan {
-    parse(&format!(
-        r#"
-        title = "A ball slides from one patch to another"
-        dt_ms = {dt_ms}
-        output_hz = 50.0
-
-        [[patches]]
-        name = "flat"
-        layout = {{ grid = {{ nx = 24, ny = 16, pitch_mm = 3.0 }} }}
-        stroke_mm = 6.0
-        damping_n_s_per_m = {damping}
-
-        [[patches]]
-        name = "bent"
-        at = {{ position_mm = [70.0, 0.0, -40.0], rotation_deg = [0.0, -90.0, 0.0] }}
-        layout = {{ cylinder = {{ radius_mm = 40.0, length_mm = 50.0, arc_deg = 120.0, pitch_mm = 3.0 }} }}
-        stroke_mm = 6.0
-        damping_n_s_per_m = {damping}
-
-        [[objects]]
-        name = "pear"
-        object = "pear"
-        at = {{ position_mm = [-10.0, 3.0, 3.0] }}
-        motion = {{ phases = [
-            {{ duration_s = 0.31, linear_mm_per_s = [0.0, 0.0, -16.0] }},
-            {{ duration_s = 0.53, linear_mm_per_s = [120.0, 0.0, 0.0], angular_deg_per_s = [10.0, 0.0, 70.0] }},
-            {{ duration_s = 0.2, linear_mm_per_s = [0.0, 0.0, 40.0] }},
-        ] }}
-        "#
+    parse(&filled(
+        include_str!("../fixtures/texts/scene_laws_sliding.toml"),
+        &[("dt_ms", &dt_ms), ("damping", &damping)],
     ))
 }
 
@@ -390,20 +365,7 @@ fn carried(plan: &ScenePlan, frame: &Frame) -> (DVec3, usize) {
 
 #[test]
 fn what_rests_on_stops_is_carried_by_the_forces_of_the_frame_on_flat_and_on_curved_skins() {
-    let bed = r#"
-        title = "A ball on a bed"
-        duration_s = 0.0
-        [[patches]]
-        name = "bed"
-        layout = { grid = { nx = 20, ny = 20, pitch_mm = 4.0 } }
-        stroke_mm = 8.0
-        stiffness_n_per_m = 100.0
-        [[objects]]
-        name = "ball"
-        object = "tennis"
-        at = { position_mm = [0.3, -1.1, 40.0] }
-        free = { mass_kg = 0.45 }
-        "#;
+    let bed = include_str!("../fixtures/texts/scene_laws_bed.toml");
     let forearms = std::fs::read_to_string(shipped("ball_over_forearm.toml")).unwrap();
     for (scene, is_flat) in [(bed, true), (&forearms, false)] {
         let mut most_stopped = 0;
@@ -532,35 +494,9 @@ fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes_and_on_it()
 
 #[test]
 fn a_damped_bed_carries_the_whole_weight_while_a_ball_sinks_and_after() {
-    let plan = parse(
-        r#"
-        title = "A plate of skin comes up to a ball on a table, and carries it"
-        output_hz = 50.0
-        dt_ms = 2.0
-        [[robots]]
-        name = "lift"
-        floating = true
-        at = { position_mm = [0.0, 0.0, -6.0] }
-        motion = { phases = [
-            { duration_s = 0.3, linear_mm_per_s = [0.0, 0.0, 35.0] },
-            { duration_s = 0.5 },
-        ] }
-        [[patches]]
-        name = "bed"
-        robot = "lift"
-        layout = { grid = { nx = 20, ny = 20, pitch_mm = 4.0 } }
-        stroke_mm = 12.0
-        stiffness_n_per_m = 20.0
-        damping_n_s_per_m = 4.0
-        [[objects]]
-        name = "ball"
-        object = "tennis"
-        at = { position_mm = [0.3, -0.2, 40.0] }
-        free = { mass_kg = 0.3 }
-        [[planes]]
-        name = "table"
-        "#,
-    );
+    let plan = parse(include_str!(
+        "../fixtures/texts/scene_laws_a_damped_bed_carries.toml"
+    ));
     let weight = 0.3 * 9.81;
     let (mut n_carried, mut n_both) = (0, 0);
     let mut deepest = Vec::new();
@@ -615,21 +551,10 @@ fn what_has_rolled_off_is_reported_once_and_touches_nothing_any_more() {
 
 #[test]
 fn a_scene_begins_as_if_it_had_stood_so_for_long() {
-    let text = |damping| {
-        format!(
-            r#"
-            title = "A ball lies in the skin from the start"
-            duration_s = 0.05
-            [[patches]]
-            name = "bed"
-            layout = {{ grid = {{ nx = 10, ny = 10, pitch_mm = 4.0 }} }}
-            stroke_mm = 8.0
-            damping_n_s_per_m = {damping}
-            [[objects]]
-            name = "ball"
-            object = "tennis"
-            at = {{ position_mm = [0.0, 0.0, -3.0] }}
-            "#
+    let text = |damping: f64| {
+        filled(
+            include_str!("../fixtures/texts/scene_laws_a_scene_begins_as.toml"),
+            &[("damping", &damping)],
         )
     };
     let with = frames(&parse(&text(2.0)), Stepping::AsNeeded);

@@ -1,5 +1,6 @@
 //! Mounted bodies: skin on an object, and objects on a robot's links, compared with equal bodies that move on their own.
 
+use crate::command::filled;
 use bubbletouch::scene::{Frame, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping};
 use std::path::Path;
 
@@ -37,19 +38,9 @@ fn assert_same(a: &[Frame], b: &[Frame]) {
 
 /// Returns a scene with an object above a skin that is fixed in the world.
 fn over_skin(carrier: &str, object: &str) -> String {
-    format!(
-        "title = \"over skin\"
-        output_hz = 50.0
-        duration_s = 0.5
-        {carrier}
-        [[patches]]
-        name = \"skin\"
-        layout = {{ grid = {{ nx = 24, ny = 24, pitch_mm = 3.0 }} }}
-        stroke_mm = 6.0
-        [[objects]]
-        name = \"pear\"
-        object = \"pear\"
-        {object}"
+    filled(
+        include_str!("../fixtures/texts/scene_mounts_over_skin.toml"),
+        &[("carrier", &carrier), ("object", &object)],
     )
 }
 
@@ -162,21 +153,9 @@ fn an_object_on_a_link_goes_where_the_link_goes() {
 
 /// Returns a scene with skin around a can that is lowered onto a pear.
 fn skinned_can(carrier: &str, patch: &str, can: &str) -> String {
-    format!(
-        "title = \"a can with skin\"
-        output_hz = 50.0
-        duration_s = 0.5
-        {carrier}
-        [[patches]]
-        name = \"sleeve\"
-        {patch}
-        layout = {{ cylinder = {{ radius_mm = 34.0, length_mm = 60.0, arc_deg = 360.0, pitch_mm = 3.0 }} }}
-        stroke_mm = 3.0
-        {can}
-        [[objects]]
-        name = \"pear\"
-        object = \"pear\"
-        at = {{ position_mm = [60.0, 0.0, -20.0] }}"
+    filled(
+        include_str!("../fixtures/texts/scene_mounts_skinned_can.toml"),
+        &[("carrier", &carrier), ("patch", &patch), ("can", &can)],
     )
 }
 
@@ -207,28 +186,7 @@ fn skin_on_an_object_goes_with_it_and_does_not_feel_it() {
 
 #[test]
 fn a_free_ball_is_carried_by_skin_on_an_object_that_rides_a_link() {
-    let text = "title = \"a tray\"
-        output_hz = 20.0
-        duration_s = 0.5
-        [[robots]]
-        name = \"hand\"
-        floating = true
-        motion = { phases = [{ duration_s = 0.5, linear_mm_per_s = [10.0, 5.0, 40.0] }] }
-        [[objects]]
-        name = \"base\"
-        object = \"tennis\"
-        robot = \"hand\"
-        [[patches]]
-        name = \"tray\"
-        object = \"base\"
-        at = { position_mm = [0.0, 0.0, 80.0] }
-        layout = { grid = { nx = 24, ny = 24, pitch_mm = 3.0 } }
-        stroke_mm = 6.0
-        [[objects]]
-        name = \"ball\"
-        object = \"golf\"
-        at = { position_mm = [1.0, 2.0, 90.0] }
-        free = { mass_kg = 0.046 }";
+    let text = include_str!("../fixtures/texts/scene_mounts_a_free_ball_is.toml");
     let weight = 0.046 * 9.81;
     for frame in frames(text) {
         assert_eq!(
@@ -241,28 +199,4 @@ fn a_free_ball_is_carried_by_skin_on_an_object_that_rides_a_link() {
         assert!((carried.z + weight).abs() < 1e-6 * weight, "{carried}");
         assert!(frame.touches.is_empty());
     }
-}
-
-#[test]
-fn what_cannot_carry_is_refused_by_its_key() {
-    let refused = |text: &str| plan(text).unwrap_err().to_string();
-    let can = "[[objects]]\nname = \"can\"\nobject = \"soup_can\"\nfree = { mass_kg = 0.1 }\n";
-    for (patch, expected) in [
-        ("object = \"cann\"", "patches.sleeve.object: `cann`"),
-        (
-            "object = \"can\"",
-            "patches.sleeve.object: `can`, which does not go where it is told",
-        ),
-        (
-            "object = \"can\"\nlink = \"palm\"",
-            "patches.sleeve.object: given beside a robot",
-        ),
-    ] {
-        let said = refused(&skinned_can("", patch, can));
-        assert!(said.contains(expected), "{said}");
-    }
-    let said = refused(&over_skin("", "link = \"palm\"\nfree = { mass_kg = 0.1 }"));
-    assert!(said.contains("an object with two movements"), "{said}");
-    let said = refused(&over_skin("", "link = \"palm\""));
-    assert!(said.contains("`palm` without a robot"), "{said}");
 }

@@ -1,5 +1,6 @@
 //! Robots of scenes: joints without motion, notes on robot files, and locations of files.
 
+use crate::command::{filled, says};
 use bubbletouch::scene::{ScenePlan, SceneSpec, Simulation, Stepping};
 use glam::DVec3;
 use std::path::Path;
@@ -14,21 +15,9 @@ const URDF: &str = r#"<robot name="r"><link name="a"/><link name="b"/><link name
 fn scene(robot: &str, more: &str) -> (tempfile::TempDir, bubbletouch::Result<ScenePlan>) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("r.urdf"), URDF).unwrap();
-    let text = format!(
-        r#"
-        title = "A robot"
-        [[robots]]
-        name = "robot"
-        urdf = "r.urdf"
-        {robot}
-        [[patches]]
-        name = "pad"
-        robot = "robot"
-        link = "c"
-        layout = {{ grid = {{ nx = 2, ny = 2, pitch_mm = 4.0 }} }}
-        stroke_mm = 5.0
-        {more}
-        "#
+    let text = filled(
+        include_str!("../fixtures/texts/scene_robots_scene.toml"),
+        &[("robot", &robot), ("more", &more)],
     );
     let spec = SceneSpec::parse("s.toml", &text).unwrap();
     let plan = ScenePlan::new("s.toml", folder.path(), spec);
@@ -50,16 +39,6 @@ fn joints_that_are_not_listed_stand_at_zero_or_at_the_nearest_limit() {
     let (_folder, plan) = scene(slide, "");
     let tilted = 0.5 * DVec3::new(0.2f64.sin(), 0.0, 0.2f64.cos());
     assert!((pad_at(&plan.unwrap()) - tilted).length() < 1e-15);
-}
-
-#[test]
-fn a_joint_that_cannot_move_is_refused_only_if_it_is_listed() {
-    let stuck = "joints = { time_s = [0.0], positions = { stuck_rad = [0.5] } }";
-    let (_folder, plan) = scene(stuck, "");
-    assert_eq!(
-        plan.unwrap_err().to_string(),
-        "s.toml, key robots.robot.joints.positions: `stuck_rad`, and joint `stuck` is fixed; joints that move and mimic none"
-    );
 }
 
 #[test]
@@ -92,15 +71,7 @@ fn every_path_of_a_resolved_scene_is_absolute() {
     std::fs::write(folder.join("j.csv"), "time_s,slide\n0,0.1\n").unwrap();
     std::fs::write(folder.join("t.csv"), "stiffness_n_per_m\n1\n2\n3\n4\n").unwrap();
     std::fs::write(folder.join("r.urdf"), URDF).unwrap();
-    let text = r#"
-        title = "Paths"
-        robots = [{ name = "robot", urdf = "r.urdf", joints = { csv = "j.csv" }, motion = { csv = "m.csv" } }]
-        patches = [{ name = "pad", layout = { grid = { nx = 2, ny = 2, pitch_mm = 4.0 } }, stroke_mm = 5.0, taxels_csv = "t.csv" }]
-        objects = [
-            { name = "a", object = "ball", objects = "my.toml", motion = { csv = "m.csv" } },
-            { name = "b", spheres = "s.csv" },
-        ]
-    "#;
+    let text = include_str!("../fixtures/texts/scene_robots_text.toml");
     let spec = SceneSpec::parse("s.toml", text).unwrap();
     let plan = ScenePlan::new("s.toml", folder, spec).unwrap();
     let resolved = plan.spec.to_toml();
@@ -118,38 +89,8 @@ fn every_path_of_a_resolved_scene_is_absolute() {
     assert_eq!(again.spec, plan.spec);
 }
 
-#[test]
-fn an_error_of_the_surface_is_given_only_where_spheres_are_made() {
-    let object = |keys: &str| format!("[[objects]]\nname = \"o\"\nsurface_error_mm = 0.5\n{keys}");
-    for keys in [
-        "spheres = \"s.csv\"",
-        "mesh = \"m.ply\"",
-        "mesh = \"m.ply\"\nmodel = \"mesh\"",
-        "mesh = \"m.ply\"\nmodel = \"vertex_spheres\"",
-    ] {
-        let (_folder, plan) = scene("", &object(keys));
-        assert_eq!(
-            plan.unwrap_err().to_string(),
-            "s.toml, key objects.o.surface_error_mm: given beside spheres, or a mesh that is not packed; \
-             it only beside object = \"NAME\" or model = \"packed\""
-        );
-    }
-    let (_folder, plan) = scene("", &object("object = \"mug\""));
-    plan.unwrap();
-}
-
 /// Hand with a box as palm and a capsule as wrist. Its fingertip has a collision ball and a visual cube in centimetres. Its base has no shape.
-const HAND: &str = r#"<robot name="hand"><link name="base"/>
-<link name="palm"><collision><origin xyz="0 0 0.01"/><geometry><box size="0.04 0.03 0.02"/></geometry></collision></link>
-<link name="tip"><visual><geometry><mesh filename="package://hand_description/meshes/cube.obj" scale="0.01 -0.01 0.01"/></geometry></visual>
-<collision><origin xyz="0.1 0 0"/><geometry><sphere radius="0.012"/></geometry></collision></link>
-<link name="wrist"><visual><geometry><capsule radius="0.01" length="0.03"/></geometry></visual>
-<visual><geometry><cylinder radius="0.02" length="0.01"/></geometry></visual></link>
-<link name="lost"><visual><geometry><mesh filename="absent.obj"/></geometry></visual></link>
-<joint name="a" type="fixed"><parent link="base"/><child link="palm"/><origin xyz="0 0 0.5"/></joint>
-<joint name="b" type="fixed"><parent link="palm"/><child link="tip"/></joint>
-<joint name="c" type="fixed"><parent link="palm"/><child link="wrist"/></joint>
-<joint name="d" type="fixed"><parent link="palm"/><child link="lost"/></joint></robot>"#;
+const HAND: &str = include_str!("../fixtures/texts/scene_robots_hand.urdf");
 
 /// Cube about the origin with edges of 2.
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
@@ -222,75 +163,6 @@ fn skin_is_draped_over_the_shapes_of_a_named_link_which_carries_it() {
     let mut centers = plan.patches[0].skin.layout().centers().iter();
     assert!(
         centers.all(|center| center.z.abs() > 0.005 - 1e-9 || center.truncate().length() > 0.019)
-    );
-}
-
-#[test]
-fn what_cannot_be_draped_over_a_link_is_refused_with_the_key() {
-    let refused = |draped: &str, more: &str, expected: &str| {
-        let error = hand(draped, more).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        let said = error.to_string();
-        assert!(said.contains(expected), "{said}");
-    };
-    let robot = "robot = \"left\"";
-    let link = "region = { link = \"palm\" }";
-    let key = "key patches.skin.layout.region.link";
-    refused(
-        "region = { link = \"thumb\" }",
-        robot,
-        "link of robot `hand`: `thumb`; one of `base`, `palm`, `tip`, `wrist`, `lost`",
-    );
-    refused(
-        "region = { link = \"base\" }",
-        robot,
-        &format!(
-            "{key}: `base`: a link without shapes that have a volume; a link with such shapes: `palm`, `tip`"
-        ),
-    );
-    let visual = "region = { link = \"palm\", shapes = \"visual\" }";
-    refused(
-        visual,
-        robot,
-        "`palm`: a link without visual shapes that have a volume; a link with such shapes: `tip`, `wrist`, `lost`",
-    );
-    refused(
-        "region = { link = \"lost\" }",
-        robot,
-        "absent.obj: a mesh that is not found; a file at one of the paths tried: ",
-    );
-    refused(
-        link,
-        "",
-        &format!("{key}: `palm` without a robot; robot = \"NAME\" of the patch"),
-    );
-    refused(link, "robot = \"right\"", "key patches.skin.robot: `right`");
-    let other = format!("{robot}\nlink = \"tip\"");
-    refused(
-        link,
-        &other,
-        "`palm` of a patch that link `tip` carries; one link",
-    );
-    refused(
-        &format!("mesh = \"hand_description/meshes/cube.obj\", {link}"),
-        robot,
-        "mesh and region.link; mesh = \"FILE\", on = \"collision\"",
-    );
-    refused("", robot, "neither mesh nor a link");
-    refused(
-        &format!("unit = \"cm\", {link}"),
-        robot,
-        "a link beside unit",
-    );
-    refused(
-        "region = { link = \"palm\", triangles = [0, 3] }",
-        robot,
-        "group or triangles beside link",
-    );
-    refused(
-        "mesh = \"hand_description/meshes/cube.obj\", unit = \"cm\", region = { shapes = \"visual\" }",
-        robot,
-        "shapes alone; link beside them",
     );
 }
 
@@ -419,10 +291,12 @@ fn meshes_of_a_package_are_read_from_the_folder_of_the_scenes_key() {
         )
     };
     let missing = plan("").unwrap_err().to_string();
-    assert!(
-        missing.contains("package://hand_description/meshes/cube.obj: a mesh that is not found; packages = { hand_description = \"FOLDER\" }")
-            && missing.contains("robots/hand_description/meshes/cube.obj"),
-        "{missing}"
+    says(
+        &missing,
+        &[
+            "package://hand_description/meshes/cube.obj: a mesh that is not found; packages = { hand_description = \"FOLDER\" }",
+            "robots/hand_description/meshes/cube.obj",
+        ],
     );
     let found = plan("packages = { hand_description = \"elsewhere\" }").unwrap();
     // The resolved scene finds the package from any folder.

@@ -1,5 +1,6 @@
 //! Signals of skins in scenes: they equal a signal chain that is applied frame by frame, and an invalid chain is refused by its key.
 
+use crate::command::filled;
 use bubbletouch::random::Seed;
 use bubbletouch::report::scene_files::SceneFiles;
 use bubbletouch::scene::{Frame, ScenePlan, SceneSpec, Simulation, Stepping};
@@ -11,22 +12,9 @@ use ndarray_npy::NpzReader;
 use std::path::Path;
 
 fn try_plan(signal: &str) -> bubbletouch::Result<ScenePlan> {
-    let text = format!(
-        r#"
-        title = "A ball on a finger"
-        output_hz = 50.0
-        [[patches]]
-        name = "finger"
-        layout = {{ cylinder = {{ radius_mm = 9.0, length_mm = 24.0, arc_deg = 200.0, pitch_mm = 2.0 }} }}
-        stroke_mm = 4.0
-        damping_n_s_per_m = 1.5
-        {signal}
-        [[objects]]
-        name = "ball"
-        object = "golf"
-        at = {{ position_mm = [35.0, 0.0, -21.0] }}
-        motion = {{ phases = [{{ duration_s = 0.2, linear_mm_per_s = [-30.0, 10.0, 0.0] }}] }}
-        "#
+    let text = filled(
+        include_str!("../fixtures/texts/scene_signal_try_plan.toml"),
+        &[("signal", &signal)],
     );
     ScenePlan::new("s.toml", Path::new(""), SceneSpec::parse("s.toml", &text)?)
 }
@@ -117,52 +105,6 @@ fn a_recording_has_the_signal_beside_deflection_and_force() {
     for (row, frame) in signal.outer_iter().zip(&frames) {
         let expected = frame.patches[0].signal.as_ref().unwrap();
         assert!(row.iter().zip(expected).all(|(a, b)| *a == *b as f32));
-    }
-}
-
-#[test]
-fn what_cannot_be_a_signal_is_refused_with_its_key() {
-    for (signal, parts) in [
-        (
-            "[\"noise\"]",
-            &["patches.finger.signal", "\"noise\" as step 1"][..],
-        ),
-        ("[{ crosstalk = 0.1 }, \"force\"]", &["\"force\" as step 2"]),
-        ("[{ noise = 0.1 }]", &["`noise`", "noise_std"]),
-        (
-            "[{ noise_std_n = 0.1 }]",
-            &["patches.finger.signal", "noise unit: n"],
-        ),
-        ("[{ noise_std_mm = -1.0 }]", &["signal.noise_std_mm", "-1"]),
-        (
-            "[{ crosstalk = 1.5 }]",
-            &["signal.crosstalk", "1.5", "0 to 1"],
-        ),
-        (
-            "[{ crosstalk = 0.1, gain_std = 0.1 }]",
-            &["`gain_std` beside `crosstalk`"],
-        ),
-        (
-            "[{ smoothing_mm = 1.0, gain_std = 0.1 }]",
-            &["one step in each"],
-        ),
-        (
-            "[{ hysteresis_full_scale = 0.1 }]",
-            &["needs the frames before"],
-        ),
-        ("[{ scan_time_ms = 5.0 }]", &["needs the frames before"]),
-        (
-            "[{ pink_noise_std_full_scale = 0.1 }]",
-            &["needs the frames before"],
-        ),
-        ("[{ line_resistance = 0.1 }]", &["a skin that is no grid"]),
-        ("[{}]", &["a step without a key"]),
-    ] {
-        let error = try_plan(&format!("signal = {signal}")).unwrap_err();
-        assert_eq!(error.exit_code(), 2, "{error}");
-        let said = error.to_string();
-        let has_all = parts.iter().all(|part| said.contains(part));
-        assert!(said.starts_with("s.toml") && has_all, "{said}");
     }
 }
 

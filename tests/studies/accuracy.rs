@@ -6,36 +6,7 @@ use crate::study::Study;
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::study::table::{Configuration, ConfigurationScore, Tables};
 
-const STUDY: &str = r#"
-question = "What does accuracy obey?"
-trials = 4
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill", "fork", "strawberry", "bowl", "hammer"]
-surface_error_mm = 0.5
-
-[skin]
-pitch_mm = 4.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 60
-offset_x_mm = { uniform = [-10.0, 10.0] }
-offset_y_mm = { uniform = [-10.0, 10.0] }
-yaw_deg = { uniform = [-30.0, 30.0] }
-depth_mm = { uniform = [2.0, 4.0] }
-
-[signal]
-noise_std_full_scale = [0.0, 0.1, 0.4, 10.0]
-
-[sensing]
-measurements = [1, 4, 16, 64, 256]
-
-[recognition]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/accuracy.toml");
 
 /// Number of objects; one guess in this number is correct.
 const N_OBJECTS: f64 = 8.0;

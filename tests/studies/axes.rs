@@ -1,6 +1,6 @@
 //! Studies with axes of their own: each combination equals the study with its values, and common parts are computed once.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use crate::study::{self, Study};
 use bubbletouch::kinds::Study as _;
 use bubbletouch::kinds::recognition::RecognitionStudy;
@@ -8,29 +8,8 @@ use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::{Tables, TrialScore};
-use bubbletouch::study::{Plan, StudySpec};
 
-const REST: &str = r#"
-[objects]
-sets = ["balls"]
-names = ["golf", "tennis", "baseball"]
-
-[skin]
-pitch_mm = 4.0
-taxels = 8
-
-[touches]
-per_object = 12
-offset_x_mm = { uniform = [-6.0, 6.0] }
-offset_y_mm = { uniform = [-6.0, 6.0] }
-
-[signal]
-steps = ["force", "noise"]
-noise_std_n = 0.01
-
-[sensing]
-ratio = [4, 8]
-"#;
+const REST: &str = include_str!("../fixtures/texts/axes_rest.toml");
 
 const HEAD: &str = "question = \"?\"\ntrials = 2\n";
 const LEARNING: &str = "[recognition]\ntest_fraction = 0.25\n";
@@ -159,28 +138,6 @@ fn tables_of_a_study_with_axes_read_back_as_they_are() {
 }
 
 #[test]
-fn a_combination_that_a_check_refuses_is_told_with_its_axis() {
-    let said = |axes: &str| {
-        let spec = StudySpec::parse("study.toml", &with_axes(axes)).unwrap();
-        Plan::variants("study.toml", spec).unwrap_err().to_string()
-    };
-    let rest = "skin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]\n";
-    let depth = said(&format!("{rest}touches.depth_mm = [1.0, -1.0]"));
-    assert!(
-        depth.contains("axes.\"touches.depth_mm\": touches.depth_mm = -1.0;"),
-        "{depth}"
-    );
-    assert!(depth.contains("a positive number"), "{depth}");
-    let k = said(&format!(
-        "{rest}touches.depth_mm = [1.0]\nrecognition.n_neighbours = [3, 0]"
-    ));
-    assert!(
-        k.contains("recognition.n_neighbours = 0;") && k.contains("at least 1"),
-        "{k}"
-    );
-}
-
-#[test]
 fn a_fit_is_counted_once_for_all_its_decisions_and_only_if_its_solver_has_a_cap() {
     let axes = "touches.depth_mm = [1.0]\nskin.stroke_mm = [5.0]\n\
                 recognition.classifier = [\"linear_svm\", \"k_nearest\"]\n\
@@ -194,20 +151,6 @@ fn a_fit_is_counted_once_for_all_its_decisions_and_only_if_its_solver_has_a_cap(
 }
 
 #[test]
-fn a_seed_is_no_axis_because_trials_repeat_a_configuration() {
-    for axis in ["seed = [1, 2]", "\"seed\" = [1]", "trials = [1, 2]"] {
-        let text = with_axes(axis).replace("trials = 2\n", "");
-        let said = StudySpec::parse("s.toml", &text).unwrap_err().to_string();
-        let wanted =
-            "as an axis; one value: trials = N repeats each configuration with other random draws";
-        assert!(
-            said.starts_with("s.toml:") && said.contains(wanted),
-            "{said}"
-        );
-    }
-}
-
-#[test]
 fn objects_of_the_command_and_an_axis_of_objects_exclude_each_other() {
     let case = Case::new();
     let axes = "objects.sets = [[\"balls\"], [\"balls\", \"cans\"]]\ntouches.depth_mm = [1.0]\n\
@@ -215,9 +158,7 @@ fn objects_of_the_command_and_an_axis_of_objects_exclude_each_other() {
     let rest = REST.replace("sets = [\"balls\"]\n", "");
     case.file("sets.toml", format!("{HEAD}{rest}{LEARNING}[axes]\n{axes}"));
     case.succeeds(&["plan", "sets.toml"]);
-    let output = case.run(&["plan", "sets.toml", "--objects", "own.toml"]);
-    assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8(output.stderr).unwrap();
+    let said = case.refuses(&["plan", "sets.toml", "--objects", "own.toml"]);
     let wanted = "--objects: own.toml; no such option: objects.sets is an axis of the study";
     assert!(said.contains(wanted), "{said}");
 }
@@ -234,14 +175,8 @@ fn plan_and_page_state_all_values_of_an_axis_and_what_test_touches_differ_in() {
     );
     let (said, _) = case.succeeds(&["plan", "study.toml"]);
     let differs = "test.signal.noise_std_n = 0.02, test.touches.depth_mm = 1.5";
-    assert!(
-        said.contains("  touches  24; 36 on each of 2 arrays; "),
-        "{said}"
-    );
-    assert!(
-        said.contains(&format!("; test touches with {differs}")),
-        "{said}"
-    );
+    says(&said, &["  touches  24; 36 on each of 2 arrays; "]);
+    says(&said, &[&format!("; test touches with {differs}")]);
     case.succeeds(&["run", "study.toml", "--out", "found"]);
     let page = std::fs::read_to_string(case.path("found/report.html")).unwrap();
     let (_, settings) = page.split_once("id=\"settings\"").unwrap();

@@ -10,34 +10,14 @@ use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use bubbletouch::world::{Grid, Patch, Taxel};
 use ndarray::{Array1, Array2, Axis};
+use serde::Deserialize;
 use std::sync::LazyLock;
 
 const SIDE: usize = 32;
 const STROKE: f64 = 5e-3;
 const STIFFNESS: f64 = 180.0;
 
-const STUDY: &str = r#"
-question = "?"
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "padlock", "hammer", "soup_can", "plate"]
-[signal]
-steps = ["noise"]
-[sensing]
-measurements = 16
-[recognition]
-classifier = "linear_svm"
-[skin]
-pitch_mm = 2.0
-taxels = 32
-stroke_mm = 5.0
-[touches]
-per_object = 100
-offset_x_mm = { uniform = [-25.0, 25.0] }
-offset_y_mm = { uniform = [-25.0, 25.0] }
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = { uniform = [1.0, 4.5] }
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/calibration.toml");
 
 /// Deflections of touches in random order, n × 1,024, metres.
 static TOUCHED: LazyLock<Array2<f64>> = LazyLock::new(|| {
@@ -51,7 +31,8 @@ static TOUCHED: LazyLock<Array2<f64>> = LazyLock::new(|| {
 });
 
 /// Settings of a simulated skin.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default)]
 struct Settings {
     crosstalk: f64,
     gain: f64,
@@ -62,6 +43,11 @@ struct Settings {
     dead: f64,
     stuck: f64,
     bits: f64,
+}
+
+/// Returns settings from their keys, such as `gain = 0.1, noise = 0.003`; all others are zero.
+fn settings(keys: &str) -> Settings {
+    toml::from_str(&keys.replace(", ", "\n")).unwrap()
 }
 
 impl Settings {
@@ -178,7 +164,6 @@ fn are_right(settings: Settings, untouched_times: Array1<f64>) -> Vec<&'static s
 /// Law: zeros that drift between untouched frames are neither gains nor crosstalk.
 #[test]
 fn drift_is_no_gain_wherever_the_skin_is_untouched() {
-    let none = Settings::default();
     let evenly = || Array1::linspace(0.0, 1.0, 400);
     let at_ends = || {
         Array1::from_iter((0..200).map(|k| {
@@ -190,46 +175,20 @@ fn drift_is_no_gain_wherever_the_skin_is_untouched() {
         }))
     };
     let at_start = || Array1::linspace(0.0, 0.05, 200);
-    let never = || Array1::zeros(0);
-    type Times<'a> = &'a dyn Fn() -> Array1<f64>;
-    let cases: [(Times, &[&str]); 4] = [
-        (&evenly, &["drift"]),
-        (&at_ends, &["drift"]),
-        (&at_start, &[]),
-        (&never, &[]),
-    ];
-    for (times, found) in cases {
-        for settings in [
-            Settings {
-                drift: 0.05,
-                noise: 0.003,
-                ..none
-            },
-            Settings {
-                drift: 0.05,
-                noise: 0.003,
-                crosstalk: 0.2,
-                ..none
-            },
-            Settings {
-                drift: 0.1,
-                noise: 0.003,
-                gain: 0.1,
-                ..none
-            },
-            Settings {
-                drift: 0.02,
-                noise: 0.02,
-                gain: 0.05,
-                crosstalk: 0.1,
-                ..none
-            },
-        ] {
-            let unknown = are_right(settings, times());
-            assert!(
-                found.iter().all(|name| !unknown.contains(name)),
-                "{settings:?}: {unknown:?}"
-            );
+    let drifting = settings("drift = 0.05, noise = 0.003");
+    let leaking = settings("drift = 0.05, noise = 0.003, crosstalk = 0.2");
+    let unlike = settings("drift = 0.1, noise = 0.003, gain = 0.1");
+    let all = settings("drift = 0.02, noise = 0.02, gain = 0.05, crosstalk = 0.1");
+    for (times, found, skins) in [
+        (evenly(), &["drift"][..], &[drifting, all][..]),
+        (at_ends(), &["drift"], &[drifting, leaking, unlike, all]),
+        (at_start(), &[], &[all]),
+        (Array1::zeros(0), &[], &[all]),
+    ] {
+        for skin in skins {
+            let unknown = are_right(*skin, times.clone());
+            let is_found = found.iter().all(|name| !unknown.contains(name));
+            assert!(is_found, "{skin:?}: {unknown:?}");
         }
     }
 }
@@ -238,94 +197,38 @@ fn drift_is_no_gain_wherever_the_skin_is_untouched() {
 fn each_setting_of_a_skin_is_recovered_within_a_tenth_or_said_to_be_not_identifiable() {
     let none = Settings::default();
     is_recovered(none, 400, &["smoothing"]);
-    let leaking = Settings {
-        crosstalk: 0.3,
-        gain: 0.05,
-        ..none
-    };
+    let leaking = settings("crosstalk = 0.3, gain = 0.05");
     is_recovered(leaking, 400, &["smoothing"]);
-    let quiet = Settings {
-        crosstalk: 0.2,
-        noise: 0.003,
-        ..none
-    };
+    let quiet = settings("crosstalk = 0.2, noise = 0.003");
     is_recovered(quiet, 400, &[]);
-    let worn = Settings {
-        crosstalk: 0.1,
-        gain: 0.1,
-        drift: 0.05,
-        noise: 0.02,
-        dead: 0.02,
-        stuck: 0.01,
-        ..none
-    };
+    let worn = settings(
+        "crosstalk = 0.1, gain = 0.1, drift = 0.05, noise = 0.02, dead = 0.02, stuck = 0.01",
+    );
     is_recovered(worn, 400, &["crosstalk"]);
-    let unlike = Settings {
-        gain: 0.2,
-        drift: 0.1,
-        noise: 0.01,
-        ..none
-    };
+    let unlike = settings("gain = 0.2, drift = 0.1, noise = 0.01");
     is_recovered(unlike, 400, &["crosstalk"]);
-    let smoothed = Settings {
-        noise: 0.03,
-        smoothing: 1.0,
-        ..none
-    };
+    let smoothed = settings("noise = 0.03, smoothing = 1.0");
     is_recovered(smoothed, 400, &["crosstalk", "gain"]);
-    let blurred = Settings {
-        noise: 0.1,
-        smoothing: 2.0,
-        drift: 0.05,
-        ..none
-    };
+    let blurred = settings("noise = 0.1, smoothing = 2.0, drift = 0.05");
     is_recovered(blurred, 400, &["crosstalk", "gain", "drift"]);
 }
 
 #[test]
 fn a_converter_is_found_and_what_it_clips_or_rounds_away_is_said() {
-    let none = Settings::default();
-    let exact = Settings {
-        crosstalk: 0.3,
-        gain: 0.05,
-        bits: 12.0,
-        ..none
-    };
+    let exact = settings("crosstalk = 0.3, gain = 0.05, bits = 12.0");
     is_recovered(exact, 400, &["noise", "smoothing"]);
-    let coarse = Settings {
-        crosstalk: 0.2,
-        noise: 0.003,
-        bits: 8.0,
-        ..none
-    };
+    let coarse = settings("crosstalk = 0.2, noise = 0.003, bits = 8.0");
     is_recovered(coarse, 400, &["noise"]);
-    let smoothed = Settings {
-        noise: 0.03,
-        smoothing: 1.0,
-        bits: 12.0,
-        ..none
-    };
+    let smoothed = settings("noise = 0.03, smoothing = 1.0, bits = 12.0");
     is_recovered(smoothed, 400, &["crosstalk", "gain"]);
-    let worn = Settings {
-        crosstalk: 0.1,
-        gain: 0.1,
-        drift: 0.05,
-        noise: 0.02,
-        dead: 0.02,
-        stuck: 0.01,
-        bits: 10.0,
-        ..none
-    };
+    let worn = settings(
+        "crosstalk = 0.1, gain = 0.1, drift = 0.05, noise = 0.02, dead = 0.02, stuck = 0.01, bits = 10.0",
+    );
     is_recovered(worn, 400, &["crosstalk", "stiffness"]);
 }
 
 #[test]
 fn without_untouched_frames_nothing_is_said_of_noise_smoothing_and_drift() {
-    let settings = Settings {
-        crosstalk: 0.1,
-        gain: 0.1,
-        dead: 0.03,
-        ..Settings::default()
-    };
+    let settings = settings("crosstalk = 0.1, gain = 0.1, dead = 0.03");
     is_recovered(settings, 0, &["noise", "smoothing", "drift"]);
 }

@@ -21,37 +21,7 @@ use ndarray::{Array1, Array2, ArrayView2, Axis};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-const STUDY: &str = r#"
-question = "What is a touch read by?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 32
-offset_x_mm = { uniform = [-10.0, 10.0] }
-offset_y_mm = { uniform = [-10.0, 10.0] }
-yaw_deg = { uniform = [-40.0, 40.0] }
-depth_mm = { uniform = [2.0, 4.0] }
-
-[signal]
-noise_std_full_scale = 0.2
-
-[sensing]
-measurements = 16
-
-[recognition]
-classifier = "linear_svm"
-test_fraction = 0.375
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/families.toml");
 
 /// Returns the study with additional lines in its tables.
 fn with(touches: &str, recognition: &str) -> String {
@@ -401,45 +371,4 @@ fn one_touch_is_always_predict() {
     let alone = accuracies("1");
     assert_eq!(alone[..2], alone[2..], "the labels of the nearest mean");
     assert_eq!(accuracies("[1, 3]"), alone);
-}
-
-#[test]
-fn a_plan_refuses_what_training_would_refuse() {
-    let classified = |keys: &str| {
-        let text = with("", keys);
-        let kind = if keys.contains("neighbours") {
-            "k_nearest"
-        } else {
-            "linear_svm"
-        };
-        text.replace(
-            "classifier = \"linear_svm\"",
-            &format!("classifier = \"{kind}\""),
-        )
-    };
-    // 20 of 32 touches of each object train.
-    for (keys, said) in [
-        (
-            "n_neighbours = 121",
-            "key recognition.n_neighbours: 121; at most 120, the training rows",
-        ),
-        (
-            "train_touches = 2\nn_neighbours = 13",
-            "key recognition.n_neighbours: 13; at most 12",
-        ),
-        // Yaws of an object that are nearer than 4° are one group.
-        (
-            "group_by = \"yaw\"\ngroup_by_deg = 4.0\ncv_folds = 8\nc_grid = [1.0, 10.0]",
-            "key recognition.cv_folds: folds: 8, but class",
-        ),
-        (
-            "mislabelled_fraction = 0.8\ncv_folds = 20\nc_grid = [1.0, 10.0]",
-            "key recognition.cv_folds: labels, class",
-        ),
-    ] {
-        let error = Study::error(&classified(keys));
-        assert!(error.contains(said), "{keys}: {error}");
-    }
-    Study::new(&classified("n_neighbours = 120"));
-    Study::new(&classified("readings_per_touch = 2\nn_neighbours = 121"));
 }

@@ -10,33 +10,7 @@ use bubbletouch::world::{Touch, TouchAxis};
 use std::collections::BTreeSet;
 
 /// Study in which some touches miss the array and some exceed its stroke.
-const STUDY: &str = r#"
-question = "What happens to every touch?"
-trials = 6
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 48.0
-stroke_mm = 3.5
-
-[touches]
-offset_x_mm = [-6.0, 0.0, 6.0, 400.0]
-offset_y_mm = [0.0, 10.0]
-yaw_deg = [0.0, 30.0]
-tilt_x_deg = [0.0, 5.0]
-depth_mm = [2.0, 4.0]
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/frames.toml");
 
 #[test]
 fn every_frame_is_its_touch_pressed_alone() {
@@ -288,31 +262,6 @@ fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together
         })
     });
     assert!(has_neighbour);
-}
-
-#[test]
-fn a_drawn_pose_without_a_distance_and_a_distance_without_a_group_are_refused() {
-    for (keys, said) in [
-        (
-            "group_by = \"offset\"\n",
-            "key recognition.group_by_mm: left out, and offset_x is spread uniformly",
-        ),
-        (
-            "group_by = \"pose\"\ngroup_by_mm = 2.0\n",
-            "key recognition.group_by_deg: left out, and yaw is spread uniformly",
-        ),
-        (
-            "group_by_mm = 2.0\n",
-            "key recognition.group_by_mm: 2.0, but no group_by is given",
-        ),
-        (
-            "group_by = \"offset\"\ngroup_by_mm = 0.0\n",
-            "key recognition.group_by_mm: 0; a positive number",
-        ),
-    ] {
-        let error = Study::error(&with_drawn_poses(keys));
-        assert!(error.contains(said), "{error}");
-    }
 }
 
 #[test]

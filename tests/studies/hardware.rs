@@ -12,37 +12,7 @@ use bubbletouch::study::{Plan, StudySpec, sample_frames};
 use rand::Rng;
 use std::fs;
 
-const STUDY: &str = r#"
-question = "What does hardware cost?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 4.0
-taxels = 16
-stroke_mm = 5.0
-
-[touches]
-per_object = 16
-offset_x_mm = { uniform = [-8.0, 8.0] }
-yaw_deg = { uniform = [0.0, 60.0] }
-depth_mm = { uniform = [2.0, 4.0] }
-frames = 2
-speed_mm_per_s = 20.0
-
-[signal]
-SIGNAL
-
-[sensing]
-ensemble = "identity"
-
-[recognition]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/hardware.toml");
 
 /// Returns the study with these keys of `[signal]`. A study without the step `scan` has no speed, which would have no effect.
 fn with_signal(signal: &str) -> String {
@@ -53,19 +23,7 @@ fn with_signal(signal: &str) -> String {
     }
 }
 
-const ALL: &str = r#"
-steps = ["hysteresis", "crosstalk", "scan", "gain", "drift", "noise", "faults", "quantisation"]
-noise_std_full_scale = [0.0, 0.1]
-hysteresis_full_scale = [0.0, 0.2]
-crosstalk = [0.0, 0.4]
-gain_std = [0.0, 0.5]
-drift_std_full_scale = [0.0, 0.1]
-dead_fraction = [0.0, 0.2]
-stuck_fraction = [0.0, 0.1]
-scan_time_ms = [0.0, 40.0]
-adc_bits = [0, 4, 2]
-combine = "one_at_a_time"
-"#;
+const ALL: &str = include_str!("../fixtures/texts/hardware_all.toml");
 
 #[test]
 fn one_at_a_time_scores_what_all_combinations_score_there() {

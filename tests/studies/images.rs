@@ -5,36 +5,8 @@ use bubbletouch::recognition::features::{Cut, Features, ImageFeatures, Workspace
 use bubbletouch::studies::recognition::charts::tables_of;
 use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{Plan, StudySpec};
 
-const STUDY: &str = r#"
-question = "What does a frame's image say?"
-trials = 1
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 96.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 40
-offset_x_mm = { uniform = [-10.0, 10.0] }
-offset_y_mm = { uniform = [-10.0, 10.0] }
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = 3.0
-
-[sensing]
-ensemble = "identity"
-
-[recognition]
-features = ["raw", "fourier_mellin+polar_harmonics+descriptors"]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/images.toml");
 
 /// Returns the accuracies of raw measurements and of joined invariant features.
 fn accuracies(text: &str) -> [f64; 2] {
@@ -92,6 +64,7 @@ fn what_is_learned_for_images_does_not_know_test_touches() {
     let text = STUDY.replace("ensemble = \"identity\"", sensed);
     let text = text.replace("trials = 1", "trials = 2");
     let text = text.replace("per_object = 40", "per_object = 8");
+    let text = text.replace("size_mm = 96.0", "size_mm = 48.0");
     let [set, other] = [0, 1].map(|trial| features(&text, 1, trial));
     // With another split, the same touches have other features, because other touches were used for fitting.
     assert_ne!(set.split.test, other.split.test);
@@ -155,20 +128,6 @@ fn a_depth_changes_no_feature_of_what_is_behind_the_foremost_point() {
         .filter(|pair| is_near(*pair))
         .count();
     assert!((n_near as f64) < 0.9 * shallow.len() as f64);
-}
-
-#[test]
-fn shear_has_no_image() {
-    let shear = "stroke_mm = 5.0\nsensed = \"shear\"";
-    let spec = StudySpec::parse("study.toml", &STUDY.replace("stroke_mm = 5.0", shear)).unwrap();
-    let said = Plan::new("study.toml", spec).unwrap_err().to_string();
-    for words in [
-        "recognition.features",
-        "fourier_mellin",
-        "one value a taxel",
-    ] {
-        assert!(said.contains(words), "{said}");
-    }
 }
 
 /// Tests that images and invariant features of all layouts give the accuracies of the grid. Slightly curved layouts are equivalent.
@@ -268,33 +227,4 @@ fn copies_that_are_tilted_recognise_a_tilt_that_was_never_learned() {
     let accuracies = tables.summary.iter().map(|(_, score)| score.accuracy);
     let [none, copied] = accuracies.collect::<Vec<_>>().try_into().unwrap();
     assert!(copied > none + 0.02, "{none} {copied}");
-}
-
-#[test]
-fn copies_are_of_images_and_their_tilt_belongs_to_them() {
-    for (keys, said) in [
-        (
-            "features = \"raw\"\ntilt_augmentation = 2",
-            "no features of the study are of images",
-        ),
-        (
-            "tilt_augmentation_deg = 2.0",
-            "key recognition.tilt_augmentation_deg: 2.0, but no tilt_augmentation is given",
-        ),
-        (
-            "tilt_augmentation = 2\ntilt_augmentation_deg = 60.0",
-            "above 0, at most 45",
-        ),
-    ] {
-        let text = with_copies(keys);
-        let text = match keys.starts_with("features") {
-            true => text.replace(
-                "features = [\"fourier_mellin+polar_harmonics+descriptors\"]",
-                "",
-            ),
-            false => text,
-        };
-        let error = Study::error(&text);
-        assert!(error.contains(said), "{error}");
-    }
 }

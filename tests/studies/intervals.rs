@@ -4,27 +4,7 @@ use crate::study::Study;
 use bubbletouch::recognition::statistics::interval::Interval;
 use bubbletouch::study::table::{ConfigurationScore, Tables};
 
-const STUDY: &str = r#"
-question = "What is an interval over?"
-[objects]
-sets = ["balls"]
-names = ["golf", "tennis", "baseball"]
-[skin]
-pitch_mm = 4.0
-taxels = 8
-stroke_mm = 5.0
-[touches]
-per_object = 40
-offset_x_mm = { uniform = [-6.0, 6.0] }
-offset_y_mm = { uniform = [-6.0, 6.0] }
-depth_mm = 2.0
-[signal]
-noise_std_full_scale = [0.1, 0.2, 0.3, 0.4]
-[sensing]
-measurements = 16
-[recognition]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/intervals.toml");
 
 fn run(keys: &str) -> Tables {
     let (head, recognition) = keys.split_once('|').unwrap_or((keys, ""));

@@ -15,35 +15,7 @@ use bubbletouch::table::At;
 use bubbletouch::world::{Grid, Patch, Taxel};
 use std::collections::BTreeSet;
 
-const STUDY: &str = r#"
-question = "What holds of every study?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "bowl", "apple", "pear"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 4.0
-taxels = 12
-stroke_mm = 5.0
-
-[touches]
-per_object = 24
-depth_mm = 3.0
-yaw_deg = { uniform = [0.0, 360.0] }
-offset_x_mm = { uniform = [-10.0, 10.0] }
-
-[signal]
-SIGNAL
-
-[sensing]
-SENSING
-
-[recognition]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/laws.toml");
 
 fn study(signal: &str, sensing: &str, recognition: &str) -> String {
     let text = STUDY.replace("SIGNAL", signal).replace("SENSING", sensing);

@@ -9,38 +9,7 @@ use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use glam::DVec3;
 
-const STUDY: &str = r#"
-question = "?"
-trials = 2
-
-[objects]
-sets = ["balls"]
-names = ["golf", "tennis", "baseball"]
-
-[skin]
-pitch_mm = 4.0
-taxels = 8
-stroke_mm = 5.0
-
-[touches]
-per_object = 12
-offset_x_mm = { uniform = [-6.0, 6.0] }
-offset_y_mm = { uniform = [-6.0, 6.0] }
-depth_mm = [2.0, 7.0]
-
-[signal]
-steps = ["crosstalk", "noise", "smoothing"]
-crosstalk = 0.1
-noise_std_full_scale = 0.05
-smoothing_mm = 4.0
-
-[sensing]
-measurements = 16
-
-[recognition]
-classifier = "linear_svm"
-test_fraction = 0.25
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/layouts.toml");
 
 fn study(text: &str) -> RecognitionStudy {
     laid_out(text).unwrap()
@@ -50,10 +19,6 @@ fn with(old: &str, new: &str) -> String {
     let text = STUDY.replace(old, new);
     assert!(text != STUDY, "{old}");
     text
-}
-
-fn refused(text: &str) -> String {
-    laid_out(text).err().expect("it is refused").to_string()
 }
 
 #[test]
@@ -124,43 +89,6 @@ fn frames_are_those_of_the_skin_pressed_by_hand() {
         }
     }
     assert_eq!(row, frames.nrows());
-}
-
-#[test]
-fn what_a_layout_cannot_have_is_refused_by_its_key() {
-    let skin = |keys: &str| with("stroke_mm", &format!("{keys}\nstroke_mm"));
-    let cap = "layout = \"cap\"\ncurvature_radius_mm = 30.0";
-    for (text, expected) in [
-        (
-            skin("layout = \"cap\""),
-            "study.toml, key skin.layout: sphere cap; skin.curvature_radius_mm beside a cylinder or a cap",
-        ),
-        (
-            skin("layout = \"disc\"\ncurvature_radius_mm = 30.0"),
-            "study.toml, key skin.curvature_radius_mm: 30; no such key: the layout is flat",
-        ),
-        (
-            skin("layout = \"cap\"\ncurvature_radius_mm = 3.0"),
-            "study.toml, key skin.curvature_radius_mm, sphere cap: a radius of 3 mm; at least 12.766 mm, where it is half a sphere",
-        ),
-        (
-            skin(cap).replace(
-                "measurements = 16",
-                "measurements = 16\nensemble = \"block_average\"",
-            ),
-            "study.toml, key sensing.ensemble: block average of a sphere cap; ensembles that need no rows and columns",
-        ),
-        (
-            skin(cap).replace("per_object", "speed_mm_per_s = 5.0\nper_object"),
-            "study.toml, key touches.speed_mm_per_s: 5; 0: taxels of a curved layout move at speeds of their own",
-        ),
-    ] {
-        assert_eq!(refused(&text), expected);
-    }
-    let matrix = skin("layout = \"hexagonal\"")
-        .replace("[\"crosstalk\"", "[\"matrix_readout\", \"crosstalk\"")
-        .replace("crosstalk = 0.1", "crosstalk = 0.1\nline_resistance = 0.01");
-    assert!(refused(&matrix).contains("grid"), "{}", refused(&matrix));
 }
 
 #[test]

@@ -40,6 +40,7 @@ mod recorded_sensors;
 mod recorded_subsets;
 mod recorded_tables;
 mod recorded_values;
+mod refusals;
 mod repeatability;
 mod sensor_error_names;
 mod shear;

@@ -1,6 +1,6 @@
 //! Studies within a memory limit.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use crate::study::Study;
 use bubbletouch::kinds::recognition::recognition_scale;
 use std::fs;
@@ -8,74 +8,14 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Study whose touches depend on the preceding touch, so that frames are not read in order.
-const SMALL: &str = r#"
-question = "?"
-trials = 2
-seed = 5
-
-[objects]
-sets = ["balls"]
-
-[skin]
-pitch_mm = [2.0, 4.0]
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 12
-frames = [1, 3]
-offset_x_mm = { uniform = [-6.0, 6.0] }
-offset_y_mm = { uniform = [-6.0, 6.0] }
-depth_mm = { uniform = [1.0, 3.0] }
-
-[signal]
-noise_std_full_scale = [0.0, 0.05]
-hysteresis_full_scale = 0.1
-steps = ["hysteresis", "noise"]
-
-[sensing]
-ensemble = ["sbhe", "gaussian"]
-ratio = [8, 32]
-
-[recognition]
-classifier = ["linear_svm", "k_nearest"]
-c = [0.1, 1.0]
-"#;
+const SMALL: &str = include_str!("../fixtures/texts/memory_small.toml");
 
 /// Study of 3,200 touches with 16,384 taxels; all taxels together would take 210 MB.
-const LARGE: &str = r#"
-question = "?"
-trials = 1
-
-[objects]
-sets = ["balls"]
-
-[skin]
-pitch_mm = 1.0
-taxels = 128
-stroke_mm = 5.0
-
-[touches]
-per_object = 200
-offset_x_mm = { uniform = [-20.0, 20.0] }
-offset_y_mm = { uniform = [-20.0, 20.0] }
-depth_mm = { uniform = [1.0, 3.0] }
-
-[sensing]
-ensemble = "sbhe"
-ratio = [256, 512, 1024]
-
-[recognition]
-classifier = "linear_svm"
-train_touches = 30
-solver_memory_gib = 0.01
-"#;
+const LARGE: &str = include_str!("../fixtures/texts/memory_large.toml");
 
 /// Returns the minimum memory limit of a study, as stated in the error message.
 fn least_gib(case: &Case, study: &str) -> String {
-    let output = case.run(&["plan", study, "--memory-gib", "0.01"]);
-    assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8(output.stderr).unwrap();
+    let said = case.refuses(&["plan", study, "--memory-gib", "0.01"]);
     let (_, after) = said.split_once("at least ").expect("how much it takes");
     let (least, _) = after.split_once(" GiB").expect("a unit");
     // The number is rounded to hundredths.
@@ -117,36 +57,7 @@ fn peak(folder: &Path) -> Option<u64> {
 }
 
 /// Reconstruction study of 40 touches with 4,096 taxels.
-const RECONSTRUCTION: &str = r#"
-question = "?"
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill"]
-
-[skin]
-pitch_mm = 2.0
-size_mm = 128.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 10
-offset_x_mm = { uniform = [-10.0, 10.0] }
-offset_y_mm = { uniform = [-10.0, 10.0] }
-depth_mm = { uniform = [2.0, 4.0] }
-
-[signal]
-noise_std_full_scale = 0.1
-
-[sensing]
-ensemble = "identity"
-ratio = 2
-
-[reconstruction]
-solver = "lmmse"
-dictionary = "dct"
-test_fraction = 0.25
-"#;
+const RECONSTRUCTION: &str = include_str!("../fixtures/texts/memory_reconstruction.toml");
 
 /// Returns the memory that a plan on two threads states, MiB.
 fn planned_mib(case: &Case, study: &str) -> f64 {
@@ -287,41 +198,20 @@ fn a_ceiling_too_low_is_refused_with_what_it_takes() {
     let output = case.run(&["run", "small.toml", "--memory-gib", "0.001"]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("at least 0."), "{said}");
+    says(&said, &["at least 0."]);
     for bad in ["0", "-1", "nan", "inf"] {
-        let output = case.run(&["run", "small.toml", &format!("--memory-gib={bad}")]);
-        assert_eq!(output.status.code(), Some(2), "{bad}");
+        case.refuses(&["run", "small.toml", &format!("--memory-gib={bad}")]);
     }
     assert!(!case.path("results").exists());
 }
 
 /// Study of kinds of human touch, with few frames and few taxels.
-const HUMAN: &str = r#"
-question = "?"
-
-[human_touch]
-per_kind = 8
-frames_hz = 20.0
-duration_s = 4.0
-
-[skin]
-pitch_mm = 8.0
-taxels = 8
-stroke_mm = 4.0
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "k_nearest"
-"#;
+const HUMAN: &str = include_str!("../fixtures/texts/memory_human.toml");
 
 /// Asserts that the command fails as quickly as a plan, with exit code 2 and the given text.
 fn assert_refused_at_once(case: &Case, arguments: &[&str], said: &[&str]) {
     let start = Instant::now();
-    let output = case.run(arguments);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+    let error = case.refuses(arguments);
     assert!(start.elapsed() < Duration::from_secs(10), "{arguments:?}");
     for words in said {
         assert!(error.contains(words), "{arguments:?}: {error}");
@@ -377,7 +267,7 @@ fn a_study_is_planned_in_time_that_grows_as_its_cells_do_and_more_than_a_million
     case.file("large.toml", configurations([250, 200, 1]));
     let start = Instant::now();
     let (said, _) = case.succeeds(&["plan", "large.toml"]);
-    assert!(said.contains("50001, of 50000 configurations"), "{said}");
+    says(&said, &["50001, of 50000 configurations"]);
     // If every group counted all configurations before it, this would take minutes.
     assert!(start.elapsed() < Duration::from_secs(20));
     case.file("huge.toml", configurations([1000, 1001, 1]));

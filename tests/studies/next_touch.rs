@@ -16,57 +16,9 @@ use bubbletouch::study::table::Configuration;
 use ndarray::{Array2, Axis};
 use std::f64::consts::TAU;
 
-const STUDY: &str = r#"
-question = "Where to touch next?"
-trials = 2
+const STUDY: &str = include_str!("../fixtures/texts/next_touch.toml");
 
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 32
-offset_x_mm = { uniform = [-10.0, 10.0] }
-offset_y_mm = 3.0
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = [1.0, 4.0]
-
-[signal]
-noise_std_full_scale = 0.2
-
-[sensing]
-measurements = 16
-
-[recognition]
-classifier = "linear_svm"
-test_fraction = 0.375
-"#;
-
-const HUMAN: &str = r#"
-question = "Which kind of touch is it?"
-
-[human_touch]
-per_kind = 20
-frames_hz = 15.0
-duration_s = 1.0
-
-[skin]
-pitch_mm = 12.0
-taxels = 16
-stroke_mm = 6.0
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-"#;
+const HUMAN: &str = include_str!("../fixtures/texts/next_touch_human.toml");
 
 const ALL: &str = r#"next_touch = ["random", "farthest", "most_informative"]"#;
 

@@ -8,34 +8,7 @@ use bubbletouch::study::table::Tables;
 use bubbletouch::world::Touch;
 
 /// Study with unordered values, so that halves depend on the sizes of values and not on their positions.
-const STUDY: &str = r#"
-question = "Which poses are held out?"
-trials = 8
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 48.0
-stroke_mm = 3.5
-
-[touches]
-offset_x_mm = [6.0, 0.0]
-offset_y_mm = [0.0, 10.0, 5.0]
-yaw_deg = [30.0, 0.0, 40.0, 10.0, 20.0]
-tilt_x_deg = [5.0, 0.0]
-tilt_y_deg = [0.0, 5.0]
-depth_mm = [2.0, 1.0, 3.0]
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/pose_splits.toml");
 
 fn with_split(split: &str) -> String {
     format!("{STUDY}split = \"{split}\"\n")
@@ -154,39 +127,6 @@ fn a_random_split_has_neighbours_of_every_kind_on_both_sides_and_is_what_no_key_
     });
     let [none, random] = [STUDY.to_owned(), with_split("random")].map(|text| Study::new(&text));
     assert_eq!(none.sweep.splits, random.sweep.splits);
-}
-
-#[test]
-fn a_split_that_poses_cannot_make_is_refused() {
-    for (text, said) in [
-        (
-            with_split("half_of_yaws").replace(
-                "yaw_deg = [30.0, 0.0, 40.0, 10.0, 20.0]",
-                "yaw_deg = { uniform = [0.0, 90.0] }\nper_object = 9",
-            ),
-            "key recognition.split: yaw spread uniformly",
-        ),
-        (
-            with_split("unseen_depth").replace("depth_mm = [2.0, 1.0, 3.0]", "depth_mm = 2.0"),
-            "key recognition.split: one depth; at least two",
-        ),
-        (
-            with_split("unseen_tilt") + "group_by = \"yaw\"\n",
-            "key recognition.group_by: given beside split = \"unseen_tilt\"",
-        ),
-        (
-            with_split("unseen_tilt") + "test_fraction = 0.5\n",
-            "key recognition.test_fraction: given beside",
-        ),
-        (
-            with_split("unseen_tilt") + "folds = 2\n",
-            "key recognition.folds: given beside",
-        ),
-        (with_split("unseen"), "unknown variant `unseen`"),
-    ] {
-        let error = Study::error(&text);
-        assert!(error.contains(said), "{error}");
-    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::command::Case;
 use crate::recorded_sensors::{SKIN, planned};
-use crate::study::{Study, small_study};
+use crate::study::Study;
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{write_integers, write_npy};
@@ -12,30 +12,7 @@ use ndarray_npy::{NpzWriter, read_npy};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 
-const STUDY: &str = small_study!(
-    r#"question = "Which touches are recognised as what?"
-trials = 2
-"#,
-    r#"["mug", "banana", "scissors", "bowl"]"#,
-    r#"
-[touches]
-per_object = 24
-offset_x_mm = { uniform = [-10.0, 10.0] }
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = 3.0
-
-[signal]
-noise_std_full_scale = 0.3
-
-[sensing]
-measurements = 6
-
-[recognition]
-classifier = ["linear_svm", "rbf_svm", "nearest_centroid", "naive_bayes", "logistic_regression", "k_nearest", "random_forest"]
-class_imbalance = 3.0
-touches_per_decision = [1, 3]
-"#
-);
+const STUDY: &str = include_str!("../fixtures/texts/predictions.toml");
 
 const REPORT: &str = r#"
 [report]

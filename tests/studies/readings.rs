@@ -1,7 +1,7 @@
 //! Several readings of each training touch, each with its own noise.
 
 use crate::standard_errors::{assert_expected, of_std};
-use crate::study::{laid_out, small_study};
+use crate::study::laid_out;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost};
@@ -10,29 +10,7 @@ use bubbletouch::study::progress::Silent;
 use ndarray::{Axis, s};
 use std::collections::BTreeSet;
 
-const STUDY: &str = small_study!(
-    r#"question = "What does another reading bring?"
-trials = 1
-"#,
-    r#"["mug", "banana", "scissors", "power_drill", "fork", "bowl"]"#,
-    r#"
-[touches]
-per_object = 20
-offset_x_mm = { uniform = [-10.0, 10.0] }
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = 3.0
-
-[signal]
-noise_std_full_scale = 0.1
-
-[sensing]
-ensemble = "identity"
-
-[recognition]
-classifier = "linear_svm"
-c = 0.1
-"#
-);
+const STUDY: &str = include_str!("../fixtures/texts/readings.toml");
 
 fn with(keys: &str) -> String {
     format!("{STUDY}{keys}\n")

@@ -1,6 +1,6 @@
 //! Studies of recorded frames: readings of simulated skins, used as recordings, give the results of the simulated study.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use crate::study::{Study, laid_out};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::sensing::Ensemble;
@@ -10,33 +10,9 @@ use bubbletouch::study::{simulate_array, write_integers, write_npy};
 use ndarray::{Array, Array1, Array4, Dimension};
 use std::path::Path;
 
-const OBJECTS: &str = r#"
-[objects]
-sets = ["balls"]
-names = ["golf", "tennis", "baseball"]
+const OBJECTS: &str = include_str!("../fixtures/texts/recorded_objects.toml");
 
-[touches]
-per_object = 12
-offset_x_mm = { uniform = [-6.0, 6.0] }
-offset_y_mm = { uniform = [-6.0, 6.0] }
-depth_mm = [2.0, 7.0]
-frames = 2
-"#;
-
-const REST: &str = r#"
-[signal]
-steps = ["crosstalk", "noise", "smoothing"]
-crosstalk = 0.1
-noise_std_full_scale = 0.05
-smoothing_mm = 4.0
-
-[sensing]
-measurements = 16
-
-[recognition]
-classifier = "linear_svm"
-test_fraction = 0.25
-"#;
+const REST: &str = include_str!("../fixtures/texts/recorded_rest.toml");
 
 const HEAD: &str = "question = \"?\"\ntrials = 2\n";
 const SKIN: &str = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n";
@@ -246,7 +222,7 @@ fn what_does_not_fit_is_refused_by_its_name() {
     assert!(said("", &grouped).contains("recorded.groups says"));
     let sided = recorded(folder, "", REST).replace("stroke_mm", "taxels = 4\nstroke_mm");
     let sided = laid_out(&sided).err().unwrap().to_string();
-    assert!(sided.contains("key skin.taxels: given"), "{sided}");
+    says(&sided, &["key skin.taxels: given"]);
     write(folder, &frames, &labels[..5]);
     refused("", "labels.npy: 5 values; 6, one a touch");
     write(folder, &frames, &[0; 6]);

@@ -1,30 +1,14 @@
 //! Law: a study of recorded frames of simulated touches gives the results of the simulated study, for any signal.
 
-use crate::command::Case;
+use crate::command::{Case, says, words};
 use bubbletouch::signal::SENSOR_ERRORS;
 use bubbletouch::study::{write_integers, write_npy};
 use ndarray::{Array4, Array5, Axis, concatenate};
 use ndarray_npy::read_npy;
 
-const PRESSED: &str = r#"
-[objects]
-sets = ["balls"]
-names = ["golf", "tennis", "baseball"]
+const PRESSED: &str = include_str!("../fixtures/texts/recorded_law_pressed.toml");
 
-[touches]
-per_object = 6
-offset_x_mm = { uniform = [-6.0, 6.0] }
-offset_y_mm = { uniform = [-6.0, 6.0] }
-depth_mm = { uniform = [1.0, 7.0] }
-"#;
-
-const HUMAN: &str = r#"
-[human_touch]
-kinds = ["tap", "stroke", "grab"]
-per_kind = 5
-frames_hz = 10.0
-duration_s = 2.5
-"#;
+const HUMAN: &str = include_str!("../fixtures/texts/recorded_law_human.toml");
 
 const LEARNED: &str = "[sensing]\nmeasurements = 12\n[recognition]\nclassifier = \"linear_svm\"\n";
 
@@ -44,14 +28,7 @@ fn is_the_same(touched: &str, skin: &str, rest: &str) {
     case.succeeds(&["touches", "study.toml", "--out", "touches"]);
     let tables = std::fs::read_to_string(case.path("touches/recorded.toml")).unwrap();
     case.file("recorded.toml", format!("{head}{tables}\n{rest}"));
-    case.succeeds(&[
-        "run",
-        "recorded.toml",
-        "--objects",
-        "touches",
-        "--out",
-        "recorded",
-    ]);
+    case.succeeds(&words("run recorded.toml --objects touches --out recorded"));
     for name in TABLES {
         let read = |folder: &str| std::fs::read_to_string(case.path(folder).join(name)).ok();
         assert_eq!(
@@ -160,14 +137,7 @@ fn recorded_touches_come_after_others_as_simulated_ones_do() {
     let recorded = "[recorded]\nframes = \"frames.npy\"\nlabels = \"labels.npy\"\nnames = [\"golf\", \"tennis\", \"baseball\"]\nfull_scale = 5e-3\n";
     let skin = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n";
     case.file("recorded.toml", format!("{head}{recorded}{skin}{rest}"));
-    case.succeeds(&[
-        "run",
-        "recorded.toml",
-        "--objects",
-        "touches",
-        "--out",
-        "recorded",
-    ]);
+    case.succeeds(&words("run recorded.toml --objects touches --out recorded"));
     let read =
         |folder: &str| std::fs::read_to_string(case.path(folder).join("accuracy.csv")).unwrap();
     assert_eq!(read("recorded"), read("simulated"));
@@ -176,14 +146,7 @@ fn recorded_touches_come_after_others_as_simulated_ones_do() {
         "fresh.toml",
         format!("{head}{recorded}previous_touch = \"none\"\n{skin}{rest}"),
     );
-    case.succeeds(&[
-        "run",
-        "fresh.toml",
-        "--objects",
-        "touches",
-        "--out",
-        "fresh",
-    ]);
+    case.succeeds(&words("run fresh.toml --objects touches --out fresh"));
     assert_ne!(read("fresh"), read("simulated"));
 }
 
@@ -285,7 +248,7 @@ fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
     );
     let said = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(2), "{said}");
-    assert!(said.contains("key recorded.shear: "), "{said}");
-    assert!(said.contains("skin.sensed = \"shear\""), "{said}");
+    says(&said, &["key recorded.shear: "]);
+    says(&said, &["skin.sensed = \"shear\""]);
     assert!(!case.path("refused").exists());
 }

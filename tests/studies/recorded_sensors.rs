@@ -1,6 +1,6 @@
 //! Recordings whose taxels have positions in a layout file, several sensors that are read together, and touches of unequal length.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use crate::study::laid_out;
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::study::progress::Silent;
@@ -9,7 +9,6 @@ use bubbletouch::study::{write_integers, write_npy};
 use ndarray::{Array2, Array3, Axis, s};
 use ndarray_npy::read_npy;
 use std::fmt::Write as _;
-use std::path::Path;
 
 pub const N: usize = 60;
 
@@ -254,10 +253,7 @@ fn each_sensor_alone_is_a_value_of_an_axis() {
     // In the picture, the sensors are side by side, two pitches apart.
     assert_eq!(array.picture_cells().dim(), (15, 3 * (8 + 2 + 8)));
     let settings = format!("{:?}", study.first().touched.settings());
-    assert!(
-        settings.contains("left (24 taxels), right (40 taxels)"),
-        "{settings}"
-    );
+    says(&settings, &["left (24 taxels), right (40 taxels)"]);
 }
 
 #[test]
@@ -349,10 +345,12 @@ fn touches_of_unequal_length_are_resampled() {
         correct(&scores(&case, &last, &format!("{SKIN}{RAW}")))
     );
     let refused = error(&case, &keys("nan", ""), &rest);
-    assert!(
-        refused.contains("nan.npy: touches of 4 to 7 of 7 frames; ")
-            && refused.contains("recorded.resampled_frames"),
-        "{refused}"
+    says(
+        &refused,
+        &[
+            "nan.npy: touches of 4 to 7 of 7 frames; ",
+            "recorded.resampled_frames",
+        ],
     );
 }
 
@@ -370,10 +368,9 @@ fn sensors_of_other_rates_are_resampled_to_the_same_frames() {
     let order = "order = \"n t c\"\nfull_scale = 2.0";
     let rest = format!("{SKIN}{RAW}");
     let refused = error(&case, &sensors(order, order), &rest);
-    assert!(
-        refused.contains("right.npy: touches of 7 frames; 4, as ")
-            && refused.contains("resampled_frames"),
-        "{refused}"
+    says(
+        &refused,
+        &["right.npy: touches of 7 frames; 4, as ", "resampled_frames"],
     );
     let recorded = format!("resampled_frames = 4\n{}", sensors(order, order));
     let whole =
@@ -386,8 +383,8 @@ fn sensors_of_other_rates_are_resampled_to_the_same_frames() {
 }
 
 /// Each invalid recording gives one sentence with the file or the key.
-#[test]
-fn recordings_that_contradict_themselves_are_refused() {
+/// Creates a folder of recordings, with files that contradict them.
+pub fn contradictory() -> Case {
     let case = written();
     unequal(&case);
     let write = |name: &str, numbers: Vec<f64>| {
@@ -425,210 +422,7 @@ fn recordings_that_contradict_themselves_are_refused() {
     case.file("no_normal.csv", format!("{header}1,2,3,0,0,0\n"));
     case.file("no_column.csv", "x_mm,y_mm,z_mm,nx,ny\n");
     case.file("broken.npz", "PK no archive");
-    let one = |more: &str| format!("{LABELS}frames = \"FOLDER/list.npy\"\n{more}\n");
-    let time = |more: &str| {
-        let keys = "order = \"n t c\"\nresampled_frames = 4";
-        format!("{LABELS}frames = \"FOLDER/nan.npy\"\n{keys}\n{more}\n")
-    };
-    let two = |more: &str, left: &str| format!("{more}\n{}", sensors(left, ""));
-    let rest = format!("{SKIN}{RAW}");
-    for (recorded, words) in [
-        (
-            one("layout = \"FOLDER/few.csv\""),
-            "few.csv: 63 taxels; 64, as ",
-        ),
-        (
-            one("layout = \"FOLDER/metres.csv\""),
-            "metres.csv: taxels 0.004 mm apart; 1.6 to 10 mm at a pitch of 4 mm",
-        ),
-        (
-            one("layout = \"FOLDER/wide.csv\""),
-            "wide.csv: taxels 5 mm apart; the pitch of the skin, 4 mm",
-        ),
-        (
-            one("layout = \"FOLDER/truncated.csv\""),
-            "truncated.csv, line 2",
-        ),
-        (one("layout = \"FOLDER/none.csv\""), "none.csv"),
-        (
-            one("layout = \"FOLDER/list.npy\""),
-            "list.npy: another file; a layout in ",
-        ),
-        (
-            one("sensor = \"left\""),
-            "key recorded.sensor: \"left\"; no such key without [[recorded.sensors]]",
-        ),
-        (
-            LABELS.to_owned(),
-            "key recorded.frames: no such key; frames = ",
-        ),
-        (
-            time("lengths = \"FOLDER/short.npy\""),
-            "short.npy: 59 values; 60, one a touch of ",
-        ),
-        (
-            time("lengths = \"FOLDER/zero.npy\""),
-            "zero.npy, position 0: 0; an integer from 1 to 7",
-        ),
-        (
-            time("lengths = \"FOLDER/half.npy\""),
-            "half.npy, position 0: 3.5; an integer from 1 to 7",
-        ),
-        (
-            time("lengths = \"FOLDER/long.npy\""),
-            "long.npy, position 0: 8; an integer from 1 to 7",
-        ),
-        (
-            time("").replace("nan.npy", "empty.npy"),
-            "empty.npy, touch 5: no reading (NaN in all frames); at least one frame",
-        ),
-        (
-            time("").replace("= 4", "= 0"),
-            "recorded.resampled_frames: 0",
-        ),
-        (
-            two("frames = \"FOLDER/list.npy\"", ""),
-            "key recorded.frames: given beside recorded.sensors",
-        ),
-        (
-            two("zero = 1.0", ""),
-            "key recorded.zero: given beside recorded.sensors",
-        ),
-        (
-            two("sensor = \"thumb\"", ""),
-            "key recorded.sensor: \"thumb\"; all, left, right, or several names, each once: \"left+right\"",
-        ),
-        (
-            two("sensor = \"left+thumb\"", ""),
-            "key recorded.sensor: \"left+thumb\"; all, left, right",
-        ),
-        (
-            two("sensor = \"left+left\"", ""),
-            "key recorded.sensor: \"left+left\"; all, left, right",
-        ),
-        (
-            two("sensor = [\"left\", \"all\"]", ""),
-            "key recorded.sensor: [\"left\", \"all\"]; all, left, right",
-        ),
-        (
-            two("sensor = []", ""),
-            "key recorded.sensor: an empty list; at least one value",
-        ),
-        (
-            two("sensor = 3", ""),
-            "expected the name of a sensor, names joined by `+`, a list of names, or `all`",
-        ),
-        (
-            two("", "groups = \"FOLDER/labels.npy\""),
-            "unknown field `groups`",
-        ),
-        (two("name = \"left\"", ""), "unknown field `name`"),
-        (
-            two("", "pitch_mm = 0.0"),
-            "key recorded.sensors[1].pitch_mm: 0; a positive number",
-        ),
-        (
-            two("", "zero = 2.0\nfull_scale = 2.0"),
-            "key recorded.sensors[1].full_scale: 2; a number other than the zero, 2",
-        ),
-        (
-            two("", "order = \"n q\""),
-            "recorded.sensors[1].order: \"n q\"",
-        ),
-        (
-            two("", "grid = [5, 5]"),
-            "recorded.sensors[1].grid: 5 × 5 taxels",
-        ),
-        (
-            two("", "frames_test = \"FOLDER/left.npy\""),
-            "key recorded.sensors[2].frames_test: no such key",
-        ),
-        (
-            two("", "").replace("\"left\"", "\"right\""),
-            "key recorded.sensors[2].name: \"right\"; a name that no other sensor has",
-        ),
-        (
-            two("", "").replace("\"left\"", "\"all\""),
-            "key recorded.sensors[1].name: \"all\"",
-        ),
-        (
-            two("", "").replace("right.npy", "fewer.npy"),
-            "fewer.npy: 59 touches; 60, as ",
-        ),
-        (
-            two("", "").replace("left.npy", "truncated.npy"),
-            "truncated.npy",
-        ),
-        (two("", "").replace("left.npy", "none.npy"), "none.npy"),
-        (
-            two("", "").replace("left.npy", "texts.csv"),
-            "texts.csv, line 1: `a`; numbers",
-        ),
-        (
-            two("", "").replace("left.npy", "one_nan.npy"),
-            "one_nan.npy, frame 7, taxel 3: NaN; a finite number",
-        ),
-        (
-            two("", "zero = \"FOLDER/long.npy\""),
-            "long.npy: an array of shape [60]; shape [24], one number for each taxel",
-        ),
-        (
-            time("lengths = \"FOLDER/texts.csv\""),
-            "texts.csv, line 1: `a`; numbers",
-        ),
-        (
-            time("lengths = \"FOLDER/nan_length.npy\""),
-            "nan_length.npy, position 0: NaN; an integer from 1 to 7",
-        ),
-        (
-            one("layout = \"FOLDER/nan.csv\""),
-            "nan.csv, line 3, column x_mm",
-        ),
-        (
-            one("layout = \"FOLDER/no_normal.csv\""),
-            "no_normal.csv, row 2: normal [0, 0, 0]",
-        ),
-        (
-            one("layout = \"FOLDER/no_column.csv\""),
-            "no_column.csv, line 1: no column nz",
-        ),
-        (
-            one("layout = \"FOLDER/broken.npz\""),
-            "broken.npz: no archive; a .npz file",
-        ),
-    ] {
-        let said = error(&case, &recorded, &rest);
-        assert!(said.contains(words), "{said}\ndoes not say {words}");
-    }
-    let shear = rest.replace("[skin]\n", "[skin]\nsensed = \"shear\"\n");
-    assert!(
-        error(&case, &two("", ""), &shear)
-            .contains("key recorded.sensors: sensors that read shear")
-    );
-    // Positions are needed for steps between neighbours, and all sensors need them.
-    let coupled = format!("{SKIN}{COUPLED}{RAW}");
-    assert!(error(&case, &two("", "grid = [3, 8]"), &coupled).contains("taxels without a layout"));
-    let tilted = format!("{SKIN}{IMAGES}tilt_augmentation = 2\n");
-    let grids = sensors("grid = [3, 8]", "grid = [5, 8]");
-    assert!(
-        error(&case, &grids, &tilted).contains("tilted copies of 2 sensors (left 24, right 40)")
-    );
-    // Beside a single row of taxels, the distance of neighbours is undefined.
-    let leaky = format!("{SKIN}[signal]\nsteps = [\"crosstalk\"]\ncrosstalk = 0.2\n{RAW}");
-    let columns = sensors("grid = [24, 1]", "grid = [5, 8]");
-    let said = error(&case, &columns, &leaky);
-    assert!(
-        said.contains("\"crosstalk\" of sensors of which one has a single row"),
-        "{said}"
-    );
-    assert!(planned(&case, &grids, &leaky).is_ok());
-    assert!(planned(&case, &format!("sensor = \"left\"\n{columns}"), &leaky).is_ok());
-    let named = format!("{SKIN}layout = \"hexagonal\"\ntaxels = 8\n{RAW}");
-    assert!(
-        error(&case, &grids, &named)
-            .contains("key skin.layout: given; no such key beside recorded.sensors")
-    );
-    assert!(!Path::new("recorded").exists());
+    case
 }
 
 /// An audit checks one sensor, because its checks compare the readings of taxels.
@@ -653,10 +447,13 @@ fn an_audit_is_of_one_sensor() {
     };
     let audit = ["audit", ".", "--out", "checked", "--permutations", "399"];
     case.file("recorded.toml", recorded(""));
-    let refused = case.run(&audit);
-    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert_eq!(refused.status.code(), Some(2), "{said}");
-    assert!(said.contains("recorded.toml, key recorded.sensors: 2 sensors; one sensor: its name in recorded.sensor"), "{said}");
+    let said = case.refuses(&audit);
+    says(
+        &said,
+        &[
+            "recorded.toml, key recorded.sensors: 2 sensors; one sensor: its name in recorded.sensor",
+        ],
+    );
     case.file("recorded.toml", recorded("sensor = \"right\""));
     let (said, _) = case.succeeds(&audit);
     let alone = [
@@ -723,7 +520,7 @@ fn several_values_at_a_position_have_an_image_each() {
     );
     let wrong = keys("last").replace("places.csv", "few.csv");
     let said = error(&case, &wrong, &rest);
-    assert!(said.contains("few.csv: 31 taxels; 64, as "), "{said}");
+    says(&said, &["few.csv: 31 taxels; 64, as "]);
 }
 
 /// Law: the taxels of a simulated recording, divided into two sensors and joined again, give the rows of the whole recording.
@@ -803,8 +600,8 @@ fn sensors_may_have_a_given_test_set() {
     assert_eq!(rows(&case, &format!("{test}{archived}"), &rest), expected);
     let one = format!("{test}{}", sensors(&own("left"), scale));
     let said = error(&case, &one, &rest);
-    assert!(
-        said.contains("key recorded.sensors[2].frames_test: no such key; frames of the test set"),
-        "{said}"
+    says(
+        &said,
+        &["key recorded.sensors[2].frames_test: no such key; frames of the test set"],
     );
 }

@@ -1,6 +1,6 @@
 //! Subsets of the sensors of a recording, and recordings that move to another folder.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use crate::recorded_sensors::{LABELS, N, NOISE, RAW, SKIN, planned, rows, scores, written};
 use bubbletouch::study::table::TrialScore;
 use bubbletouch::study::write_npy;
@@ -56,10 +56,7 @@ fn two_of_three_sensors_give_the_rows_of_the_two_joined_by_hand() {
     for choice in &choices[1..4] {
         let study = planned(&case, &format!("sensor = {choice}\n{recorded}"), &rest).unwrap();
         let settings = format!("{:?}", study.first().touched.settings());
-        assert!(
-            settings.contains("palm (24 taxels), thumb (24 taxels)"),
-            "{settings}"
-        );
+        says(&settings, &["palm (24 taxels), thumb (24 taxels)"]);
     }
 }
 
@@ -150,6 +147,6 @@ fn a_run_goes_on_after_its_recording_has_moved() {
     let output = run(study("moved/frames.npy", "moved/classes.npy", ""));
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("object recorded.frames: was "), "{said}");
+    says(&said, &["object recorded.frames: was "]);
     assert_eq!(tables(), table);
 }

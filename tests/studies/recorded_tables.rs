@@ -1,6 +1,6 @@
 //! Tables of recorded frames as pandas, spreadsheets and loggers write them: each reader finds the same readings, or refuses the table with one sentence.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use crate::study::laid_out;
 use bubbletouch::audit::{AuditData, AuditFiles};
 use bubbletouch::study::progress::Silent;
@@ -385,10 +385,7 @@ fn labels_of_pandas_are_the_same_classes_and_a_number_for_each_touch_is_no_index
     };
     let said = audited_with(&case, "plain.csv", given).unwrap_err();
     let said = said.to_string();
-    assert!(
-        said.contains("few.csv: 29 values; 30, one a touch of"),
-        "{said}"
-    );
+    says(&said, &["few.csv: 29 values; 30, one a touch of"]);
 }
 
 #[test]
@@ -404,11 +401,11 @@ fn columns_of_several_kinds_are_refused_with_the_choice() {
         calibrated(&case, "log.csv", None).err().unwrap(),
     ] {
         let said = said.to_string();
-        assert!(
-            said.contains(&format!(
+        says(
+            &said,
+            &[&format!(
                 "{words}--columns \"s*\", or --columns \"*\" for all"
-            )),
-            "{said}"
+            )],
         );
     }
     let labels = key(&case, "labels", "labels.npy");
@@ -416,19 +413,19 @@ fn columns_of_several_kinds_are_refused_with_the_choice() {
     let said = studied(&(frames.clone() + &labels))
         .unwrap_err()
         .to_string();
-    assert!(
-        said.contains(&format!(
+    says(
+        &said,
+        &[&format!(
             "{words}recorded.columns = \"s*\", or recorded.columns = \"*\" for all"
-        )),
-        "{said}"
+        )],
     );
     for columns in ["s*", "s#", "s0,s1,s2,s3", "s0, s1, s2, s3", "*s*[0-9]"] {
         let found = audited(&case, "log.csv", Some(columns));
         if columns.contains('[') {
             let said = found.err().unwrap().to_string();
-            assert!(
-                said.contains("no column `*s*[0-9]`; patterns of `time_s`, `s*` (4)"),
-                "{said}"
+            says(
+                &said,
+                &["no column `*s*[0-9]`; patterns of `time_s`, `s*` (4)"],
             );
             continue;
         }
@@ -479,9 +476,9 @@ fn columns_of_several_kinds_are_refused_with_the_choice() {
         .err()
         .unwrap()
         .to_string();
-    assert!(
-        said.contains("`#` (4), `object`; those that are readings, such as --columns \"#\""),
-        "{said}"
+    says(
+        &said,
+        &["`#` (4), `object`; those that are readings, such as --columns \"#\""],
     );
     assert_eq!(
         audited(&case, "numbered.csv", Some("#")).unwrap().frames,
@@ -492,17 +489,17 @@ fn columns_of_several_kinds_are_refused_with_the_choice() {
         .err()
         .unwrap()
         .to_string();
-    assert!(
-        said.contains("--columns \"s*\" beside an array without names of columns; a table"),
-        "{said}"
+    says(
+        &said,
+        &["--columns \"s*\" beside an array without names of columns; a table"],
     );
     let said = audited(&case, "plain.csv", Some("s*"))
         .err()
         .unwrap()
         .to_string();
-    assert!(
-        said.contains("--columns \"s*\" for a table without names of columns; a first line"),
-        "{said}"
+    says(
+        &said,
+        &["--columns \"s*\" for a table without names of columns; a first line"],
     );
 }
 

@@ -1,6 +1,6 @@
 //! Recordings with several values per taxel on a grid, such as three axes of force.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use crate::recorded_sensors::{
     COUPLED, IMAGES, LABELS, N, NOISE, RAW, SKIN, error, planned, rows, written,
 };
@@ -188,9 +188,11 @@ fn recordings_with_several_values_that_do_not_fit_are_refused() {
         &keys("last", "order = \"n y x c\""),
         &measured_by("block_average", 1),
     );
-    assert!(
-        said.contains("key sensing.measurements: 1 measurements of 2 images; at least 2, one for each kind of value"),
-        "{said}"
+    says(
+        &said,
+        &[
+            "key sensing.measurements: 1 measurements of 2 images; at least 2, one for each kind of value",
+        ],
     );
     let rest = format!("{SKIN}{RAW}");
     let tested = |test: &str| {
@@ -206,22 +208,24 @@ fn recordings_with_several_values_that_do_not_fit_are_refused() {
     .unwrap();
     assert!(planned(&case, &tested("first_test"), &rest).is_ok());
     let said = error(&case, &tested("swapped_test"), &rest);
-    assert!(said.contains("touches of 1 frames of 2 × 8 taxels of 4 values; touches of 1 frames of 4 × 8 taxels of 2 values, as "), "{said}");
+    says(
+        &said,
+        &[
+            "touches of 1 frames of 2 × 8 taxels of 4 values; touches of 1 frames of 4 × 8 taxels of 2 values, as ",
+        ],
+    );
     let said = error(
         &case,
         &keys("flat", "order = \"n c c\"\ngrid = [5, 8]"),
         &rest,
     );
-    assert!(
-        said.contains("5 × 8 taxels; rows and columns of the 64 taxels of "),
-        "{said}"
+    says(
+        &said,
+        &["5 × 8 taxels; rows and columns of the 64 taxels of "],
     );
     let shear = format!("{SKIN}sensed = \"shear\"\n{RAW}");
     let said = error(&case, &keys("last", "order = \"n y x c\""), &shear);
-    assert!(
-        said.contains("with 2 values a taxel; 3, as skin.sensed says"),
-        "{said}"
-    );
+    says(&said, &["with 2 values a taxel; 3, as skin.sensed says"]);
     let said = String::from_utf8(
         case.run(&[
             "calibrate",
@@ -236,9 +240,9 @@ fn recordings_with_several_values_that_do_not_fit_are_refused() {
         .stderr,
     )
     .unwrap();
-    assert!(
-        said.contains("last.npy: 2 values a taxel; frames of a grid of taxels with one value each"),
-        "{said}"
+    says(
+        &said,
+        &["last.npy: 2 values a taxel; frames of a grid of taxels with one value each"],
     );
 }
 

@@ -2,7 +2,7 @@
 
 use crate::command::Case;
 use crate::kinds::Kind;
-use crate::study::{Study, small_study, trials_of};
+use crate::study::{Study, trials_of};
 use bubbletouch::study::{sample_frames, simulate_array};
 use std::fs;
 
@@ -30,32 +30,7 @@ fn another_seed_is_another_experiment_and_the_study_that_it_wrote_down_repeats_i
 }
 
 /// Study with one configuration per ensemble; the tests add values to its axes.
-const NARROW: &str = small_study!(
-    r#"question = "What does a configuration depend on?"
-trials = 2
-"#,
-    r#"["mug", "banana", "scissors", "power_drill"]"#,
-    r#"
-[touches]
-per_object = 24
-offset_x_mm = { uniform = [-10.0, 10.0] }
-yaw_deg = { uniform = [0.0, 40.0] }
-depth_mm = { uniform = [2.0, 4.0] }
-
-[signal]
-noise_std_full_scale = 0.2
-smoothing_mm = 4.0
-
-[sensing]
-ensemble = "ENSEMBLE"
-ratio = 16
-
-[recognition]
-classifier = "linear_svm"
-c = 1.0
-train_touches = 12
-"#
-);
+const NARROW: &str = include_str!("../fixtures/texts/repeatability.toml");
 
 #[test]
 fn a_cell_does_not_depend_on_the_other_cells_of_its_study() {

@@ -9,40 +9,7 @@ use bubbletouch::world::{Shear, Shears};
 use glam::{DVec2, DVec3};
 use ndarray::{Array2, Array3, Array4, s};
 
-const STUDY: &str = r#"
-question = "?"
-
-[objects]
-sets = ["balls"]
-names = ["golf", "tennis", "baseball"]
-
-[skin]
-pitch_mm = 4.0
-taxels = 8
-stroke_mm = 5.0
-stiffness_n_per_m = 200.0
-sensed = "shear"
-friction = 0.4
-shear_stiffness_n_per_m = 300.0
-
-[touches]
-per_object = 12
-offset_x_mm = { uniform = [-6.0, 6.0] }
-offset_y_mm = { uniform = [-6.0, 6.0] }
-depth_mm = [2.0, 7.0]
-slide_mm = 3.0
-slide_deg = 30.0
-
-[signal]
-noise_std_full_scale = 0.05
-
-[sensing]
-ensemble = "identity"
-
-[recognition]
-classifier = "linear_svm"
-test_fraction = 0.25
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/shear.toml");
 
 const N_TAXELS: usize = 64;
 
@@ -183,51 +150,6 @@ fn what_is_sensed_is_an_axis() {
     };
     // A force is a deflection in another unit.
     assert_eq!(scores(0), scores(1));
-}
-
-#[test]
-fn what_contradicts_itself_is_refused_by_its_key() {
-    for (text, expected) in [
-        (
-            with("friction = 0.4\n", ""),
-            "study.toml, key skin.sensed: shear; skin.friction beside it",
-        ),
-        (
-            with("\"shear\"", "\"force\""),
-            "study.toml, key skin.friction: 0.4, but the skin reads no shear; skin.sensed = \"shear\" beside it, or no such key",
-        ),
-        (
-            with("slide_mm = 3.0\n", ""),
-            "study.toml, key touches.slide_deg: 30, but touches do not slide; touches.slide_mm above 0 beside it, or no such key",
-        ),
-        (
-            with("slide_mm = 3.0\nslide_deg = 30.0\n", ""),
-            "study.toml, key skin.friction: 0.4, but tips stay where they first touch; a touches.slide_mm above 0 or a curved skin.layout beside it",
-        ),
-        (
-            with("per_object", "speed_mm_per_s = 5.0\nper_object"),
-            "study.toml, key touches.speed_mm_per_s: 5; 0 where skin.sensed is shear, and where touches slide",
-        ),
-        (
-            with("[signal]", "[signal]\nsteps = [\"force\", \"noise\"]"),
-            "study.toml, key signal.steps: force; no such step where skin.sensed is a force from the first step on",
-        ),
-        (
-            with("noise_std_full_scale", "noise_std_mm"),
-            "study.toml, key signal.noise_std_mm: millimetres of noise on a force; noise_std_n or noise_std_full_scale, or noise before force in signal.steps",
-        ),
-        (
-            with("friction = 0.4", "friction = -0.4"),
-            "study.toml, key skin.friction: -0.4; zero or a positive number, at least 1e-12",
-        ),
-    ] {
-        assert_eq!(Study::error(&text), expected);
-    }
-    let matrix = with(
-        "noise_std_full_scale = 0.05",
-        "steps = [\"matrix_readout\"]\nline_resistance = 0.01",
-    );
-    assert!(Study::error(&matrix).contains("a resistance has no sign"));
 }
 
 #[test]

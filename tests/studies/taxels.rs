@@ -9,46 +9,12 @@ use bubbletouch::study::progress::Silent;
 use ndarray::Axis;
 use std::collections::BTreeSet;
 
-const STUDY: &str = r#"
-question = "How many taxels, where, and read how?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 96.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 30
-offset_x_mm = { uniform = [-10.0, 10.0] }
-offset_y_mm = { uniform = [-10.0, 10.0] }
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = 3.0
-
-[signal]
-noise_std_full_scale = 0.05
-
-[sensing]
-ensemble = "selected"
-measurements = [8, 24]
-
-[recognition]
-classifier = "linear_svm"
-"#;
+const STUDY: &str = include_str!("../fixtures/texts/taxels.toml");
 
 fn features(text: &str, configuration: usize, trial: usize) -> FeatureSet {
     let study = laid_out(text).unwrap();
     let part = study.first();
     part.features((configuration, trial), &Silent).unwrap()
-}
-
-fn error(text: &str) -> String {
-    laid_out(text).err().expect("refused").to_string()
 }
 
 #[test]
@@ -176,27 +142,6 @@ fn a_selection_at_random_gives_the_rows_of_a_subsample() {
     let random = features(&STUDY.replace("ensemble = \"selected\"", random), 1, 0);
     let drawn = features(&STUDY.replace("\"selected\"", "\"subsample\""), 1, 0);
     assert_eq!(random.data.records, drawn.data.records);
-}
-
-#[test]
-fn more_taxels_can_be_selected_than_there_are_training_touches_but_not_by_pivots() {
-    let text = STUDY.replace("per_object = 30", "per_object = 4");
-    assert!(laid_out(&text).is_ok());
-    let pivots = "ensemble = \"selected\"\nselection = \"pivoted_qr\"";
-    let message = error(&text.replace("ensemble = \"selected\"", pivots));
-    assert!(message.contains("key sensing.measurements"), "{message}");
-}
-
-#[test]
-fn keys_that_contradict_a_selection_are_refused() {
-    let drawn = "ensemble = \"gaussian\"\nselection = \"random\"";
-    let message = error(&STUDY.replace("ensemble = \"selected\"", drawn));
-    assert!(
-        message.contains("no ensemble of the study selects"),
-        "{message}"
-    );
-    let message = error(&STUDY.replace("measurements =", "readings_per_s = 0.0\nmeasurements ="));
-    assert!(message.contains("sensing.readings_per_s"), "{message}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Studies whose test touches differ from the training touches: `[test]`, and axes one at a time.
 
-use crate::study::{self, Study};
-use bubbletouch::Result;
+use crate::command::filled;
+use crate::study;
 use bubbletouch::kinds::Study as _;
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::report::folder::{table_files, write_files};
@@ -12,32 +12,9 @@ use bubbletouch::table::{Role, Table};
 
 /// Returns a study of three objects on a training skin without faults. `touches` and `signal` are additional keys of these tables.
 fn text(touches: &str, signal: &str, more: &str) -> String {
-    format!(
-        r#"
-question = "?"
-trials = 2
-[objects]
-sets = ["household"]
-names = ["mug", "soup_can", "dice"]
-surface_error_mm = 0.5
-[skin]
-pitch_mm = 4.0
-taxels = 8
-stroke_mm = 5.0
-[touches]
-per_object = 24
-offset_x_mm = {{ uniform = [-6.0, 6.0] }}
-yaw_deg = {{ within = 20.0 }}
-{touches}
-[signal]
-{signal}
-[sensing]
-measurements = 16
-[recognition]
-classifier = "k_nearest"
-test_fraction = 0.25
-{more}
-"#
+    filled(
+        include_str!("../fixtures/texts/test_touches_text.toml"),
+        &[("touches", &touches), ("signal", &signal), ("more", &more)],
     )
 }
 
@@ -50,13 +27,6 @@ fn base(more: &str) -> String {
 
 fn run(text: &str) -> Tables {
     study::laid_out(text).unwrap().run(&Silent).unwrap()
-}
-
-fn refused(text: &str) -> String {
-    let study: Result<RecognitionStudy> = study::laid_out(text);
-    let error = study.map(|_| ()).expect_err("it is refused");
-    assert_eq!(error.exit_code(), 2);
-    error.to_string()
 }
 
 fn accuracies(tables: &Tables) -> Vec<f64> {
@@ -206,13 +176,7 @@ fn assert_reads_back(study: &RecognitionStudy, made: &[Table]) {
     }
 }
 
-const ONE_AT_A_TIME: &str = r#"
-[axes]
-combine = "one_at_a_time"
-"test.touches.offset_{x,y}_mm.within" = [0.0, 6.0, 40.0]
-"signal.noise_std_full_scale" = [0.01, 0.2, 2.0]
-"touches.depth_mm" = [1.0, 2, 4.0]
-"#;
+const ONE_AT_A_TIME: &str = include_str!("../fixtures/texts/test_touches_one_at_a_time.toml");
 
 #[test]
 fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
@@ -280,71 +244,4 @@ fn another_axis_or_value_leaves_the_names_of_what_was_done() {
         plain.iter().all(|name| one.contains(name)),
         "the study as it is"
     );
-}
-
-#[test]
-fn what_test_touches_cannot_have_is_refused_by_its_key() {
-    for (test, wanted) in [
-        ("touches.dept_mm = 1.0", "key test: unknown field `dept_mm`"),
-        ("touches.depth_mm = -1.0", "key test.touches.depth_mm: -1;"),
-        ("touches.per_object = 5", "key test.touches.per_object: 5;"),
-        ("touches.frames = 3", "key test.touches.frames: 3;"),
-        (
-            "sensing.ratio = 4.0",
-            "key test.sensing: given for test touches;",
-        ),
-        (
-            "recognition.c = 4.0",
-            "key test.recognition: given for test touches;",
-        ),
-        ("depth_mm = 1.0", "key test.depth_mm: 1.0; a table:"),
-        (
-            "skin.taxels = 9",
-            "key test.skin: 9 x 9 taxels; the taxels that are learned, 8 x 8",
-        ),
-        (
-            "signal.dead_fraction = 0.1",
-            "no \"faults\", but signal.dead_fraction is given; \"faults\" among the steps",
-        ),
-        (
-            "signal.noise_std_full_scale = [0.1, 0.2]",
-            "key test.signal.noise_std_full_scale: a list of 2 values; one value, or several as an axis",
-        ),
-        (
-            "objects.names = [\"mug\", \"dice\"]",
-            "key test: touches: 24 of dice, 24 of mug;",
-        ),
-        (
-            "touches.offset_x_mm = [0.0, 1.0]\ntouches.yaw_deg.within = -3.0",
-            "key test.touches.yaw_deg: -3;",
-        ),
-    ] {
-        let said = refused(&base(&format!("[test]\n{test}")));
-        assert!(said.contains(wanted), "{said}\nis not\n{wanted}");
-    }
-    let chosen =
-        "touches_per_decision = 2\nnext_touch = \"farthest\"\n[test]\ntouches.depth_mm = 1.0";
-    let said = refused(&base(chosen));
-    assert!(
-        said.contains("key test.touches: given where touches are chosen"),
-        "{said}"
-    );
-    for (axes, wanted) in [
-        (
-            "combine = \"one_at_a_time\"\n\"signal.smoothing_mm\" = [1.0, 2.0]",
-            "axes.\"signal.smoothing_mm\": none or several values in its table; one value",
-        ),
-        ("combine = \"some\"", "unknown variant `some`"),
-        (
-            "\"test.touches.depth_mm\" = [1.0, -1.0]",
-            "axes.\"test.touches.depth_mm\": test.touches.depth_mm = -1.0; key test.touches.depth_mm",
-        ),
-        ("\"touches.tilt_{x,_deg\" = [1.0, 2.0]", "no path"),
-    ] {
-        let said = refused(&base(&format!("[axes]\n{axes}")));
-        assert!(said.contains(wanted), "{said}\nis not\n{wanted}");
-    }
-    // A plan with test touches also contains the training touches.
-    let test = base("[test]\ntouches.depth_mm = 1.0");
-    assert!(std::panic::catch_unwind(|| Study::new(&test).of_items()).is_err());
 }

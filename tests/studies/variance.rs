@@ -4,7 +4,6 @@ use crate::study::Study;
 use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::table::{Configuration, PStatus, Source, Tables, TrialScore, Variance};
-use bubbletouch::study::{Plan, StudySpec};
 use std::path::Path;
 
 /// Returns a study of three objects that are hard to distinguish, with few measurements.
@@ -159,38 +158,4 @@ fn the_table_is_written_only_where_it_has_rows_and_is_read_again() {
         !header.lines().next().unwrap().contains("split"),
         "{header}"
     );
-}
-
-#[test]
-fn trials_that_do_not_come_out_even_are_refused() {
-    let refused = |repeats: &str, folds: &str, words: &str| {
-        let text = text(repeats, r#""gaussian""#, 0.0) + folds;
-        let spec = StudySpec::parse("study.toml", &text).unwrap();
-        let error = Plan::new("study.toml", spec).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        assert!(error.to_string().contains(words), "{error}");
-    };
-    refused("trials = 6\nprojections_per_split = 1", "", "at least 2");
-    refused("trials = 6\nprojections_per_split = 0", "", "at least 2");
-    refused(
-        "trials = 7\nprojections_per_split = 3",
-        "",
-        "a multiple of projections_per_split = 3",
-    );
-    refused(
-        "trials = 3\nprojections_per_split = 3",
-        "",
-        "at least 2 splits",
-    );
-    refused(
-        "trials = 12\nprojections_per_split = 3",
-        "folds = 3",
-        "folds = 3",
-    );
-    let spec = text(
-        "trials = 18\nprojections_per_split = 3",
-        r#""gaussian""#,
-        0.0,
-    ) + "folds = 3";
-    assert!(Plan::new("study.toml", StudySpec::parse("study.toml", &spec).unwrap()).is_ok());
 }

@@ -1,5 +1,6 @@
 //! Pictures: every configuration is drawn, every frame is readable, and names are only text.
 
+use crate::command::says;
 use crate::report_synthetic::{configuration, many_cells, noise_cells, quickstart_cells, tables};
 use bubbletouch::report::chart::{draw, places};
 use bubbletouch::report::colours::heat;
@@ -204,11 +205,9 @@ fn a_pressure_map_in_plain_letters() {
 +------------------------+
 ";
     assert!(drawn.starts_with(expected), "{drawn}");
-    assert!(
-        drawn.contains(
-            "12 × 6 taxels, pitch 2 mm; peak deflection 3.8 mm at x 3 mm, y 1 mm; 24 of 72"
-        ),
-        "{drawn}"
+    says(
+        &drawn,
+        &["12 × 6 taxels, pitch 2 mm; peak deflection 3.8 mm at x 3 mm, y 1 mm; 24 of 72"],
     );
 }
 

@@ -1,50 +1,15 @@
 //! Reconstruction study: from its file to its tables and pictures.
 
-use crate::command::Case;
-use bubbletouch::kinds;
+use crate::command::{Case, says};
 use bubbletouch::kinds::reconstruction::rows::{
     EnsembleStatistics, ReconstructionConfiguration, ReconstructionPareto, ReconstructionScore,
     ReconstructionTime,
 };
-use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::report::csv_tables::read_rows;
 use bubbletouch::sensing::{Basis, Ensemble, Solver};
 use std::fs;
 
-const SMALL: &str = r#"
-question = "What comes back?"
-seed = 7
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 4.0
-taxels = 16
-stroke_mm = 5.0
-
-[touches]
-per_object = 30
-offset_x_mm = { uniform = [-8.0, 8.0] }
-yaw_deg = { uniform = [0.0, 40.0] }
-depth_mm = { uniform = [2.0, 4.0] }
-
-[signal]
-noise_std_full_scale = [0.0, 0.1]
-
-[sensing]
-ensemble = ["sbhe", "block_average", "identity"]
-ratio = [4, 16]
-
-[reconstruction]
-solver = ["omp", "l1", "lmmse"]
-dictionary = ["dct", "haar", "pca"]
-atoms = 40
-isometry_sparsity = [4, 8]
-isometry_subsets = 30
-"#;
+const SMALL: &str = include_str!("../../fixtures/texts/reconstruction_small.toml");
 
 fn rows<T: serde::de::DeserializeOwned>(case: &Case, name: &str) -> Vec<T> {
     read_rows(&case.path(name)).unwrap()
@@ -144,83 +109,5 @@ fn the_tables_hold_every_cell_and_the_written_study_gives_them_again() {
     let first = page.split("id=\"chart-").nth(1).unwrap();
     assert!(first.starts_with("error_by_time"));
     let (said, _) = case.succeeds(&["advise", "1", "--reach", "0.9"]);
-    assert!(said.contains("error"), "{said}");
-}
-
-#[test]
-fn a_study_says_which_kind_it_is_and_other_commands_say_what_they_take() {
-    assert_eq!(kinds::about(SMALL).unwrap().table, "reconstruction");
-    assert!(kinds::about("question = 1").is_none());
-    assert!(kinds::about("not TOML [").is_none());
-    let case = Case::new();
-    case.file("study.toml", SMALL);
-    let output = case.run(&["touches", "study.toml", "--out", "touches"]);
-    assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("a study that reconstructs frames"), "{said}");
-}
-
-#[test]
-fn keys_out_of_range_are_named() {
-    for (old, new, said) in [
-        (
-            "pitch_mm = 4.0",
-            "pitch_mm = [4.0, 8.0]",
-            "key skin: 2 arrays",
-        ),
-        ("taxels = 16", "taxels = 12", "12 × 12 taxels"),
-        (
-            "full_scale = [0.0, 0.1]",
-            "full_scale = 0.1\nsmoothing_mm = 4.0",
-            "no smoothing",
-        ),
-        (
-            "full_scale = [0.0, 0.1]",
-            "full_scale = 0.1\nsteps = [\"noise\", \"force\"]",
-            "force after noise",
-        ),
-        (
-            "\"sbhe\"",
-            "\"principal_components\"",
-            "key sensing.ensemble: principal components",
-        ),
-        ("atoms = 40", "atoms = 0", "key reconstruction.atoms: 0"),
-        (
-            "atoms = 40",
-            "most_atoms = 0",
-            "key reconstruction.most_atoms: 0",
-        ),
-        (
-            "atoms = 40",
-            "lambda_scale = 0.0",
-            "key reconstruction.lambda_scale: 0",
-        ),
-        (
-            "atoms = 40",
-            "test_fraction = 1.0",
-            "key reconstruction.test_fraction: 1",
-        ),
-        (
-            "subsets = 30",
-            "subsets = 0",
-            "key reconstruction.isometry_subsets: 0",
-        ),
-        (
-            "sparsity = [4, 8]",
-            "sparsity = []",
-            "key reconstruction.isometry_sparsity",
-        ),
-        ("[\"omp\", \"l1\", \"lmmse\"]", "\"magic\"", "magic"),
-        ("\"dct\", \"haar\"", "\"dct\", \"dct\"", "twice"),
-    ] {
-        assert!(SMALL.contains(old), "{old}");
-        let text = SMALL.replace(old, new);
-        let plan = ReconstructionStudySpec::parse("study.toml", &text)
-            .and_then(|spec| ReconstructionPlan::new("study.toml", spec));
-        let error = plan.unwrap_err().to_string();
-        assert!(
-            error.contains(said) && error.starts_with("study.toml"),
-            "{error}"
-        );
-    }
+    says(&said, &["error"]);
 }
