@@ -43,7 +43,7 @@ pub(super) fn answers(tables: &[Table]) -> Vec<String> {
         let key = |row: usize| (number("measurements")(row), error(row));
         let row = as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"))?;
         Some(format!(
-            "With {}, {} measurements are as good as the noisy frame itself (error {:.2}): error {}.",
+            "With {}, {} measurements are at least as good as the noisy frame itself (error {:.2}): error {}.",
             noise_words(configurations, row),
             configurations.words("measurements", row),
             full(row),

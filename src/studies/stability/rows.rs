@@ -29,7 +29,7 @@ row! {
 /// Configuration of a simulation. Each row of `stability.csv` and `timing.csv` begins with these columns.
 pub struct StabilityConfiguration {
     /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
-    part: usize => Subject "part of the study": Linear;
+    part: usize => Subject "part": Linear;
     /// Scene that is simulated.
     scene: StabilityScene => Condition;
     /// Method that simulates the contact.
@@ -146,7 +146,7 @@ row! {
 /// Outcome of a method in a scene that all methods of its part have computed, with words for the two axes of a map of outcomes.
 pub struct CommonScene {
     /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
-    part: usize => Condition "part of the study": Linear;
+    part: usize => Condition "part": Linear;
     /// Method that simulates the contact, with its number of iterations if several are compared.
     method: String => Choice;
     /// Time step and taxel mass.
@@ -163,7 +163,7 @@ row! {
 /// Number of correct results of a method in the scenes that all methods of a part have computed, with the time of a scene.
 pub struct MethodScore {
     /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
-    part: usize => Condition "part of the study": Linear;
+    part: usize => Condition "part": Linear;
     /// Scene of the part, such as `rest`.
     scene: String => Note;
     /// Method that simulates the contact, with its number of iterations if several are compared.

@@ -102,7 +102,7 @@ fn a_study_that_changes_single_settings_begins_with_what_each_costs() {
     let sentences = answers_of(&made);
     assert_eq!(
         sentences[0],
-        "Alone, these leave the least of 0.90 [0.89, 0.91]: noise 20 % (0.30)."
+        "Alone, these lower 0.90 [0.89, 0.91] the most: noise 20 % (to 0.30)."
     );
     let made = tables_of(&made).unwrap();
     let first = charts(&made, None).swap_remove(0);

@@ -75,7 +75,7 @@ fn change_words(configurations: &Table, breaking: Option<String>) -> Option<Vec<
     let name = |row: &usize| configurations.word(CHANGED, *row);
     let said = costly.iter().take(MAX_LISTED).map(|row| {
         let value = configurations.word(CHANGED_TO, *row);
-        format!("{} {value} ({:.2})", name(row), accuracy(*row))
+        format!("{} {value} (to {:.2})", name(row), accuracy(*row))
     });
     let said: Vec<String> = said.collect();
     let unchanged = configurations.bounded(column, base);
@@ -84,7 +84,7 @@ fn change_words(configurations: &Table, breaking: Option<String>) -> Option<Vec<
             "No setting alone costs more than the interval of the unchanged study, {unchanged}."
         ),
         false => format!(
-            "Alone, these leave the least of {unchanged}: {}.",
+            "Alone, these lower {unchanged} the most: {}.",
             said.join(", ")
         ),
     };

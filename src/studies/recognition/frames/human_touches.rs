@@ -52,9 +52,11 @@ impl HumanTouches {
             let onset = seed.named("onset").rng().gen_range(0.0..=spare);
             Ok(RecordedTouch { touch, onset })
         });
+        // The first touch that is too long is named, at any number of threads.
+        let touches: Vec<Result<RecordedTouch>> = touches.collect();
         Ok(Self {
             spec: spec.clone(),
-            touches: touches.collect::<Result<_>>()?,
+            touches: touches.into_iter().collect::<Result<_>>()?,
         })
     }
 
