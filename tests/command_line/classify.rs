@@ -620,7 +620,7 @@ fn another_or_a_damaged_file_of_a_classifier_is_refused() {
     refused("", "another format");
     refused("{}", "another format");
     refused(&text[..text.len() / 2], "another format");
-    refused(&text.replace("\"version\":1", "\"version\":2"), "version 2");
+    refused(&text.replace("\"version\":2", "\"version\":3"), "version 3");
     let at = text.find("\"offset\":[[5],\"").unwrap() + 16;
     let digit = if &text[at..=at] == "0" { "1" } else { "0" };
     let changed = format!("{}{digit}{}", &text[..at], &text[at + 1..]);
