@@ -14,7 +14,7 @@ fn normal(n_rows: usize, k: usize, seed: u64) -> Dataset {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let label = |row: usize| row % k;
     let features = Array2::from_shape_fn((n_rows, 2), |(row, column)| {
-        let angle = 6.28 * label(row) as f64 / k as f64;
+        let angle = std::f64::consts::TAU * label(row) as f64 / k as f64;
         let noise: f64 = rng.sample(rand_distr::StandardNormal);
         [angle.cos(), angle.sin()][column] + 0.8 * noise
     });
