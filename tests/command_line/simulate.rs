@@ -119,11 +119,11 @@ fn what_is_not_read_of_a_robots_file_is_noted_on_standard_error() {
         panic!("{said}");
     };
     says(
-        &xml,
+        xml,
         &["r.urdf: a comment or space before the XML declaration"],
     );
     says(
-        &sensor,
+        sensor,
         &[
             "r.urdf, line 3: <tactile> without taxels; an <array> or <taxel>s: tactile sensor `pad_tactile` on link `base` is not read",
         ],
