@@ -9,8 +9,7 @@ fn json(case: &Case, arguments: &[&str]) -> serde_json::Value {
 }
 
 fn refused(case: &Case, arguments: &[&str]) -> String {
-    let error = case.refuses(arguments);
-    error
+    case.refuses(arguments)
 }
 
 #[test]
@@ -25,7 +24,7 @@ fn axes_of_a_study_are_choices_that_are_advised_and_settings_that_are_compared()
     let answers = advice["answers"].as_array().unwrap();
     assert_eq!(answers.len(), 1, "{advice}");
     let setting = answers[0]["choice"]["setting"].as_str().unwrap();
-    says(&setting, &["depth"]);
+    says(setting, &["depth"]);
     let error = refused(
         &case,
         &["advise", "found", "--budget", "1", "--given", "depth_mm=1"],
