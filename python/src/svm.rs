@@ -146,7 +146,6 @@ impl SvmArguments {
             class_weight: class_weight(self.is_balanced),
             tolerance: self.tolerance,
             memory_bytes: self.memory_bytes,
-            ..SvmParams::default()
         })
     }
 }

@@ -11,6 +11,8 @@ use linfa::dataset::DatasetBase;
 use linfa::prelude::ToConfusionMatrix;
 use linfa::traits::{Fit, Predict};
 use ndarray::{Array1, ArrayView1, Ix1};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 
 /// Returns the mean accuracy of each C in five folds of linfa.
 fn validated(mut data: Dataset<f64, usize, Ix1>) -> Result<Array1<f32>, Error> {
@@ -28,19 +30,20 @@ fn validated(mut data: Dataset<f64, usize, Ix1>) -> Result<Array1<f32>, Error> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let iris = linfa_datasets::iris();
-    let accuracies = validated(iris.clone())?;
+    let mut rng = ChaCha8Rng::seed_from_u64(2018);
+    let iris = linfa_datasets::iris().shuffle(&mut rng);
+    let accuracies = validated(iris)?;
     println!("iris: {accuracies:.3}");
     assert!(accuracies.iter().all(|&accuracy| accuracy > 0.85));
 
-    let wine = linfa_datasets::winequality();
+    let wine = linfa_datasets::winequality().shuffle(&mut rng);
     let is_good = wine.targets.map(|&quality| quality > 5);
-    let accuracies = validated(wine)?;
+    let accuracies = validated(wine.clone())?;
     println!("winequality: {accuracies:.3}");
     assert!(accuracies.iter().all(|&accuracy| accuracy > 0.4));
 
     // Labels that are true or false, and a view.
-    let (training, held_out) = linfa_datasets::winequality().split_with_ratio(0.8);
+    let (training, held_out) = wine.clone().split_with_ratio(0.8);
     let n = training.records.nrows();
     let good = DatasetBase::new(training.records.view(), is_good.slice(ndarray::s![..n]));
     let model = SvmParams::default().fit(&good)?;
