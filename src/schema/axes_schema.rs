@@ -60,15 +60,30 @@ fn axes_table(schema: &Value) -> Value {
             axes.insert(name.clone(), key.lists());
         }
     }
+    let several = json!({ "type": "array", "minItems": 1, "uniqueItems": true });
+    let mut patterns = Map::new();
+    patterns.insert(
+        r"^[a-z_.]*\{[a-z_, ]+\}[a-z_.]*$".to_owned(),
+        several.clone(),
+    );
+    // A key whose table has names of the user's own, such as parameters of own classifiers.
+    let has_own_names = |list: &Value| {
+        let key = list["items"]["$ref"].as_str();
+        let key = key.and_then(|pointer| schema.pointer(&pointer[1..]));
+        key.is_some_and(|key| key["additionalProperties"].is_object())
+    };
+    for (path, _) in axes.iter().filter(|(_, list)| has_own_names(list)) {
+        let pattern = format!(r"^{}\.", path.replace('.', r"\."));
+        patterns.insert(pattern, several.clone());
+    }
     let mut combine = schema["properties"]["signal"]["properties"]["combine"].clone();
     combine["description"] = "How the axes are combined with each other.".into();
     axes.insert("combine".to_owned(), combine);
-    let several = json!({ "type": "array", "minItems": 1, "uniqueItems": true });
     json!({
         "type": "object",
         "description": "Further axes: the path of a key, such as \"touches.depth_mm\", with a list of its values.",
         "properties": axes,
-        "patternProperties": { r"^[a-z_.]*\{[a-z_, ]+\}[a-z_.]*$": several },
+        "patternProperties": patterns,
         "additionalProperties": false,
     })
 }
