@@ -1,4 +1,4 @@
-//! Law of keys: each key of a study changes a number or a column of a table, or is refused, or is one of the keys that change no number by their meaning.
+//! Law of keys: each key of a study changes a number or a column of a table, or is refused. Keys that change no number by their meaning are listed.
 //!
 //! The values are made from the declarations, which the JSON Schema contains. A value that equals the default, and a key that needs another key beside it, count
 //! for nothing. `.ci/long engine` runs this law, which takes some minutes.
@@ -36,7 +36,7 @@ const AS_ABSENT: [(&str, &str); 5] = [
 /// Largest number of values that are tried for a key.
 const MOST: usize = 6;
 
-/// Key of a study: its path, its default, and other values.
+/// Key of a study: its path, and values other than its default.
 struct Key {
     path: Vec<String>,
     values: Vec<Value>,

@@ -1,8 +1,8 @@
 //! Probabilities of the classes of an SVM, by Platt scaling.
 //!
-//! A sigmoid `p = 1 / (1 + exp(a f + b))` maps the decision value f of a binary problem to the probability of its positive class. It is the sigmoid of largest
-//! likelihood with Platt's targets, which are not exactly 0 and 1, so that few rows give no certain probabilities. For one-vs-one, the probabilities of all pairs
-//! are combined to one probability per class (pairwise coupling). For one-vs-rest, the probabilities of all problems are divided by their sum.
+//! A sigmoid `p = 1 / (1 + exp(a f + b))` maps the decision value f of a binary problem to the probability of its positive class. The sigmoid has the largest
+//! likelihood with Platt's targets. These are not exactly 0 and 1, because few rows do not justify certain probabilities. For one-vs-one, the probabilities of
+//! all pairs are combined to one probability per class (pairwise coupling). For one-vs-rest, the probabilities of all problems are divided by their sum.
 //!
 //! Decision values of training rows are too large, and would give too certain probabilities. Sigmoids are therefore fitted to rows that did not train.
 //!
@@ -21,7 +21,7 @@ use crate::predict::svm_model::SvmModel;
 use crate::split::Split;
 use crate::{Error, Result, SvmParams};
 
-/// Maximum number of Newton steps for a sigmoid, and of passes of pairwise coupling. Both need about ten.
+/// Maximum number of Newton steps for a sigmoid, and of passes of pairwise coupling. About ten are needed.
 const MAX_STEPS: usize = 200;
 /// Gradient of the mean loss at which a sigmoid is converged, and change of a probability at which coupling is.
 const TOLERANCE: f64 = 1e-12;

@@ -39,6 +39,12 @@ pub(crate) fn check_version(version: u32) -> crate::Result<()> {
     }
 }
 
+/// Returns the error of data whose parts do not fit each other.
+pub(crate) fn damaged(place: &str) -> crate::Error {
+    let allowed = "the data that serialisation wrote are needed";
+    crate::Error::input(place, "parts of different sizes", allowed)
+}
+
 /// Model of each kind of classifier that can be saved.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

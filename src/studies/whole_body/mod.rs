@@ -14,6 +14,7 @@
 mod charts;
 mod drive;
 mod ladders;
+mod picture;
 mod plan;
 mod recognition;
 pub mod rows;

@@ -7,9 +7,10 @@ use crate::inputs::units::MM;
 use crate::objects::SphereUnion;
 use crate::report::study_content::Beyond;
 use crate::studies::prelude::*;
-use crate::studies::whole_body::charts::{answers, charts, picture_of_body};
+use crate::studies::whole_body::charts::{answers, charts};
 use crate::studies::whole_body::drive::{Drive, Posture, of_scene};
 use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
+use crate::studies::whole_body::picture::picture_of_body;
 use crate::studies::whole_body::plan::{BodySize, ScenePlan, WholeBodyPlan};
 use crate::studies::whole_body::recognition::learn;
 use crate::studies::whole_body::rows::{

@@ -1,4 +1,4 @@
-//! linfa's cross-validation on published data sets, and hostile numbers in presses.
+//! linfa's cross-validation on published data sets, and a press.
 
 use bubbletouch_sim::contact::{Workspace, press_to_depth};
 use bubbletouch_sim::geometry::Pose;

@@ -32,8 +32,6 @@ pub(crate) struct Sorted<T> {
     classes: Vec<usize>,
     /// Weight of each sorted row in training.
     weights: Vec<f64>,
-    /// Whether rows of one class have different weights.
-    has_row_weights: bool,
     kernel: KernelFunction,
     centre: Array1<f64>,
     /// Largest squared distance between a row and the centre.
@@ -87,7 +85,6 @@ impl<T: Scalar> Sorted<T> {
             points,
             farthest,
             weights: vec![1.0; order.len()],
-            has_row_weights: false,
             order,
             place,
             ranges,
@@ -113,11 +110,7 @@ impl<T: Scalar> Sorted<T> {
                 .zip(own)
                 .for_each(|(weight, own)| *weight *= own);
         }
-        Self {
-            weights,
-            has_row_weights: !row_weights.is_empty(),
-            ..self
-        }
+        Self { weights, ..self }
     }
 
     /// Returns the sorted rows projected onto k directions (k × m).
@@ -129,7 +122,6 @@ impl<T: Scalar> Sorted<T> {
             ranges: self.ranges.clone(),
             classes: self.classes.clone(),
             weights: self.weights.clone(),
-            has_row_weights: self.has_row_weights,
             kernel: self.kernel,
             centre: Array1::zeros(directions.nrows()),
             farthest: self.farthest,
@@ -204,7 +196,8 @@ impl<T: Scalar> Sorted<T> {
 
     /// Returns whether rows of one class have different weights.
     pub fn has_row_weights(&self) -> bool {
-        self.has_row_weights
+        let mut classes = self.ranges.iter().map(|range| &self.weights[range.clone()]);
+        classes.any(|weights| weights.iter().any(|weight| *weight != weights[0]))
     }
 
     /// Returns the classes, each with the range of its rows in the sorted order.

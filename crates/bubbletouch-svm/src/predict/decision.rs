@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::condorcet_winner::{Pairs, condorcet_winners_by_hyperplanes};
 use crate::binary_problem::BinaryProblem;
@@ -15,7 +16,7 @@ use crate::linalg::scalar::Scalar;
 use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
-use crate::{Error, Result};
+use crate::saved::damaged;
 
 /// Number of rows for which decision values are computed together. With a smaller value, packing the support vectors dominates the time. With a larger
 /// value, the kernel values take more memory; with this value, they take 10 MB for 5,000 support vectors.
@@ -23,7 +24,7 @@ const BLOCK_ROWS: usize = 512;
 
 /// Decision functions `Σ y_i a_i K(x_i, x) − ρ` of all binary problems.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "T: Scalar", try_from = "SavedFunctions<T>")]
+#[serde(bound = "T: Scalar", remote = "Self")]
 pub(crate) struct DecisionFunctions<T> {
     /// Centre that is subtracted from support vectors and from all rows to be classified (m values).
     #[serde(with = "crate::saved")]
@@ -56,52 +57,23 @@ struct Support<T> {
     pairs: Option<Pairs<T>>,
 }
 
-/// Fields of [`DecisionFunctions`] from which the others are computed.
-#[derive(Deserialize)]
-#[serde(bound = "T: Scalar")]
-struct SavedFunctions<T> {
-    #[serde(with = "crate::saved")]
-    centre: Array1<f64>,
-    #[serde(with = "crate::saved")]
-    rho: Array1<f64>,
-    sums: Sums<T>,
-}
-
-impl<T: Scalar> TryFrom<SavedFunctions<T>> for DecisionFunctions<T> {
-    type Error = Error;
-
-    fn try_from(saved: SavedFunctions<T>) -> Result<Self> {
-        if !saved.fits() {
-            return Err(Error::input(
-                "decision functions",
-                "parts of different sizes",
-                "the data that serialisation wrote are needed",
-            ));
-        }
-        let SavedFunctions {
-            centre,
-            rho,
-            mut sums,
-        } = saved;
-        if let Sums::Support(support) = &mut sums {
-            support.pairs = pairs_of(&support.weights, &rho);
-        }
-        Ok(Self { centre, rho, sums })
+impl<T: Scalar> Serialize for DecisionFunctions<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        // The function that serde derives, with all fields.
+        Self::serialize(self, serializer)
     }
 }
 
-impl<T: Scalar> SavedFunctions<T> {
-    /// Returns whether the sizes of all parts are consistent.
-    fn fits(&self) -> bool {
-        let shape = (self.rho.len(), self.centre.len());
-        match &self.sums {
-            Sums::Hyperplanes(normals) => normals.dim() == shape,
-            Sums::Support(support) => {
-                let n = support.vectors.len();
-                support.vectors.fits(shape.1)
-                    && support.weights.iter().all(|class| class.fits(n, shape.0))
-            }
+impl<'de, T: Scalar> Deserialize<'de> for DecisionFunctions<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut functions = Self::deserialize(deserializer)?;
+        if !functions.has_consistent_sizes() {
+            return Err(D::Error::custom(damaged("decision functions")));
         }
+        if let Sums::Support(support) = &mut functions.sums {
+            support.pairs = pairs_of(&support.weights, &functions.rho);
+        }
+        Ok(functions)
     }
 }
 
@@ -159,6 +131,19 @@ impl<T: Scalar> DecisionFunctions<T> {
             }
         };
         Self { centre, rho, sums }
+    }
+
+    /// Returns whether the sizes of all parts are consistent.
+    fn has_consistent_sizes(&self) -> bool {
+        let shape = (self.rho.len(), self.centre.len());
+        match &self.sums {
+            Sums::Hyperplanes(normals) => normals.dim() == shape,
+            Sums::Support(support) => {
+                let n = support.vectors.len();
+                support.vectors.fits(shape.1)
+                    && support.weights.iter().all(|class| class.fits(n, shape.0))
+            }
+        }
     }
 
     /// Returns whether there are this number of decision functions, classes and features.

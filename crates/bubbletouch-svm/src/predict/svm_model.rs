@@ -9,8 +9,10 @@ use std::borrow::Cow;
 use linfa::dataset::Label;
 use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::Result;
 use crate::binary_problem::BinaryProblem;
 use crate::dataset::check_width;
 use crate::gram::sorted::Sorted;
@@ -19,16 +21,12 @@ use crate::multiclass::Multiclass;
 use crate::precision::Precision;
 use crate::predict::decision::DecisionFunctions;
 use crate::predict::voting::Voting;
-use crate::saved::{VERSION, check_version};
+use crate::saved::{VERSION, check_version, damaged};
 use crate::training::Trained;
-use crate::{Error, Result};
 
 /// Trained SVM for two or more classes, with labels of type `L`. The data of serde (see [`saved`](crate::saved)) contain all that prediction needs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(
-    bound(deserialize = "L: Label + Deserialize<'de>"),
-    try_from = "SavedSvm<L>"
-)]
+#[serde(remote = "Self")]
 pub struct SvmModel<L = usize> {
     /// Version of the data of serde.
     version: u32,
@@ -39,54 +37,39 @@ pub struct SvmModel<L = usize> {
     decision: Decision,
 }
 
-/// Fields of [`SvmModel`] as they are read.
-#[derive(Deserialize)]
-struct SavedSvm<L> {
-    version: u32,
-    classes: Vec<L>,
-    voting: Voting,
-    problems: Vec<BinaryProblem>,
-    n_features: usize,
-    decision: Decision,
+impl<L: Serialize> Serialize for SvmModel<L> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        // The function that serde derives, with all fields.
+        Self::serialize(self, serializer)
+    }
 }
 
-impl<L: Label> TryFrom<SavedSvm<L>> for SvmModel<L> {
-    type Error = Error;
+impl<'de, L: Label + Deserialize<'de>> Deserialize<'de> for SvmModel<L> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let model = Self::deserialize(deserializer)?;
+        model.check().map_err(D::Error::custom)?;
+        Ok(model)
+    }
+}
 
-    fn try_from(saved: SavedSvm<L>) -> Result<Self> {
-        let SavedSvm {
-            version,
-            classes,
-            voting,
-            problems,
-            n_features,
-            decision,
-        } = saved;
-        check_version(version)?;
-        let n_problems = voting.multiclass.problems(voting.n_classes).len();
-        let sizes = [n_problems, voting.n_classes, n_features];
-        let is_whole = classes.len() == voting.n_classes
-            && classes.len() >= 2
-            && classes.is_sorted_by(|a, b| a < b)
-            && problems.len() == n_problems
-            && match &decision {
+impl<L: Label> SvmModel<L> {
+    /// Checks the version, and whether the sizes of all parts are consistent.
+    fn check(&self) -> Result<()> {
+        check_version(self.version)?;
+        let n_classes = self.voting.n_classes;
+        let n_problems = self.voting.multiclass.problems(n_classes).len();
+        let sizes = [n_problems, n_classes, self.n_features];
+        let is_whole = self.classes.len() == n_classes
+            && n_classes >= 2
+            && self.classes.is_sorted_by(|a, b| a < b)
+            && self.problems.len() == n_problems
+            && match &self.decision {
                 Decision::Single(functions) => functions.fit(sizes),
                 Decision::Double(functions) => functions.fit(sizes),
             };
         match is_whole {
-            true => Ok(Self {
-                version,
-                classes,
-                voting,
-                problems,
-                n_features,
-                decision,
-            }),
-            false => Err(Error::input(
-                "saved SVM",
-                "parts of different sizes",
-                "the data that serialisation wrote are needed",
-            )),
+            true => Ok(()),
+            false => Err(damaged("saved SVM")),
         }
     }
 }
