@@ -375,6 +375,11 @@ impl Panel<'_> {
         };
         let size = END_LABEL;
         let frame = self.frame;
+        // The title of a panel is above its frame.
+        let top = match self.view.spec.panels {
+            Some(_) => frame.y,
+            None => f64::NEG_INFINITY,
+        };
         for (place, text) in labels {
             let text = shorten(&text, size, 0.9 * frame.width);
             let (width, (x, y)) = (text_width(&text, size), self.at(place));
@@ -394,6 +399,7 @@ impl Panel<'_> {
             let is_free = |at: &Point| {
                 let is_inside = at.0 > frame.x
                     && at.0 + width < frame.x + frame.width
+                    && at.1 - size >= top
                     && at.1 < frame.y + frame.height;
                 is_inside && !taken.iter().any(|other| other.overlaps(&area(at)))
             };
