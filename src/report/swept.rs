@@ -79,6 +79,14 @@ impl<'a> Setting<'a> {
         }
     }
 
+    /// Returns the names and values of settings in a row as text; settings that do not apply are omitted.
+    pub fn phrases(settings: &[Self], row: usize) -> String {
+        let said = settings.iter().filter(|one| one.applies(&[row]));
+        said.map(|one| one.phrase(row))
+            .collect::<Vec<_>>()
+            .join(", ")
+    }
+
     /// Returns the values of settings in a row in few words, such as `Gaussian, 64:1, touches 5`; settings that do not apply are omitted. A number has its name if it has no
     /// unit, or if another setting has the same unit.
     pub fn short_words(settings: &[Self], row: usize) -> String {
@@ -146,6 +154,11 @@ impl<'a> Setting<'a> {
 }
 
 impl<'a> Swept<'a> {
+    /// Classifies the settings of all rows of a table.
+    pub fn of(table: &'a Table) -> Self {
+        Self::new(table, &table.all_rows())
+    }
+
     /// Classifies the settings of the given rows as varying, dependent or constant.
     pub fn new(table: &'a Table, rows: &[usize]) -> Self {
         let all = Setting::of_roles(table, &[Role::Choice, Role::Condition]);
@@ -159,7 +172,7 @@ impl<'a> Swept<'a> {
         });
         let mut following = Vec::new();
         for one in order {
-            let others = without(&free, &one);
+            let others = without(&free, &[one]);
             // A setting that does not apply in some rows cannot determine another setting there.
             let telling: Vec<Setting> = others
                 .iter()
@@ -183,11 +196,8 @@ impl<'a> Swept<'a> {
         let conditions = swept.by_condition(rows);
         let is_choice = |one: &Setting| conditions.iter().any(|rows| one.varies(rows));
         let of_conditions = swept.following.iter().filter(|one| !is_choice(one));
-        let of_conditions: Vec<&Setting> = of_conditions.collect();
-        swept.choices = swept.of_role(Role::Choice);
-        swept
-            .choices
-            .retain(|one| !of_conditions.iter().any(|other| other.is(one)));
+        let of_conditions: Vec<Setting> = of_conditions.copied().collect();
+        swept.choices = without(&swept.of_role(Role::Choice), &of_conditions);
         swept
     }
 
@@ -248,15 +258,7 @@ impl<'a> Swept<'a> {
 
     /// Returns the values of the varying choices in a row as text. A choice that the conditions alone determine is omitted.
     pub fn choice_words(&self, row: usize) -> String {
-        // Choices that do not apply to the row are omitted.
-        let applies =
-            |one: &&Setting| one.data.value(row).is_some() || !one.column.word("").is_empty();
-        let said = self
-            .choices
-            .iter()
-            .filter(applies)
-            .map(|one| one.phrase(row));
-        said.collect::<Vec<_>>().join(", ")
+        Setting::phrases(&self.choices, row)
     }
 
     /// Returns the varying choices that no other settings determine.
@@ -293,10 +295,10 @@ fn numbers_are_there(setting: &Setting, rows: &[usize]) -> bool {
     rows.iter().all(|&row| setting.data.value(row).is_some())
 }
 
-/// Returns the given settings without one of them.
-pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> {
-    let others = settings.iter().copied();
-    others.filter(|other| !other.is(one)).collect()
+/// Returns the given settings without some of them.
+pub fn without<'a>(settings: &[Setting<'a>], some: &[Setting]) -> Vec<Setting<'a>> {
+    let is_kept = |one: &Setting| !some.iter().any(|other| other.is(one));
+    settings.iter().copied().filter(is_kept).collect()
 }
 
 /// Returns all numeric settings, if each row differs from the first row in at most one of them. Otherwise, tries only the settings of the signal.

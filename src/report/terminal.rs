@@ -126,10 +126,7 @@ pub fn table_text(table: &Table, width: usize) -> String {
             .iter()
             .copied()
             .partition(|one| matches!(one.column.role, Role::Choice | Role::Condition));
-        let following = Swept::new(table, &(0..table.n_rows).collect::<Vec<_>>()).following;
-        let settings = following
-            .iter()
-            .fold(settings, |kept, one| without(&kept, one));
+        let settings = without(&settings, &Swept::of(table).following);
         let heads: Vec<&str> = settings.iter().map(|one| &one.column.words[..]).collect();
         let together = TextColumn {
             head: heads.join(", "),
@@ -163,7 +160,7 @@ pub fn table_text(table: &Table, width: usize) -> String {
 
 /// Returns all rows of a table; of more than [`MAX_LINES`] rows, those with the best values in the first column that has a better direction, the best first.
 fn best_rows(table: &Table) -> Vec<usize> {
-    let mut rows: Vec<usize> = (0..table.n_rows).collect();
+    let mut rows = table.all_rows();
     if table.n_rows > MAX_LINES {
         let ranked = Setting::all(table).find_map(|one| match one.column.role {
             Role::Value(Better::More) => Some((one, -1.0)),
@@ -251,15 +248,14 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
 
 /// Returns a text with the settings that have equal values in all rows; empty if there are none.
 fn constants(table: &Table, width: usize) -> String {
-    let rows: Vec<usize> = (0..table.n_rows).collect();
-    if rows.len() < 2 {
+    if table.n_rows < 2 {
         return String::new();
     }
     // Conditions of zero (ideal ones) are omitted.
     let is_ideal = |one: &Setting| {
         one.column.role == Role::Condition && one.data.value(0) == Some(Value::Number(0.0))
     };
-    match &constant_phrases(table, &rows, |one| !is_ideal(one))[..] {
+    match &constant_phrases(table, &table.all_rows(), |one| !is_ideal(one))[..] {
         [] => String::new(),
         said => paragraph(&format!("All rows: {}", said.join("\u{a0}· ")), width) + "\n",
     }

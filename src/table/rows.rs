@@ -32,6 +32,11 @@ impl Table {
         Some(Shown { column, value })
     }
 
+    /// Returns the indices of all rows.
+    pub fn all_rows(&self) -> Vec<usize> {
+        (0..self.n_rows).collect()
+    }
+
     /// Returns the names of all columns of the table that have the given role.
     pub fn of_role(&self, role: Role) -> Vec<&str> {
         let columns = self.columns.iter().filter(|column| column.role == role);

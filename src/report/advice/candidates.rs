@@ -157,13 +157,12 @@ impl<'a> Candidates<'a> {
 
     /// Creates candidates from all rows of a table.
     pub fn of_columns(table: &'a Table, value: &'a Column, cost: &'a Column) -> Self {
-        let rows: Vec<usize> = (0..table.n_rows).collect();
         Self {
             table,
             value,
             cost,
-            swept: Swept::new(table, &rows),
-            rows,
+            swept: Swept::of(table),
+            rows: table.all_rows(),
             limits: Vec::new(),
         }
     }

@@ -63,7 +63,7 @@ impl<'a> Front<'a> {
         let shown = shown.filter_map(|name| view.column(name).ok());
         Self {
             view,
-            settings: shown.fold(free, |others, one| without(&others, &one)),
+            settings: without(&free, &shown.collect::<Vec<_>>()),
             one_at_a_time,
             fronts,
         }
@@ -80,9 +80,8 @@ impl<'a> Front<'a> {
     pub fn label(&self, place: &Place) -> String {
         let first = self.view.rows[0];
         let is_base = |one: &&Setting| one.data.key(place.row) == one.data.key(first);
-        let base = self.one_at_a_time.iter().filter(is_base);
-        let said = base.fold(self.settings.clone(), |others, one| without(&others, one));
-        match &Setting::short_words(&said, place.row)[..] {
+        let base: Vec<Setting> = self.one_at_a_time.iter().filter(is_base).copied().collect();
+        match &Setting::short_words(&without(&self.settings, &base), place.row)[..] {
             "" => self.view.lines.names[place.line].clone(),
             words => words.to_owned(),
         }

@@ -78,7 +78,7 @@ impl<'a> View<'a> {
             )
         })?;
         let column = |name: &str| column_of(spec, table, name);
-        let mut rows: Vec<usize> = (0..table.n_rows).collect();
+        let mut rows = table.all_rows();
         for shown in &spec.shown {
             let data = column(&shown.column)?.data;
             let absent = || Value::from("");

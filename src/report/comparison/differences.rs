@@ -138,8 +138,7 @@ impl<'a> Settings<'a> {
         let columns = Setting::of_roles(table, &[Role::Choice, Role::Condition, Role::Subject]);
         let columns = columns.filter(|one| one.column.name != "trial");
         let columns: Vec<Setting> = columns.collect();
-        let all: Vec<usize> = (0..table.n_rows).collect();
-        let groups = Setting::groups(&columns, table, &all);
+        let groups = Setting::groups(&columns, table, &table.all_rows());
         let is_repeated = table.place("trial").is_some();
         let is_told_apart = is_repeated || groups.len() == table.n_rows;
         let has_cells = columns.iter().any(|one| one.column.name == "configuration");

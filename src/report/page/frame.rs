@@ -3,8 +3,6 @@
 use crate::report::pictures::drawing::escape;
 use crate::report::study_content::StudyAbout;
 
-const TEMPLATE: &str = include_str!("page.html");
-const STYLE: &str = include_str!("page.css");
 /// JavaScript files of the page. The file `elements.js` comes first, because the other scripts use it.
 const SCRIPT: [&str; 3] = [
     include_str!("script/elements.js"),
@@ -50,20 +48,17 @@ pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> Stri
     };
     let link =
         |Section { id, title, .. }: &Section| format!("<li><a href=\"#{id}\">{title}</a></li>");
-    fill(TEMPLATE, |name| match name {
-        "style" => STYLE.to_owned(),
-        "name" => escape(&about.name),
-        "question" => paragraph("question", "", &about.question),
-        "expected" => paragraph("quiet", "Expected: ", &about.expected),
-        "contents" => format!(
-            "<ul>{}</ul>",
-            sections.clone().map(link).collect::<String>()
-        ),
-        "sections" => sections.clone().map(Section::html).collect(),
-        "foot" => foot.to_owned(),
-        "script" => SCRIPT.join("\n"),
-        other => format!("(no value for {other})"),
-    })
+    format!(
+        include_str!("page.html"),
+        style = include_str!("page.css"),
+        name = escape(&about.name),
+        question = paragraph("question", "", &about.question),
+        expected = paragraph("quiet", "Expected: ", &about.expected),
+        contents = sections.clone().map(link).collect::<String>(),
+        sections = sections.clone().map(Section::html).collect::<String>(),
+        foot = foot,
+        script = SCRIPT.join("\n"),
+    )
 }
 
 /// Returns an HTML entry of a definition list with the given name and value. The name is HTML, the value is plain text.
@@ -127,34 +122,9 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// Replaces each `{{name}}` in a template by the text that `value` returns for this name. Inserted text is not searched for names.
-fn fill(template: &str, value: impl Fn(&str) -> String) -> String {
-    let mut parts = template.split("{{");
-    let mut filled = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        match part.split_once("}}") {
-            Some((name, rest)) => {
-                filled += &value(name);
-                filled += rest;
-            }
-            None => filled += part,
-        }
-    }
-    filled
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_put_into_a_template_is_not_searched_for_names() {
-        let value = |name: &str| format!("<{name} {{{{b}}}}>");
-        assert_eq!(
-            fill("x {{a}} y {{b}} z", value),
-            "x <a {{b}}> y <b {{b}}> z"
-        );
-    }
 
     #[test]
     fn base64_agrees_with_the_examples_of_rfc_4648() {

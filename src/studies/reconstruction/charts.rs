@@ -64,7 +64,7 @@ pub(super) fn answers(tables: &[Table]) -> Vec<String> {
 /// Returns a chart of the reconstruction error by the time of a frame, with one panel per noise level and one colour per solver.
 fn by_time(tables: &[Table]) -> Option<ChartSpec> {
     let both = tables.iter().find(|table| table.file == BOTH)?;
-    let rows: Vec<usize> = (0..both.n_rows).collect();
+    let rows = both.all_rows();
     let (error, time) = (both.column("error")?.0, both.column("us_per_frame")?.0);
     let best = Candidates::of_columns(both, error, time).as_good_words(&rows);
     let noisy = Rule {

@@ -27,8 +27,8 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
         .map(|(name, value)| definition(&escape(name), value))
         .collect();
     if let Some(configurations) = filled(tables, CONFIGURATIONS) {
-        let rows: Vec<usize> = (0..configurations.n_rows).collect();
-        let Swept { free, fixed, .. } = Swept::new(configurations, &rows);
+        let rows = configurations.all_rows();
+        let Swept { free, fixed, .. } = Swept::of(configurations);
         let free = free
             .iter()
             .map(|one| (one, " <span class=\"tag\">swept</span>"));

@@ -93,12 +93,12 @@ fn accuracy_charts(
     chart: &ChartSpec,
     robustness: Option<&Table>,
 ) -> Vec<ChartSpec> {
-    let all: Vec<usize> = (0..configurations.n_rows).collect();
-    let signal = Swept::new(configurations, &all).one_at_a_time;
+    let all = configurations.all_rows();
+    let signal = Swept::of(configurations).one_at_a_time;
     if signal.is_empty() {
         let mut charts = charts_along(configurations, chart, None, &all);
         // A setting that only some classifiers have also has its own chart, over the rows that have it.
-        for setting in &Swept::new(configurations, &all).free {
+        for setting in &Swept::of(configurations).free {
             let has_it = |row: &usize| setting.data.value(*row).is_some();
             let rows: Vec<usize> = all.iter().copied().filter(has_it).collect();
             if setting.is_number() && rows.len() < all.len() && setting.levels(&rows).len() > 2 {
@@ -108,7 +108,7 @@ fn accuracy_charts(
         return charts;
     }
     let charts_of = |setting: &Setting| {
-        let others = without(&signal, setting);
+        let others = without(&signal, &[*setting]);
         let is_first = |row: &usize| {
             let mut others = others.iter();
             others.all(|other| other.data.key(*row) == other.data.key(0))
@@ -227,10 +227,8 @@ impl Changes {
             free,
             one_at_a_time,
             ..
-        } = Swept::new(configurations, &all.clone().collect::<Vec<_>>());
-        let others = one_at_a_time
-            .iter()
-            .fold(free, |kept, one| without(&kept, one));
+        } = Swept::of(configurations);
+        let others = without(&free, &one_at_a_time);
         let shown = others
             .iter()
             .filter_map(|one| configurations.shown(&one.column.name, base));
@@ -286,7 +284,7 @@ fn charts_along(
 ) -> Vec<ChartSpec> {
     let swept = Swept::new(configurations, rows);
     let x = x.or_else(|| swept.main(rows));
-    let mut others = x.map_or_else(|| swept.free.clone(), |x| without(&swept.free, &x));
+    let mut others = without(&swept.free, x.as_slice());
     // A setting that is a text and applies only to some rows, such as the method of a selection, divides the lines of another setting.
     let is_part = |one: &Setting| !one.is_number() && !one.applies(rows);
     let parts: Vec<Setting> = others.iter().copied().filter(is_part).collect();
@@ -393,8 +391,8 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
 /// panel. Colours show the classifier or, if there is one, the choice on whose values the mean accuracy depends most. If conditions vary one at a time, the
 /// charts have the first value of each.
 fn time_charts(configurations: &Table, chart: &ChartSpec, pareto: Option<bool>) -> Vec<ChartSpec> {
-    let mut rows: Vec<usize> = (0..configurations.n_rows).collect();
-    let mut alone = Swept::new(configurations, &rows).one_at_a_time;
+    let mut rows = configurations.all_rows();
+    let mut alone = Swept::of(configurations).one_at_a_time;
     alone.retain(|one| one.column.role == Role::Condition);
     rows.retain(|&row| alone.iter().all(|one| one.data.key(row) == one.data.key(0)));
     let n_groups = |columns: &[&str]| configurations.groups(columns, rows.iter().copied()).len();
@@ -466,8 +464,7 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
     let configuration = configurations.number("configuration", best);
     let mut cells_there = confusion.numbers("configuration")?.iter();
     let row = cells_there.position(|known| *known == configuration)?;
-    let all: Vec<usize> = (0..configurations.n_rows).collect();
-    let swept = Swept::new(configurations, &all);
+    let swept = Swept::of(configurations);
     let mut words = vec![swept.condition_words(best), swept.choice_words(best)];
     words.retain(|words| !words.is_empty());
     words.push(format!("accuracy {accuracy:.2}"));
@@ -487,9 +484,8 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
 /// Returns charts of the positions of the selected taxels. Colours show the method, panels show the first condition, and each combination of the other settings
 /// has its own chart.
 fn selected_charts(selected: &Table) -> Vec<ChartSpec> {
-    let rows: Vec<usize> = (0..selected.n_rows).collect();
-    let has_place = |row: &usize| selected.number("x_mm", *row).is_finite();
-    let rows: Vec<usize> = rows.into_iter().filter(has_place).collect();
+    let mut rows = selected.all_rows();
+    rows.retain(|&row| selected.number("x_mm", row).is_finite());
     let swept = Swept::new(selected, &rows);
     let of = |wanted: &dyn Fn(&Setting) -> bool| swept.free.iter().find(|one| wanted(one)).copied();
     let method = of(&|one| one.column.name == "selection");

@@ -232,9 +232,8 @@ pub(crate) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
         let place = format!("{}:{row}, accuracy", summary.file);
         return Err(Error::input(place, accuracy, "between 0 and 1"));
     }
-    let all: Vec<usize> = (0..summary.n_rows).collect();
     let mut curves = Vec::new();
-    let swept = Swept::new(summary, &all);
+    let swept = Swept::of(summary);
     let choices = swept.one_at_a_time.iter();
     let choices = choices.filter(|one| one.column.role == Role::Choice);
     let choices: Vec<&str> = choices.map(|one| &one.column.name[..]).collect();
@@ -252,7 +251,7 @@ pub(crate) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
         let others = [Role::Choice, Role::Condition].map(|role| summary.of_role(role));
         let mut others = others.concat();
         others.retain(|column| *column != condition && !(is_choice && follows(column)));
-        for mut along in summary.groups(&others, all.iter().copied()) {
+        for mut along in summary.groups(&others, 0..summary.n_rows) {
             along.retain(|&row| setting.position(row).is_some_and(f64::is_finite));
             along.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
             let repeats = |pair: &[usize]| values[pair[0]] == values[pair[1]];
@@ -309,12 +308,8 @@ fn both_sides(
     let row = along[best];
     let configuration = summary.number("configuration", row);
     curve.chance = chances.of(configuration).accuracy;
-    let said = |one: &&Setting| {
-        let has_value = one.data.value(row).is_some() || !one.column.word("").is_empty();
-        has_value && one.column.name != condition
-    };
-    let said = settings.iter().filter(said).map(|one| one.phrase(row));
-    let design = said.collect::<Vec<_>>().join(", ");
+    let others = settings.iter().filter(|one| one.column.name != condition);
+    let design = Setting::phrases(&others.copied().collect::<Vec<_>>(), row);
     let clean = curve.accuracy[best];
     let seed = Seed::new(0).named("robustness").named(condition);
     let seed = seed.numbered(configuration as u64);

@@ -412,8 +412,8 @@ pub(crate) const CHANGED_TO: &str = "changed_to";
 /// Returns the table of configurations. If single settings are changed, two columns name the changed setting and its value. The settings are in descending order
 /// of the accuracy that they cost at most.
 fn with_changes(table: Table) -> Table {
-    let rows: Vec<usize> = (0..table.n_rows).collect();
-    let alone = Swept::new(&table, &rows).one_at_a_time;
+    let rows = table.all_rows();
+    let alone = Swept::of(&table).one_at_a_time;
     let change = |row: usize| alone.iter().position(|one| one.varies(&[0, row]));
     let least = |place: usize| {
         let own = rows.iter().filter(|&&row| change(row) == Some(place));
