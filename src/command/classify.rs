@@ -216,10 +216,10 @@ pub fn classify(args: &Args) -> Result<()> {
     let (findings, predicted, classifier) = args.train_and_test(kind, &set)?;
     // A kind of classifier that cannot be saved is refused before other files are written.
     if let Some(path) = &args.save {
-        let classes = set.classes.clone();
         let file = ModelFile {
             kind,
-            classes,
+            classes: set.classes.clone(),
+            columns: set.columns.clone(),
             classifier,
         };
         file.write(path)?;
@@ -259,7 +259,7 @@ impl Args {
             check_used(&option, is_given, false, "--classifier")?;
         }
         let model = ModelFile::read(model)?;
-        let NewRows { features, labels } = read_new_rows(&self.folder)?;
+        let NewRows { features, labels } = read_new_rows(&self.folder, model.columns.as_deref())?;
         let (mut predict_s, mut predicted) = (Vec::new(), Array1::default(0));
         for _ in 0..self.repeat {
             let start = Instant::now();

@@ -21,6 +21,8 @@ pub struct ModelFile {
     pub kind: ClassifierKind,
     /// Value of each label from 0, as in the label file of the training rows.
     pub classes: Vec<KeyValue>,
+    /// Names of the features of the training rows; `None` if they have no names.
+    pub columns: Option<Vec<String>>,
     /// Trained classifier, including the scaling of its features.
     pub classifier: TrainedClassifier,
 }
@@ -34,12 +36,23 @@ struct Content {
     classifier: ClassifierKind,
     sha256: String,
     classes: Box<RawValue>,
+    columns: Option<Vec<String>>,
     model: Box<RawValue>,
 }
 
 impl Content {
     fn hash(&self) -> String {
-        sha256(format!("{} {} {}", self.version, self.classes, self.model))
+        let Self {
+            version,
+            classes,
+            columns,
+            model,
+            ..
+        } = self;
+        match columns {
+            None => sha256(format!("{version} {classes} {model}")),
+            Some(columns) => sha256(format!("{version} {classes} {columns:?} {model}")),
+        }
     }
 }
 
@@ -61,6 +74,7 @@ impl ModelFile {
             classifier: self.kind,
             sha256: String::new(),
             classes: raw(serde_json::value::to_raw_value(&self.classes))?,
+            columns: self.columns.clone(),
             model: raw(serde_json::value::to_raw_value(&self.classifier))?,
         };
         content.sha256 = content.hash();
@@ -93,6 +107,7 @@ impl ModelFile {
         Ok(Self {
             kind: content.classifier,
             classes: serde_json::from_str(content.classes.get()).map_err(damaged)?,
+            columns: content.columns,
             classifier: serde_json::from_str(content.model.get()).map_err(damaged)?,
         })
     }

@@ -545,6 +545,7 @@ fn a_saved_classifier_predicts_what_it_predicted_before() {
         let written = ModelFile {
             kind,
             classes: classes.clone(),
+            columns: None,
             classifier,
         };
         written.write(&path).unwrap();
@@ -596,6 +597,32 @@ fn a_saved_classifier_is_applied_to_new_touches() {
     let applied = json(&new, &["--model", model, "--predictions", "c.npy"]);
     assert!(applied["accuracy"].is_null());
     assert_eq!(bytes("a.npy"), std::fs::read(new.path("c.npy")).unwrap());
+}
+
+#[test]
+fn a_saved_classifier_refuses_touches_whose_columns_have_another_order() {
+    let case = folder();
+    let features = features();
+    let table = |names: [&str; 2]| {
+        let line = |row: ndarray::ArrayView1<f64>| format!("{},{}\n", row[0], row[1]);
+        let lines: String = features.rows().into_iter().map(line).collect();
+        format!("{}\n{lines}", names.join(","))
+    };
+    std::fs::remove_file(case.path("features.npy")).unwrap();
+    case.file("features.csv", &table(["pressure", "shear"]));
+    json(
+        &case,
+        &["--classifier", "k_nearest", "--save", "model.json"],
+    );
+    let apply = words("classify . --model model.json");
+    assert_eq!(case.run(&apply).status.code(), Some(0));
+    case.file("features.csv", &table(["shear", "pressure"]));
+    says(
+        &case.refuses(&apply),
+        &[
+            "features.csv: column `shear` in the place of `pressure`; the columns of the training rows, in their order",
+        ],
+    );
 }
 
 #[test]

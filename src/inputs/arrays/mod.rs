@@ -87,25 +87,12 @@ impl FileArray {
         }
     }
 
-    /// Checks that the columns of a table have the names of the columns `first` of a file of frames at `place`, in their order. Tables without names, and tables
-    /// with another number of columns, are not compared.
+    /// Checks the names of the columns as [`check_names`] does, against the columns `first` of a file of frames at `place`.
     ///
     /// # Errors
     /// If a name differs.
     pub fn check_columns_of(&self, first: Option<&[String]>, place: &str) -> Result<()> {
-        let (own, first) = (
-            self.columns.as_deref().unwrap_or_default(),
-            first.unwrap_or_default(),
-        );
-        let differs = || own.iter().zip(first).find(|(own, first)| own != first);
-        match (own.len() == first.len()).then(differs).flatten() {
-            None => Ok(()),
-            Some((own, first)) => {
-                let given = format!("column `{own}` in the place of `{first}`");
-                let allowed = format!("the columns of {place}, in their order");
-                Err(Error::input(&self.place, given, allowed))
-            }
-        }
+        check_names(&self.place, [self.columns.as_deref(), first], place)
     }
 
     /// Converts the elements of the array to numbers, with the shape of the array.
@@ -127,6 +114,28 @@ impl FileArray {
     }
 }
 
+/// Checks that the columns of a table at `place` have the names of the columns of another table, `first`, in their order. Tables without names, and tables with
+/// another number of columns, are not compared.
+///
+/// # Errors
+/// If a name differs.
+pub fn check_names(
+    place: &str,
+    [own, of_first]: [Option<&[String]>; 2],
+    first: &str,
+) -> Result<()> {
+    let [own, of_first] = [own, of_first].map(Option::unwrap_or_default);
+    let differs = || own.iter().zip(of_first).find(|(own, first)| own != first);
+    match (own.len() == of_first.len()).then(differs).flatten() {
+        None => Ok(()),
+        Some((own, wanted)) => {
+            let given = format!("column `{own}` in the place of `{wanted}`");
+            let allowed = format!("the columns of {first}, in their order");
+            Err(Error::input(place, given, allowed))
+        }
+    }
+}
+
 /// Returns an error if columns are chosen in a file that is no table.
 fn check_columns(path: &Path, format: Format, content: TableContent) -> Result<()> {
     match content {
@@ -142,20 +151,24 @@ fn check_columns(path: &Path, format: Format, content: TableContent) -> Result<(
     }
 }
 
-/// Reads a matrix of numbers or booleans of any type.
+/// Names of the columns of a table; `None` for arrays and for tables without a header.
+pub type ColumnNames = Option<Vec<String>>;
+
+/// Reads a matrix of numbers or booleans of any type, with the names of its columns.
 ///
 /// # Errors
 /// If the file does not exist, or contains no matrix of numbers.
-pub fn read_matrix(path: &Path, name: &str) -> Result<Array2<f64>> {
+pub fn read_matrix(path: &Path, name: &str) -> Result<(Array2<f64>, ColumnNames)> {
     const ALLOWED: &str = "n × m of float64, float32, float16, int8 to int64, uint8 to uint64 or bool, in a .npy, .npz or .csv file";
-    let array = FileArray::read(path, name)?;
+    let mut array = FileArray::read(path, name)?;
     let [rows, columns] = array.shape[..] else {
         let given = format!("an array of shape {:?}", array.shape);
         return Err(Error::input(array.place, given, ALLOWED));
     };
+    let names = array.columns.take();
     let numbers = array.into_numbers()?;
     let matrix = numbers.into_shape_with_order((rows, columns));
-    Ok(matrix.expect("one element for each place"))
+    Ok((matrix.expect("one element for each place"), names))
 }
 
 /// Returns the names of the arrays of a `.npz` archive.

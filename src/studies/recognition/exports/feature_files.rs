@@ -17,7 +17,7 @@ use crate::files::{CsvFile, DataFolder, write_bytes};
 use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, read_class_labels, read_group_keys, read_rows,
 };
-use crate::inputs::arrays::{is_member, read_matrix};
+use crate::inputs::arrays::{ColumnNames, check_names, is_member, read_matrix};
 use crate::inputs::npy::{write_integers, write_npy};
 use crate::note::note;
 use crate::studies::recognition::frames::frame_store::Frames;
@@ -59,6 +59,8 @@ pub struct FeatureSet {
     pub groups: Option<Array1<usize>>,
     /// Label of each class, as it is written in the label file.
     pub classes: Vec<KeyValue>,
+    /// Names of the features, if they are from a table with a header.
+    pub columns: ColumnNames,
 }
 
 #[derive(Serialize)]
@@ -119,6 +121,7 @@ impl StudyPart {
         let n_classes = self.touched.classes().len() as i64;
         Ok(FeatureSet {
             classes: (0..n_classes).map(KeyValue::Integer).collect(),
+            columns: None,
             groups: groups.map(|groups| groups.select(Axis(0), &touched)),
             data: dataset(
                 measured.features(&family.rows, &rows)?,
@@ -236,7 +239,7 @@ impl StudyPart {
 /// column). If there is not one non-negative label per row. If training or test rows are empty, beyond the features, or listed twice in one or both lists.
 pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     let file = |name: &str| array_file(folder, name);
-    let features = read_matrix(&file("features"), "features")?;
+    let (features, columns) = read_matrix(&file("features"), "features")?;
     let n_rows = features.nrows();
     let labels = read_class_labels(&file("labels"), "labels", n_rows)?;
     let split = Split {
@@ -253,6 +256,7 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
         split,
         groups: None,
         classes: labels.classes,
+        columns,
     })
 }
 
@@ -288,17 +292,21 @@ pub struct NewRows {
     pub labels: Option<Vec<KeyValue>>,
 }
 
-/// Reads the rows of a feature folder to which a trained classifier is applied: its test rows, or all rows if the folder has no `test`.
+/// Reads the rows of a feature folder to which a trained classifier is applied: its test rows, or all rows if the folder has no `test`. The names of the features
+/// of the training rows are `trained`.
 ///
 /// # Errors
-/// If a file cannot be read, or labels or test rows do not fit the features.
-pub fn read_new_rows(folder: &Path) -> Result<NewRows> {
+/// If a file cannot be read, labels or test rows do not fit the features, or a feature has another name than in the training rows.
+pub fn read_new_rows(folder: &Path, trained: Option<&[String]>) -> Result<NewRows> {
     let file = |name: &str| array_file(folder, name);
     let has = |name: &str| {
         let path = file(name);
         path.exists() && (path.file_stem() == Some(name.as_ref()) || is_member(&path, name))
     };
-    let features = read_matrix(&file("features"), "features")?;
+    let path = file("features");
+    let (features, columns) = read_matrix(&path, "features")?;
+    let names = [columns.as_deref(), trained];
+    check_names(&path.display().to_string(), names, "the training rows")?;
     let n_rows = features.nrows();
     let rows = match has("test") {
         true => read_rows(&file("test"), "test", n_rows)?,
