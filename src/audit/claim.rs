@@ -10,6 +10,7 @@ use crate::error::Result;
 use bubbletouch_sim::audit::copies::{CopySet, copy_sets};
 use bubbletouch_sim::audit::dependence::{effective_by_groups, effective_by_order};
 use bubbletouch_sim::audit::taxels::{sizes, smallest_step};
+use bubbletouch_sim::disjoint_sets::DisjointSets;
 use bubbletouch_svm::audit::{Permuted, held_out_loss, readability};
 use ndarray::Axis;
 use rayon::prelude::*;
@@ -336,15 +337,13 @@ fn clusters(context: &Context) -> Option<Finding> {
     if context.units.is_some() {
         return None;
     }
-    let mut cluster: Vec<usize> = (0..context.labels.len()).collect();
+    let mut joined = DisjointSets::new(context.labels.len());
     for (touch, near) in context.near.neighbours.iter().enumerate() {
         for &other in near.iter().take(N_CONNECTED) {
-            let (a, b) = (root(&cluster, touch), root(&cluster, other));
-            cluster[a.max(b)] = a.min(b);
+            joined.join(touch, other);
         }
     }
-    let roots = (0..cluster.len()).map(|touch| root(&cluster, touch));
-    let cluster: Vec<usize> = roots.collect();
+    let cluster = joined.roots();
     let n_clusters = cluster.iter().collect::<BTreeSet<_>>().len();
     let best = context.best(0, false)?;
     let units: Vec<usize> = context.sample.iter().map(|&touch| cluster[touch]).collect();
@@ -362,13 +361,6 @@ fn clusters(context: &Context) -> Option<Finding> {
     let advice = "If a cluster is a sequence, a pose or an object, give it as a group (--groups): a random split then recognises the cluster, not the class.";
     let finding = Finding::counted("clusters", is_found, sentence);
     Some(finding.value(accuracy, random).advice(advice))
-}
-
-fn root(cluster: &[usize], mut touch: usize) -> usize {
-    while cluster[touch] != touch {
-        touch = cluster[touch];
-    }
-    touch
 }
 
 /// Finds touches whose nearest touches all belong to one other class, to which most classifiers assign them too.

@@ -98,6 +98,8 @@
 pub mod audit;
 pub mod calibration;
 pub mod contact;
+#[doc(hidden)]
+pub mod disjoint_sets;
 pub mod dynamics;
 pub mod error;
 pub mod features;

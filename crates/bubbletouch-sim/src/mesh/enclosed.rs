@@ -8,8 +8,8 @@
 //! of other faces meet them.
 
 use super::crossings::winding;
-use super::welded::Joined;
 use super::{Bvh, Triangle, TriangleMesh, Welded};
+use crate::disjoint_sets::DisjointSets;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -55,7 +55,7 @@ impl Enclosed {
             .enumerate()
             .map(|(t, face)| faces.met_by(t, face));
         let met: Vec<Vec<Triangle>> = met.collect();
-        let mut joined = Joined::new(triangles.len());
+        let mut joined = DisjointSets::new(triangles.len());
         for sides in welded.edges() {
             if let [a, b] = sides
                 && a.is_forward != b.is_forward
@@ -63,13 +63,11 @@ impl Enclosed {
                     .iter()
                     .all(|side| met[side.triangle as usize].is_empty())
             {
-                joined.join(a.triangle, b.triangle);
+                joined.join(a.triangle as usize, b.triangle as usize);
             }
         }
         let mut largest: Vec<usize> = (0..triangles.len()).collect();
-        let groups: Vec<usize> = (0..triangles.len() as u32)
-            .map(|t| joined.root(t) as usize)
-            .collect();
+        let groups = joined.roots();
         for (t, &group) in groups.iter().enumerate() {
             if triangles[t].area() > triangles[largest[group]].area() {
                 largest[group] = t;

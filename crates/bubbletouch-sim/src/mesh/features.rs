@@ -14,6 +14,7 @@ use super::crossings::winding;
 use super::pseudonormals::Pseudonormals;
 use super::welded::{Welded, has_equal};
 use super::{Bvh, Closest, Feature, TriangleMesh};
+use crate::disjoint_sets::DisjointSets;
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
@@ -326,7 +327,7 @@ fn smooth_patches(faces: &[Face], n_corners: usize, n_edges: usize) -> Vec<u32> 
         .filter(|(edge, _)| *edge != u32::MAX)
         .collect();
     of_edge.sort_unstable();
-    let mut first: Vec<u32> = (0..faces.len() as u32).collect();
+    let mut joined = DisjointSets::new(faces.len());
     for sides in of_edge.chunk_by(|a, b| a.0 == b.0) {
         let [one, other] = *sides else { continue };
         let normals = [one, other].map(|side| faces[side.1 as usize].normal);
@@ -336,14 +337,13 @@ fn smooth_patches(faces: &[Face], n_corners: usize, n_edges: usize) -> Vec<u32> 
             _ => true,
         };
         if is_smooth {
-            let [a, b] = [one, other].map(|side| root(&mut first, side.1));
-            first[a.max(b) as usize] = a.min(b);
+            joined.join(one.1 as usize, other.1 as usize);
         }
     }
     let n_rest = n_corners + n_edges;
     let mut patches = vec![u32::MAX; n_rest];
     for (number, face) in faces.iter().enumerate() {
-        let patch = n_rest as u32 + root(&mut first, number as u32);
+        let patch = (n_rest + joined.root(number)) as u32;
         let corners = face.corner_numbers.map(|corner| corner as usize);
         let edges = face.edges.iter().filter(|edge| **edge != u32::MAX);
         let edges = edges.map(|edge| n_corners + *edge as usize);
@@ -358,15 +358,6 @@ fn smooth_patches(faces: &[Face], n_corners: usize, n_edges: usize) -> Vec<u32> 
         patches.push(patch);
     }
     patches
-}
-
-/// Returns the first face of the patch to which a face belongs (union-find with path halving).
-fn root(first: &mut [u32], mut face: u32) -> u32 {
-    while first[face as usize] != face {
-        first[face as usize] = first[first[face as usize] as usize];
-        face = first[face as usize];
-    }
-    face
 }
 
 impl Face {

@@ -1,7 +1,7 @@
 //! Holes of a mesh: detection, measures, and closing on request.
 
-use super::welded::Joined;
 use super::{TriangleMesh, Welded};
+use crate::disjoint_sets::DisjointSets;
 use crate::error::{Error, Result};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -28,13 +28,14 @@ impl Hole {
                 ([low, high], false) => [high, low],
             })
             .collect();
-        let mut joined = Joined::new(mesh.vertices().len());
+        let mut joined = DisjointSets::new(mesh.vertices().len());
         for &[a, b] in &borders {
-            joined.join(a, b);
+            joined.join(a as usize, b as usize);
         }
-        let mut parts: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
+        let mut parts: BTreeMap<usize, Vec<[u32; 2]>> = BTreeMap::new();
         for edge in borders {
-            parts.entry(joined.root(edge[0])).or_default().push(edge);
+            let root = joined.root(edge[0] as usize);
+            parts.entry(root).or_default().push(edge);
         }
         let mut holes: Vec<Self> = parts.into_values().map(|b| Self::new(mesh, b)).collect();
         holes.sort_by(|a, b| b.length.total_cmp(&a.length));

@@ -7,8 +7,8 @@
 //! its cavity.
 
 use super::crossings::winding;
-use super::welded::Joined;
 use super::{Bvh, Side, Triangle, TriangleMesh, Welded};
+use crate::disjoint_sets::DisjointSets;
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
 use std::collections::BTreeMap;
@@ -120,20 +120,22 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     fn new(mesh: &'a TriangleMesh, welded: &'a Welded) -> Self {
         let n = mesh.n_triangles();
-        let mut joined = Joined::new(n);
+        let mut joined = DisjointSets::new(n);
         for sides in welded.edges() {
             for pair in sides.windows(2) {
-                joined.join(pair[0].triangle, pair[1].triangle);
+                joined.join(pair[0].triangle as usize, pair[1].triangle as usize);
             }
         }
         let mut numbers = BTreeMap::new();
         let mut part_of = Vec::with_capacity(n);
         let mut triangles: Vec<Vec<u32>> = Vec::new();
         for triangle in 0..n as u32 {
-            let part = *numbers.entry(joined.root(triangle)).or_insert_with(|| {
-                triangles.push(Vec::new());
-                triangles.len() - 1
-            });
+            let part = *numbers
+                .entry(joined.root(triangle as usize))
+                .or_insert_with(|| {
+                    triangles.push(Vec::new());
+                    triangles.len() - 1
+                });
             part_of.push(part as u32);
             triangles[part].push(triangle);
         }

@@ -1,7 +1,8 @@
 //! Report of the faults and measures of a mesh, which itself stays unchanged.
 
-use super::welded::{Joined, has_equal};
+use super::welded::has_equal;
 use super::{Hole, Side, TriangleMesh, Welded};
+use crate::disjoint_sets::DisjointSets;
 use crate::geometry::Aabb;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -166,14 +167,14 @@ impl fmt::Display for MeshReport {
 }
 
 fn n_components(welded: &Welded, used: &[u32]) -> usize {
-    let mut joined = Joined::new(used.last().map_or(0, |&last| last as usize + 1));
-    for &[a, b, c] in &welded.corners {
+    let mut joined = DisjointSets::new(used.last().map_or(0, |&last| last as usize + 1));
+    for corners in &welded.corners {
+        let [a, b, c] = corners.map(|corner| corner as usize);
         joined.join(a, b);
         joined.join(b, c);
     }
-    used.iter()
-        .filter(|&&vertex| joined.root(vertex) == vertex)
-        .count()
+    let used = used.iter().map(|&vertex| vertex as usize);
+    used.filter(|&vertex| joined.root(vertex) == vertex).count()
 }
 
 fn n_duplicates(welded: &Welded) -> usize {
@@ -190,11 +191,11 @@ fn n_duplicates(welded: &Welded) -> usize {
 /// Returns the number of corners whose triangles form several fans. A fan consists of triangles that are joined across edges.
 fn n_pinched(welded: &Welded) -> usize {
     // One element per corner of each triangle: 3 · triangle + corner.
-    let mut joined = Joined::new(3 * welded.corners.len());
+    let mut joined = DisjointSets::new(3 * welded.corners.len());
     let at = |side: &Side, vertex: u32| {
         let corners = welded.corners[side.triangle as usize];
         let place = corners.iter().position(|&corner| corner == vertex);
-        3 * side.triangle + place.unwrap_or(0) as u32
+        3 * side.triangle as usize + place.unwrap_or(0)
     };
     for sides in welded.edges() {
         for pair in sides.windows(2) {
@@ -206,7 +207,7 @@ fn n_pinched(welded: &Welded) -> usize {
     let mut fans: BTreeMap<u32, usize> = BTreeMap::new();
     for (triangle, &corners) in welded.corners.iter().enumerate() {
         for (k, &vertex) in corners.iter().enumerate() {
-            let thing = (3 * triangle + k) as u32;
+            let thing = 3 * triangle + k;
             if !has_equal(corners) && joined.root(thing) == thing {
                 *fans.entry(vertex).or_default() += 1;
             }

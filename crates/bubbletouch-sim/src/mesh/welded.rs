@@ -80,29 +80,6 @@ pub(super) fn has_equal([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// Disjoint sets of indices (union-find).
-pub(super) struct Joined(Vec<u32>);
-
-impl Joined {
-    pub fn new(n: usize) -> Self {
-        Self((0..n as u32).collect())
-    }
-
-    pub fn root(&mut self, mut thing: u32) -> u32 {
-        while self.0[thing as usize] != thing {
-            let parent = self.0[thing as usize];
-            self.0[thing as usize] = self.0[parent as usize];
-            thing = parent;
-        }
-        thing
-    }
-
-    pub fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}
-
 /// Returns, for each vertex, the index of the first vertex with equal coordinates.
 fn places(mesh: &TriangleMesh) -> Vec<u32> {
     let mut first = HashMap::new();

@@ -10,6 +10,7 @@
 use crate::error::{Error, Result};
 use crate::studies::recognition::spec::pose_split::GroupSpec;
 use crate::world::{Touch, TouchAxis};
+use bubbletouch_sim::disjoint_sets::DisjointSets;
 use ndarray::Array1;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -100,9 +101,9 @@ impl KeepTogether {
 /// Returns the group number of each touch; touches with neighbouring poses are in one group. For each touch, returns the first touch of its connected
 /// component.
 fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)]) -> Vec<usize> {
-    let mut first: Vec<usize> = (0..touches.len()).collect();
+    let mut joined = DisjointSets::new(touches.len());
     let Some(&(along, distance)) = drawn.first() else {
-        return first;
+        return joined.roots();
     };
     // After sorting along one axis, only touches within its distance are compared. A yaw is inserted a second time, one turn later.
     let mut order: Vec<(f64, usize)> = Vec::new();
@@ -122,13 +123,11 @@ fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)
         let near = order[place + 1..].iter();
         for &(_, b) in near.take_while(|(high, _)| high - low < distance) {
             if listed[a] == listed[b] && are_neighbours(&touches[a], &touches[b], drawn) {
-                join(&mut first, a, b);
+                joined.join(a, b);
             }
         }
     }
-    (0..touches.len())
-        .map(|number| root(&mut first, number))
-        .collect()
+    joined.roots()
 }
 
 fn are_neighbours(a: &Touch, b: &Touch, drawn: &[(TouchAxis, f64)]) -> bool {
@@ -143,18 +142,4 @@ fn are_neighbours(a: &Touch, b: &Touch, drawn: &[(TouchAxis, f64)]) -> bool {
         }
     };
     drawn.iter().all(|&(axis, distance)| apart(axis) < distance)
-}
-
-/// Returns the representative of the group of neighbouring touches to which a touch belongs (root in a union-find structure).
-fn root(first: &mut [usize], mut number: usize) -> usize {
-    while first[number] != number {
-        first[number] = first[first[number]];
-        number = first[number];
-    }
-    number
-}
-
-fn join(first: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (root(first, a), root(first, b));
-    first[a.max(b)] = a.min(b);
 }

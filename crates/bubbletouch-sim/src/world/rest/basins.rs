@@ -8,6 +8,7 @@
 
 use super::descent::descend;
 use super::support::Support;
+use crate::disjoint_sets::DisjointSets;
 use glam::{DQuat, DVec3};
 
 /// Spacing of the points on a path at which the height is computed, radians: a quarter of the spacing of the mesh of directions.
@@ -90,10 +91,10 @@ fn lowest_of_each(mut passes: Vec<Pass>) -> Vec<Pass> {
     passes
 }
 
-/// Basins of directions while they are merged (union-find).
+/// Basins of directions while they are merged.
 struct Merging {
-    /// Parent of each label in the union-find structure: another label of the same basin. A root is its own parent.
-    parent: Vec<usize>,
+    /// Labels of each basin.
+    joined: DisjointSets,
     /// Lowest direction and its height, metres, for each basin, stored at the label of the basin's root.
     minimum: Vec<(DVec3, f64)>,
     /// Whether the minimum of each basin is one of the function, and not only of the mesh, stored at the label of the basin's root.
@@ -114,18 +115,16 @@ impl Merging {
             }
         }
         Self {
-            parent: (0..label.len()).collect(),
+            joined: DisjointSets::new(label.len()),
             minimum,
             is_real,
         }
     }
 
-    fn root(&mut self, mut label: usize) -> usize {
-        while self.parent[label] != label {
-            self.parent[label] = self.parent[self.parent[label]];
-            label = self.parent[label];
-        }
-        label
+    /// Returns the roots of the two basins of a pass.
+    fn roots(&mut self, pass: &Pass) -> (usize, usize) {
+        let (a, b) = pass.labels;
+        (self.joined.root(a), self.joined.root(b))
     }
 
     /// Merges basins that a low barrier separates, in order of the barriers' heights. Two basins are merged if the pass between them is less than `barrier`
@@ -134,7 +133,7 @@ impl Merging {
         let mut by_height: Vec<&Pass> = passes.iter().collect();
         by_height.sort_by(|a, b| a.height.total_cmp(&b.height));
         for pass in by_height {
-            let (a, b) = (self.root(pass.labels.0), self.root(pass.labels.1));
+            let (a, b) = self.roots(pass);
             let are_real = self.is_real[a] && self.is_real[b];
             if !are_real || pass.height - self.floor(a, b) < barrier {
                 self.join(a, b);
@@ -146,7 +145,7 @@ impl Merging {
     fn join(&mut self, a: usize, b: usize) {
         let rank = |root: usize| (!self.is_real[root], self.minimum[root].1);
         let (keep, drop) = if rank(a) <= rank(b) { (a, b) } else { (b, a) };
-        self.parent[drop] = keep;
+        self.joined.put_below(keep, drop);
     }
 
     /// Returns the larger of the minimum heights of two basins, which are given by their roots.
@@ -164,7 +163,7 @@ impl Merging {
     ) -> Vec<Pass> {
         let mut left = Vec::new();
         for pass in mesh {
-            let (a, b) = (self.root(pass.labels.0), self.root(pass.labels.1));
+            let (a, b) = self.roots(pass);
             if a != b {
                 left.push(Pass {
                     labels: (a.min(b), a.max(b)),
@@ -190,7 +189,7 @@ impl Merging {
             let [a, b, c] = corners.map(|v| support.directions[v]);
             let third = (b - a).cross(c - a).length() / 6.0;
             for &corner in corners {
-                area[self.root(label[corner])] += third;
+                area[self.joined.root(label[corner])] += third;
             }
         }
         let total: f64 = area.iter().sum();
