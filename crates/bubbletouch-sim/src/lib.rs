@@ -106,6 +106,7 @@ pub mod frame_coding;
 pub mod geometry;
 pub mod mesh;
 pub mod objects;
+pub mod own;
 pub mod packing;
 pub mod random;
 pub mod raster;
