@@ -113,6 +113,7 @@
 //! | [`schema`] | specifications of studies and scenes → JSON Schemas, reference pages |
 //! | [`studies`] | TOML → plan → work items → tables, charts, page |
 //! | [`audit`] | recorded frames with labels → findings about the data |
+//! | [`command`] | a command line → the work of a subcommand |
 //!
 //! [`recognition`], [`study`] and [`kinds`] re-export names of these stages under shorter paths.
 //!
@@ -167,7 +168,11 @@
 // `println!` panics on a closed pipe; output goes through the command.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+// Macros that other crates use too name their items by this path.
+extern crate self as bubbletouch;
+
 pub mod audit;
+pub mod command;
 pub mod engine;
 pub mod guide;
 pub mod inputs;
@@ -184,11 +189,18 @@ pub mod study;
 mod study_file;
 pub mod table;
 
+#[doc(hidden)]
+pub use bubbletouch_sim::text::toml_text;
+#[doc(no_inline)]
+pub use serde;
+#[doc(hidden)]
+pub use serde_json;
+
 pub use bubbletouch_sim::statistics::quantile;
 #[cfg(test)]
 use bubbletouch_sim::statistics::standard_errors;
 pub(crate) use bubbletouch_sim::text::{
-    encoding, note, numbers_csv, spelling, toml_lines, toml_numbers, toml_text,
+    encoding, note, numbers_csv, spelling, toml_lines, toml_numbers,
 };
 pub use bubbletouch_sim::{
     Error, Result, calibration, contact, dynamics, error, files, geometry, mesh, objects, packing,

@@ -1,6 +1,8 @@
 //! Macros that declare types of study files.
 
 /// Implements `parse` for a type that is read from the text of a TOML file.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! toml_file {
     ($file:ident) => {
         impl $file {
@@ -14,12 +16,13 @@ macro_rules! toml_file {
         }
     };
 }
-pub(crate) use toml_file;
+pub(crate) use crate::toml_file;
 
 /// Declares the keys of a study file: those that all study files share, and those of a kind.
+#[macro_export]
 macro_rules! study_file {
     (pub struct $study:ident { $($of_kind:tt)* }) => {
-        $crate::inputs::params::params! {
+        $crate::params! {
             /// Contents of a study file.
             pub struct $study {
                 /// Question that the study answers, in one sentence.
@@ -32,14 +35,14 @@ macro_rules! study_file {
             }
         }
 
-        $crate::study_file::toml_file!($study);
+        $crate::toml_file!($study);
 
         impl $study {
             /// Reads the keys of a study; the seed of the command line replaces that of the file.
             ///
             /// # Errors
             /// If a key is unknown, missing or of another type, or the seed is out of its range.
-            pub(crate) fn of(source: &$crate::studies::source::Source) -> $crate::Result<Self> {
+            pub(crate) fn of(source: &$crate::studies::Source) -> $crate::Result<Self> {
                 let spec = Self::parse(&source.place, &source.text)?;
                 let seed = source.seed(spec.seed)?;
                 Ok(Self { seed, ..spec })
@@ -47,4 +50,3 @@ macro_rules! study_file {
         }
     };
 }
-pub(crate) use study_file;

@@ -1,6 +1,7 @@
 //! `bubbletouch audit`: checks whether recorded frames with labels can carry a claim about recognition.
 
 use crate::command::options::study_args::set_threads;
+use crate::command::program;
 use crate::command::terminal::output::terminal_width;
 use crate::command::terminal::streams::{say, write_out};
 use bubbletouch::audit::{
@@ -11,6 +12,8 @@ use bubbletouch::report::folder::write_files;
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::RecordedSpec;
 use bubbletouch::{Error, Result};
+use std::borrow::Cow;
+use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -103,8 +106,8 @@ pub struct Args {
     threads: Option<usize>,
 }
 
-/// Runs the audit. The exit code is 1 if `--fail-on` asks for it.
-pub fn audit(args: &Args) -> Result<()> {
+/// Runs the audit; `words` is the command line without the program, for the page. Returns the exit code: 1 if `--fail-on` asks for it, otherwise 0.
+pub fn audit(args: &Args, words: &[OsString]) -> Result<u8> {
     set_threads(args.threads)?;
     if !(399..=100_000).contains(&args.permutations) {
         return Err(Error::input(
@@ -155,19 +158,16 @@ pub fn audit(args: &Args) -> Result<()> {
     let found = audited(data, options)?;
     let text = audit_text(&found, terminal_width());
     let is_failure = args.fail_on.is_some() && has_fault(&found.findings);
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let command = shell_line(&[&["bubbletouch"][..], &words].concat());
+    let words = words.iter().map(|word| word.to_string_lossy());
+    let words: Vec<_> = [Cow::from(program())].into_iter().chain(words).collect();
+    let command = shell_line(&words);
     let files = audit_files(found, &name, &command)?;
     std::fs::create_dir_all(&out).map_err(|error| Error::io(&out, "create folder", error))?;
     claimed.write_manifest()?;
     write_files(&out, files)?;
     write_out(text.as_bytes())?;
     say(format_args!("Page: {}", out.join("report.html").display()))?;
-    if is_failure {
-        std::process::exit(1);
-    }
-    Ok(())
+    Ok(u8::from(is_failure))
 }
 
 /// A taxel, or a range of taxels FROM..TO without its end.

@@ -1,4 +1,7 @@
 //! Command line: one file for each subcommand. The doc comments of its `Args` are its help.
+//!
+//! A program with parts of its own registers them and calls [`run`]; its command line then has all subcommands, and studies may use the parts
+//! ([guide](crate::guide::own_methods)).
 
 mod advise;
 mod audit;
@@ -23,13 +26,16 @@ mod schema;
 mod shell;
 mod simulate;
 mod slurm;
-pub mod terminal;
+mod terminal;
 mod touches;
 mod verify;
 
 use bubbletouch::Result;
 use clap::{CommandFactory, Parser, Subcommand};
 use options::study_args::QUICKSTART_FILE;
+use std::ffi::OsString;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// Simulate touch on robot skin, compress the frames, recognise the object
 ///
@@ -67,20 +73,56 @@ enum Command {
     Man(shell::ManArgs),
 }
 
-/// Parses the command line and runs its subcommand; exits with code 2 if the command line is invalid.
-pub fn dispatch() -> Result<()> {
+/// Name of the program that runs commands; empty for `bubbletouch`.
+static PROGRAM: Mutex<String> = Mutex::new(String::new());
+
+/// Returns the name of the program, the first word of the command lines that results contain.
+fn program() -> String {
+    let name = PROGRAM.lock().unwrap_or_else(PoisonError::into_inner);
+    match &**name {
+        "" => "bubbletouch".to_owned(),
+        name => name.to_owned(),
+    }
+}
+
+/// Runs a command line and returns its exit code: 0, 1 for a failure, or 2 for invalid input. Results are printed on standard output, and errors on standard
+/// error. The first argument is the name of the program, as in [`std::env::args_os`].
+///
+/// ```
+/// assert_eq!(bubbletouch::command::run(["bubbletouch", "press", "--object", "no_such_mug"]), 2);
+/// ```
+pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let name = arguments
+        .first()
+        .and_then(|path| Path::new(path).file_stem());
+    let name = name.unwrap_or_default().to_string_lossy().into_owned();
+    *PROGRAM.lock().unwrap_or_else(PoisonError::into_inner) = name;
+    dispatch(&arguments).unwrap_or_else(|error| {
+        terminal::streams::note(format_args!("error: {error}"));
+        error.exit_code()
+    })
+}
+
+/// Parses the command line and runs its subcommand. Returns the exit code of a command line that is invalid, or of an audit that found a fault.
+fn dispatch(arguments: &[OsString]) -> Result<u8> {
     bubbletouch::files::protect_inputs();
-    let line = match CommandLine::try_parse() {
+    let line = match CommandLine::try_parse_from(arguments) {
         Ok(line) => line,
         // Handles --help and --version.
-        Err(asked) if !asked.use_stderr() => return terminal::streams::written(asked.print()),
-        Err(wrong) => wrong.exit(),
+        Err(asked) if !asked.use_stderr() => {
+            return terminal::streams::written(asked.print()).map(|()| 0);
+        }
+        Err(wrong) => {
+            let _ = wrong.print();
+            return Ok(wrong.exit_code() as u8);
+        }
     };
     let quickstart = ["bubbletouch", "run", QUICKSTART_FILE, "--demonstration"];
     let command = line
         .command
         .or_else(|| CommandLine::parse_from(quickstart).command);
-    match command {
+    let done = match command {
         None => Ok(()),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Merge(args)) => merge::merge(&args),
@@ -93,7 +135,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Touches(args)) => touches::touches(&args),
         Some(Command::Features(args)) => features::features(&args),
         Some(Command::Classify(args)) => classify::classify(&args),
-        Some(Command::Audit(args)) => audit::audit(&args),
+        Some(Command::Audit(args)) => return audit::audit(&args, &arguments[1..]),
         Some(Command::Calibrate(args)) => calibrate::calibrate(&args),
         Some(Command::Simulate(args)) => simulate::simulate(&args),
         Some(Command::Press(args)) => press::press(&args),
@@ -103,7 +145,8 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Schema(args)) => schema::schema(&args),
         Some(Command::Completions(args)) => shell::completions(&args, CommandLine::command()),
         Some(Command::Man(args)) => shell::man(&args, CommandLine::command()),
-    }
+    };
+    done.map(|()| 0)
 }
 
 #[cfg(test)]

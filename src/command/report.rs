@@ -2,6 +2,7 @@
 
 use super::classify::word;
 use crate::command::options::results_folder::{checked_manifest, load_study};
+use crate::command::program;
 use crate::command::terminal::streams::{note, say};
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_folder::ChartFormat;
@@ -44,7 +45,7 @@ pub fn report(args: &Args) -> Result<()> {
             // A run reads this study file, so it must not overwrite it.
             let again = folder.with_file_name(format!("{name}.again"));
             let again = again.display().to_string();
-            let words = ["bubbletouch", "run", &study, "--out", &again];
+            let words = [&*program(), "run", &study, "--out", &again];
             (name, shell_line(&words))
         }
     };

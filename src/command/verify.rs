@@ -3,6 +3,7 @@
 use crate::command::options::memory_limit::MemoryLimit;
 use crate::command::options::results_folder::{check_page, checked_manifest, load_study};
 use crate::command::options::study_args::set_threads;
+use crate::command::program;
 use crate::command::terminal::streams::say;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::shell_line::shell_line;
@@ -45,7 +46,7 @@ pub fn verify(args: &Args) -> Result<()> {
     })?;
     let n_missing = check_page(folder, &manifest)?;
     if n_missing > 0 {
-        let again = shell_line(&["bubbletouch", "report", &folder.display().to_string()]);
+        let again = shell_line(&[&*program(), "report", &folder.display().to_string()]);
         say(format_args!(
             "note: missing charts, pictures or page: {n_missing} files; {again} draws them"
         ))?;

@@ -22,6 +22,7 @@ pub struct Check<'a> {
 }
 
 impl Check<'_> {
+    /// Returns the error of a key, with the name of the study file.
     pub fn error(&self, key: &str, given: impl ToString, allowed: impl ToString) -> Error {
         Error::input(format!("{}, key {key}", self.place), given, allowed)
     }
@@ -75,6 +76,10 @@ impl Check<'_> {
         }
     }
 
+    /// Returns the value of a key.
+    ///
+    /// # Errors
+    /// If `is_allowed` returns false; the error contains the words `allowed`.
     pub fn value(
         &self,
         key: &str,

@@ -11,7 +11,7 @@ pub mod npy;
 pub mod object_files;
 pub mod objects_spec;
 pub mod packings;
-pub(crate) mod params;
+pub mod params;
 pub mod range;
 pub mod sensor_errors;
 pub(crate) mod toml_value;

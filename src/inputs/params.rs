@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use std::any::TypeId;
 use std::collections::BTreeMap;
-use std::fmt;
+use std::fmt::{self, Display};
 use std::marker::PhantomData;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -60,7 +60,8 @@ pub trait Described: DeserializeOwned + 'static {
 }
 
 /// Reads the value of a key by [`Described::read`].
-pub(crate) struct ValueOf<T>(PhantomData<T>);
+#[doc(hidden)]
+pub struct ValueOf<T>(PhantomData<T>);
 
 impl<T> Default for ValueOf<T> {
     fn default() -> Self {
@@ -79,6 +80,7 @@ impl<'de, T: Described> DeserializeSeed<'de> for ValueOf<T> {
 /// Declares a table of keys. Each line has the meaning, the name and the type of a key, its default, and behind `=>` its range, its role in result tables, the
 /// place at which it may have a list of values, and other fields of [`KeyAbout`]. A table inside the table has no `=>`. A key without a default is required,
 /// unless its type is an `Option`. The part `unread` lists fields that the file does not set.
+#[macro_export]
 macro_rules! params {
     (
         $(#[doc = $about:literal])+
@@ -93,22 +95,23 @@ macro_rules! params {
         $(unread { $($(#[doc = $unread_doc:literal])+ $unread:ident: $unread_type:ty;)* })?
     ) => {
         $(#[doc = $about])+
-        #[derive(Clone, Debug, PartialEq, serde::Serialize $($(, $derive)*)?)]
+        #[derive(Clone, Debug, PartialEq, $crate::serde::Serialize $($(, $derive)*)?)]
+        #[serde(crate = "bubbletouch::serde")]
         pub struct $name {
             $($(#[doc = $doc])+ $(#[serde($($serde)*)])? pub $key: $type,)*
             $($($(#[doc = $unread_doc])+ #[serde(skip)] pub $unread: $unread_type,)*)?
         }
 
-        impl<'de> serde::Deserialize<'de> for $name {
-            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        impl<'de> $crate::serde::Deserialize<'de> for $name {
+            fn deserialize<D: $crate::serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
                 use $crate::inputs::params::{KeyName, ValueOf, required};
                 struct Keys;
-                impl<'de> serde::de::Visitor<'de> for Keys {
+                impl<'de> $crate::serde::de::Visitor<'de> for Keys {
                     type Value = $name;
                     fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
                         f.write_str(concat!("struct ", stringify!($name)))
                     }
-                    fn visit_map<M: serde::de::MapAccess<'de>>(self, mut map: M) -> std::result::Result<$name, M::Error> {
+                    fn visit_map<M: $crate::serde::de::MapAccess<'de>>(self, mut map: M) -> std::result::Result<$name, M::Error> {
                         $(let mut $key: Option<$type> = None;)*
                         while let Some(name) = map.next_key_seed(KeyName($name::names()))? {
                             $(
@@ -125,7 +128,7 @@ macro_rules! params {
                         Ok($name {
                             $($key: match $key {
                                 Some(value) => value,
-                                None => required(stringify!($key), $crate::inputs::params::params!(@default $type $(, $default)?))?,
+                                None => required(stringify!($key), $crate::params!(@default $type $(, $default)?))?,
                             },)*
                             $($($unread: Default::default(),)*)?
                         })
@@ -147,21 +150,21 @@ macro_rules! params {
         }
 
         impl $crate::inputs::params::Described for $name {
-            fn schema() -> serde_json::Value {
+            fn schema() -> $crate::serde_json::Value {
                 use $crate::inputs::params::TableSchema;
                 let mut table = TableSchema::new(&[$($about),+]);
                 $(table.add::<$type>(
                     stringify!($key),
                     &[$($doc),+],
-                    $crate::inputs::params::params!(@range $($range)?),
-                    $crate::inputs::params::params!(@default $type $(, $default)?),
+                    $crate::params!(@range $($range)?),
+                    $crate::params!(@default $type $(, $default)?),
                 );)*
                 table.schema()
             }
 
             fn describe_keys(path: &str, keys: &mut Vec<$crate::inputs::keys::KeyAbout>) {
                 let _ = (path, &keys);
-                $($crate::inputs::params::params!(@about $type, path, stringify!($key), keys $(, $range $(, $role, $place $(, $field: $value)*)?)?);)*
+                $($crate::params!(@about $type, path, stringify!($key), keys $(, $range $(, $role, $place $(, $field: $value)*)?)?);)*
             }
         }
     };
@@ -185,9 +188,10 @@ macro_rules! params {
         });
     };
 }
-pub(crate) use params;
+pub use crate::params;
 
 /// Declares an enum whose values are words: each variant with its meaning and its word.
+#[macro_export]
 macro_rules! words {
     (
         $(#[doc = $about:literal])+
@@ -196,7 +200,8 @@ macro_rules! words {
         }
     ) => {
         $(#[doc = $about])+
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, $crate::serde::Serialize, $crate::serde::Deserialize)]
+        #[serde(crate = "bubbletouch::serde")]
         pub enum $name {
             $($(#[doc = $doc])+ #[serde(rename = $word)] $variant,)*
         }
@@ -217,16 +222,16 @@ macro_rules! words {
         })?
 
         impl $crate::inputs::params::Described for $name {
-            fn schema() -> serde_json::Value {
+            fn schema() -> $crate::serde_json::Value {
                 use $crate::inputs::params::{described, meaning};
                 let words = [$(($word, meaning(&[$($doc),+]))),*];
-                let words = words.map(|(word, meaning)| serde_json::json!({ "type": "string", "const": word, "description": meaning }));
-                described(serde_json::json!({ "oneOf": words }), &[$($about),+])
+                let words = words.map(|(word, meaning)| $crate::serde_json::json!({ "type": "string", "const": word, "description": meaning }));
+                described($crate::serde_json::json!({ "oneOf": words }), &[$($about),+])
             }
         }
     };
 }
-pub(crate) use words;
+pub use crate::words;
 
 /// Declares a value that has one of several forms: tables with a single key each, or, if `untagged`, values of different types.
 macro_rules! variants {
@@ -237,16 +242,16 @@ macro_rules! variants {
         }
     ) => {
         $(#[doc = $about])+
-        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[derive(Clone, Debug, PartialEq, $crate::serde::Serialize, $crate::serde::Deserialize)]
         pub enum $name {
             $($(#[doc = $doc])+ #[serde(rename = $word)] $variant($type),)*
         }
 
         impl $crate::inputs::params::Described for $name {
-            fn schema() -> serde_json::Value {
+            fn schema() -> $crate::serde_json::Value {
                 use $crate::inputs::params::described;
                 let forms = [$(described(
-                    serde_json::json!({
+                    $crate::serde_json::json!({
                         "type": "object",
                         "properties": { $word: <$type as $crate::inputs::params::Described>::schema() },
                         "required": [$word],
@@ -254,7 +259,7 @@ macro_rules! variants {
                     }),
                     &[$($doc),+],
                 )),*];
-                described(serde_json::json!({ "oneOf": forms }), &[$($about),+])
+                described($crate::serde_json::json!({ "oneOf": forms }), &[$($about),+])
             }
         }
     };
@@ -266,17 +271,17 @@ macro_rules! variants {
         }
     ) => {
         $(#[doc = $about])+
-        #[derive(Clone, Debug, PartialEq, serde::Serialize $(, serde::$derive)*)]
+        #[derive(Clone, Debug, PartialEq, $crate::serde::Serialize $(, $crate::serde::$derive)*)]
         #[serde(untagged $(, expecting = $expecting)?)]
         pub enum $name {
             $($(#[doc = $doc])+ $variant($type),)*
         }
 
         impl $crate::inputs::params::Described for $name {
-            fn schema() -> serde_json::Value {
+            fn schema() -> $crate::serde_json::Value {
                 use $crate::inputs::params::described;
                 let forms = [$(described(<$type as $crate::inputs::params::Described>::schema(), &[$($doc),+])),*];
-                let forms = serde_json::json!({ "anyOf": forms $(, "title": $title)? });
+                let forms = $crate::serde_json::json!({ "anyOf": forms $(, "title": $title)? });
                 described(forms, &[$($about),+])
             }
         }
@@ -302,7 +307,8 @@ pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 /// Returns the path of a key, given the path of its table.
-pub(crate) fn joined(path: &str, name: &str) -> String {
+#[doc(hidden)]
+pub fn joined(path: &str, name: &str) -> String {
     match path {
         "" => name.to_owned(),
         path => format!("{path}.{name}"),
@@ -310,10 +316,8 @@ pub(crate) fn joined(path: &str, name: &str) -> String {
 }
 
 /// Returns the names that a key adds to its table: those that its value takes from the table, or its own.
-pub(crate) fn own_or_inner(
-    name: &'static str,
-    inner: &'static [&'static str],
-) -> Vec<&'static str> {
+#[doc(hidden)]
+pub fn own_or_inner(name: &'static str, inner: &'static [&'static str]) -> Vec<&'static str> {
     match inner.is_empty() {
         true => vec![name],
         false => inner.to_vec(),
@@ -324,10 +328,8 @@ pub(crate) fn own_or_inner(
 ///
 /// # Errors
 /// If the key is required.
-pub(crate) fn required<T, E: serde::de::Error>(
-    name: &'static str,
-    absent: Option<T>,
-) -> Result<T, E> {
+#[doc(hidden)]
+pub fn required<T, E: serde::de::Error>(name: &'static str, absent: Option<T>) -> Result<T, E> {
     absent.ok_or_else(|| E::missing_field(name))
 }
 
@@ -341,7 +343,7 @@ pub(crate) fn empty_table<T: DeserializeOwned>() -> T {
 }
 
 /// Returns the descriptions of all keys of a file.
-pub(crate) fn keys_of<T: Described>() -> &'static [KeyAbout] {
+pub fn keys_of<T: Described>() -> &'static [KeyAbout] {
     static KNOWN: Mutex<BTreeMap<TypeId, &[KeyAbout]>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     known.entry(TypeId::of::<T>()).or_insert_with(|| {
@@ -352,7 +354,8 @@ pub(crate) fn keys_of<T: Described>() -> &'static [KeyAbout] {
 }
 
 /// Reads the name of a key, one of the given names.
-pub(crate) struct KeyName<'n>(pub &'n [&'static str]);
+#[doc(hidden)]
+pub struct KeyName<'n>(pub &'n [&'static str]);
 
 impl<'de> DeserializeSeed<'de> for KeyName<'_> {
     type Value = &'static str;
@@ -365,7 +368,7 @@ impl<'de> DeserializeSeed<'de> for KeyName<'_> {
 }
 
 /// Returns the message of an unknown key or word, as serde words it.
-pub(crate) fn unknown(what: &str, given: &str, known: &[&str]) -> String {
+pub(crate) fn unknown(what: &str, given: &str, known: &[impl Display]) -> String {
     let known: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
     let expected = match &known[..] {
         [] => return format!("unknown {what} `{given}`, there are no {what}s"),
@@ -407,12 +410,14 @@ pub(crate) fn sentence(words: &str) -> String {
 }
 
 /// Returns the text of a doc comment, given its lines.
-pub(crate) fn meaning(lines: &[&str]) -> String {
+#[doc(hidden)]
+pub fn meaning(lines: &[&str]) -> String {
     plain(&lines.join("\n"))
 }
 
 /// Adds the text of a doc comment to a schema.
-pub(crate) fn described(mut schema: Value, lines: &[&str]) -> Value {
+#[doc(hidden)]
+pub fn described(mut schema: Value, lines: &[&str]) -> Value {
     schema["description"] = meaning(lines).into();
     schema
 }
@@ -421,7 +426,8 @@ pub(crate) fn described(mut schema: Value, lines: &[&str]) -> Value {
 pub(crate) const ORDER: &str = "x-order";
 
 /// JSON Schema of a table, to which keys are added.
-pub(crate) struct TableSchema {
+#[doc(hidden)]
+pub struct TableSchema {
     about: String,
     keys: Map<String, Value>,
     order: Vec<&'static str>,

@@ -4,8 +4,11 @@ use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::params::words;
 use crate::inputs::range::Range;
 use crate::random::Seed;
-use crate::signal::{MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
+use crate::signal::{
+    MAX_OWN_STRENGTHS, MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength,
+};
 use crate::table::{Column, Role, Scale};
+use std::fmt;
 use std::sync::LazyLock;
 
 words! {
@@ -18,7 +21,7 @@ words! {
     }
 }
 
-/// Number of strengths (parameters) that all sensor errors have together.
+/// Number of strengths (parameters) that all built-in sensor errors have together.
 const N_STRENGTHS: usize = {
     let (mut n, mut place) = (0, 0);
     while place < SENSOR_ERRORS.len() {
@@ -30,10 +33,9 @@ const N_STRENGTHS: usize = {
 
 /// Returns the strengths (parameters) of all sensor errors in the order of table columns, from the material to the electronics.
 pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)> {
-    let errors = SENSOR_ERRORS.iter();
-    errors.flat_map(|error| {
+    SensorError::all().flat_map(|error| {
         let strengths = error.about().strengths.iter();
-        strengths.map(|strength| (*error, strength))
+        strengths.map(move |strength| (error, strength))
     })
 }
 
@@ -78,28 +80,49 @@ pub fn strength_columns() -> &'static [Column] {
 }
 
 /// Strengths of all sensor errors in the units of their keys; `None` for strengths that a study does not set.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Strengths([Option<f64>; N_STRENGTHS]);
+#[derive(Clone, Copy, Default, PartialEq)]
+pub struct Strengths {
+    built_in: [Option<f64>; N_STRENGTHS],
+    /// Strengths of the errors that the program has registered.
+    own: [Option<f64>; MAX_OWN_STRENGTHS],
+}
+
+/// Writes the strengths of all built-in errors, and those of registered errors that are not zero. The names of work items contain this text, so an error that
+/// a study does not use changes no name.
+impl fmt::Debug for Strengths {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let mut text = f.debug_tuple("Strengths");
+        text.field(&self.built_in);
+        for (error, strength, value) in self.present() {
+            if let SensorError::Own(own) = error {
+                text.field(&(own, strength.key, value));
+            }
+        }
+        text.finish()
+    }
+}
 
 impl Strengths {
     /// Returns the strength that the study sets with this key; `None` if the study does not set it.
     pub fn get(&self, key: &str) -> Option<f64> {
-        let mut all = all_strengths().zip(self.0);
-        all.find_map(|((_, strength), value)| value.filter(|_| strength.key == key))
+        let mut given = self.given();
+        given.find_map(|(_, strength, value)| (strength.key == key).then_some(value))
     }
 
     /// Returns a copy in which the strength with this key has a different value.
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
-        let place = all_strengths().position(|(_, strength)| strength.key == key);
-        if let Some(place) = place {
-            self.0[place] = value;
+        let slots = self.built_in.iter_mut().chain(&mut self.own);
+        let mut slots = all_strengths().zip(slots);
+        if let Some((_, slot)) = slots.find(|((_, strength), _)| strength.key == key) {
+            *slot = value;
         }
         self
     }
 
     /// Returns the strengths of sensor errors that the study sets.
     pub fn given(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
-        let all = all_strengths().zip(self.0);
+        let values = self.built_in.into_iter().chain(self.own);
+        let all = all_strengths().zip(values);
         all.filter_map(|((error, strength), value)| Some((error, strength, value?)))
     }
 
@@ -144,6 +167,9 @@ pub(crate) fn strength_words(error: SensorError, strength: &Strength) -> String 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::inputs::params::keys_of;
+    use crate::signal::ErrorAbout;
+    use crate::study::SignalSpec;
 
     #[test]
     fn a_strength_is_found_by_its_key_and_zero_is_none_of_it() {
@@ -157,6 +183,26 @@ mod tests {
             let none = strengths.with(strength.key, Some(0.0));
             assert_eq!((none.present().count(), none.given().count()), (0, 1));
         }
+    }
+
+    #[test]
+    fn a_registered_error_may_not_take_a_word_of_signal() {
+        let keys = keys_of::<SignalSpec>().iter().map(|key| key.name());
+        let steps = ["force", "noise", "smoothing", "gain"];
+        let mut n_refused = 0;
+        for word in keys.chain(steps) {
+            for [step, key] in [[word, "free"], ["free", word], [word, word]] {
+                let strength = Strength::fraction(String::from(key).leak(), "share");
+                let about =
+                    ErrorAbout::new(String::from(step).leak(), vec![strength].leak(), |_, _| {
+                        unreachable!("it is refused")
+                    });
+                let said = SensorError::register("1", about).unwrap_err().to_string();
+                assert!(said.contains("that no other part has"), "{said}");
+                n_refused += 1;
+            }
+        }
+        assert!(n_refused > 60, "{n_refused}");
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub(super) struct KindSchema {
 
 /// Returns the schema of each kind of study, recognition first.
 pub(super) fn kinds() -> Vec<KindSchema> {
-    let kinds = studies::KINDS.iter().rev();
+    let kinds = studies::entries().rev();
     let kinds = kinds.map(|kind| {
         let mut schema = (kind.schema)();
         if kind.about.table == studies::RECOGNITION_TABLE {

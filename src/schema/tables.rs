@@ -2,7 +2,7 @@
 
 use crate::inputs::doc_comment::plain;
 use crate::report::comparison::differences::Difference;
-use crate::studies::{KINDS, failures_about};
+use crate::studies::{entries, failures_about};
 use crate::table::{Better, Column, Columns, FileAbout, Role};
 
 /// Introduction of the page `guide/tables.md`.
@@ -24,7 +24,7 @@ const MIN_SHARED: usize = 4;
 /// Returns the page.
 pub fn tables_page() -> String {
     let mut page = START.to_owned();
-    for kind in KINDS.iter().rev() {
+    for kind in entries().rev() {
         page.push_str(&format!("\n## Studies with `[{}]`\n", kind.about.table));
         let always = kind.tables.always.iter().map(|file| (file.about(), ""));
         let presence = " Only some studies have this table.";

@@ -2,7 +2,6 @@
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;
-use crate::engine::program::PROGRAM;
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::provenance::{Manifest, REPORT};
 use crate::engine::work_items::pending::{Part, RunOptions};
@@ -53,8 +52,12 @@ impl<K: Study> Loaded<K> {
         let facts = kind.facts()?;
         let (toml, content) = (facts.toml.clone(), facts.content.clone());
         let items: Arc<[WorkItem]> = kind.work_items().into();
+        let mut identity = Identity::new(toml, content, items.clone());
+        if !K::VERSION.is_empty() {
+            identity.program += &format!(" with {}@{}", K::ABOUT.table, K::VERSION);
+        }
         Ok(Self {
-            identity: Identity::new(toml, content, items.clone()),
+            identity,
             items,
             memory: source.memory,
             facts,
@@ -94,7 +97,7 @@ impl<K: Study> Loaded<K> {
             question: self.facts.question.clone(),
             expected: self.facts.expected.clone(),
             wall_s: wall_s.unwrap_or(f64::NAN),
-            program: PROGRAM.to_owned(),
+            program: self.identity.program.clone(),
             ..of_run
         };
         let found = Found {

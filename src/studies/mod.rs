@@ -1,4 +1,6 @@
-//! Kinds of studies: one folder and one entry in `KINDS` for each kind.
+//! Kinds of studies: one folder and one entry in `KINDS` for each kind. A program [registers] kinds of its own.
+//!
+//! [registers]: register
 //!
 //! A kind of study ([`Study`]) lists the work items of a study, computes them, and makes tables, charts, pictures and answers. All
 //! commands use [`AnyStudy`], so that every command works with every kind.
@@ -8,7 +10,7 @@ pub(crate) mod loaded;
 pub(crate) mod median_time;
 pub(crate) mod model_recognition;
 pub mod object_detail;
-pub(crate) mod prelude;
+pub mod prelude;
 pub mod recognition;
 pub mod reconstruction;
 pub(crate) mod source;
@@ -35,6 +37,7 @@ use crate::report::csv_tables::FAILURES_FILE;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::table::{FileAbout, Table};
 use crate::toml_text;
+use bubbletouch_sim::own::{Own, Registry};
 use std::path::Path;
 
 /// Registry entry of a kind of study, without static type, so that all kinds are in one list.
@@ -50,14 +53,34 @@ pub(crate) struct Entry {
     pub keys: fn() -> Vec<KeyAbout>,
 }
 
-/// Registry of all kinds of studies.
-pub(crate) const KINDS: &[Entry] = &[
+/// Kinds of studies of this program.
+const KINDS: &[Entry] = &[
     entry::<object_detail::ObjectDetailStudy>(),
     entry::<reconstruction::ReconstructionStudy>(),
     entry::<stability::StabilityPlan>(),
     entry::<whole_body::WholeBodyPlan>(),
     RECOGNITION,
 ];
+
+/// Kinds of studies that a program has registered.
+static OWN: Registry<Entry> = Registry::new("kind of study");
+
+/// Registers a kind of study from outside of this crate, before the first study is read. All functions and commands then know it by the table of its
+/// [`About`]. Results of another [`Study::VERSION`] are not continued.
+///
+/// # Errors
+/// If another kind has the table, the version is invalid, or a study was read before.
+pub fn register<K: Study>() -> Result<()> {
+    let table = K::ABOUT.table;
+    let is_taken = KINDS.iter().any(|entry| entry.about.table == table);
+    OWN.register(table, K::VERSION, entry::<K>(), is_taken)?;
+    Ok(())
+}
+
+/// Returns the entries of all kinds, registered ones first and recognition last.
+pub(crate) fn entries() -> impl DoubleEndedIterator<Item = &'static Entry> {
+    OWN.all().iter().map(Own::about).chain(KINDS)
+}
 
 /// Default kind of study: a file without a table of another kind describes a recognition study.
 const RECOGNITION: Entry = entry::<recognition::study::RecognitionStudy>();
@@ -87,13 +110,13 @@ pub fn about(text: &str) -> Option<About> {
 
 /// Returns the descriptions of all keys of a kind of study; `kind` is a name such as `recognition` or `stability`. Returns `None` if there is no such kind.
 pub fn keys(kind: &str) -> Option<Vec<KeyAbout>> {
-    let entry = KINDS.iter().find(|entry| entry.about.table == kind)?;
+    let entry = entries().find(|entry| entry.about.table == kind)?;
     Some((entry.keys)())
 }
 
 /// Returns the names of the tables that identify the kinds of studies, such as `stability`. Each name is a valid argument of [`keys`].
 pub fn kinds() -> impl Iterator<Item = &'static str> {
-    KINDS.iter().map(|entry| entry.about.table)
+    entries().map(|entry| entry.about.table)
 }
 
 /// Reads and checks a study of any kind. If its file has no table that identifies a kind, the file is read as a recognition study.
@@ -167,6 +190,5 @@ pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
 /// which the reader of the study reports.
 fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;
-    let mut kinds = KINDS.iter();
-    kinds.find(|entry| table.contains_key(entry.about.table))
+    entries().find(|entry| table.contains_key(entry.about.table))
 }

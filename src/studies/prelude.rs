@@ -1,22 +1,21 @@
-//! Names that most kinds of studies use.
+//! Names that most kinds of studies use, also kinds from outside of this crate.
 
-pub(crate) use crate::engine::axis::Axis;
-pub(crate) use crate::engine::work_items::{PendingItems, Scale, Shared, WorkItem};
-pub(crate) use crate::error::{Error, Result};
-pub(crate) use crate::inputs::check::Check;
-pub(crate) use crate::inputs::keys::KeyAbout;
-pub(crate) use crate::inputs::object_files::{load_objects, objects_content};
-pub(crate) use crate::inputs::objects_spec::ObjectsSpec;
-pub(crate) use crate::inputs::params::{keys_of, params, words};
-pub(crate) use crate::random::Seed;
-pub(crate) use crate::row;
-pub(crate) use crate::studies::recognition::plan::taxel_array::TaxelArray;
-pub(crate) use crate::studies::recognition::spec::scene::{SkinSpec, TouchesSpec};
+pub use crate::engine::axis::Axis;
+pub use crate::engine::work_items::{PendingItems, Scale, Shared, WorkItem};
+pub use crate::error::{Error, Result};
+pub use crate::inputs::check::Check;
+pub use crate::inputs::keys::KeyAbout;
+pub use crate::inputs::object_files::{load_objects, objects_content};
+pub use crate::inputs::objects_spec::ObjectsSpec;
+pub use crate::inputs::params::keys_of;
+pub use crate::random::Seed;
+pub use crate::studies::recognition::plan::taxel_array::TaxelArray;
+pub use crate::studies::recognition::spec::scene::{SkinSpec, TouchesSpec};
 pub(crate) use crate::studies::recognition::sweep::configurations::nested;
-pub(crate) use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
-pub(crate) use crate::studies::source::Source;
-pub(crate) use crate::studies::study::{
+pub use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
+pub use crate::studies::source::Source;
+pub use crate::studies::study::{
     About, AnyFile, Facts, Study, TableFiles, shared_inputs, work_items_of,
 };
-pub(crate) use crate::study_file::study_file;
-pub(crate) use crate::table::{ChartSpec, File, Mark, Table};
+pub use crate::table::{ChartSpec, File, Mark, Table};
+pub use crate::{params, row, study_file, words};

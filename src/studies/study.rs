@@ -241,6 +241,10 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Description of the kind of study.
     const ABOUT: About;
 
+    /// Version of a kind from outside of this crate, 1 to 64 letters (A–Z, a–z), digits, `_`, `-` and `.`. Results of another version are not continued. Kinds of
+    /// this crate have the version of the program.
+    const VERSION: &'static str = "";
+
     /// Table files to which a study writes its results.
     const TABLES: TableFiles;
 
@@ -337,7 +341,7 @@ pub(crate) fn settings_words(configuration: &impl Serialize) -> String {
 
 /// Returns one work item for each configuration of a study. The configurations, with the further inputs of their items, contain the values of all swept keys, and
 /// no numbers of configurations.
-pub(crate) fn work_items_of<'a, S: Study, C: Serialize + 'a, I: Serialize>(
+pub fn work_items_of<'a, S: Study, C: Serialize + 'a, I: Serialize>(
     spec: &S::Spec,
     configurations: impl IntoIterator<Item = (&'a C, I)>,
 ) -> Vec<WorkItem> {
@@ -352,7 +356,7 @@ pub(crate) fn work_items_of<'a, S: Study, C: Serialize + 'a, I: Serialize>(
 
 /// Returns the keys of a study that are inputs of all its work items. The words of the study are no inputs. Swept keys and lists of tables are inputs of single
 /// work items, which have one of their values or entries.
-pub(crate) fn shared_inputs(spec: &impl Serialize, keys: &[KeyAbout]) -> toml::Table {
+pub fn shared_inputs(spec: &impl Serialize, keys: &[KeyAbout]) -> toml::Table {
     let mut table = toml_text::table(&toml_text::write(spec)).unwrap_or_default();
     for words in ["question", "expected"] {
         table.remove(words);

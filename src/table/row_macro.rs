@@ -29,7 +29,8 @@ macro_rules! row {
         $role:ident $(($better:ident))? $($words:literal)? $(in $unit:literal)? $(: $scale:ident)?
         $(between [$low:ident, $high:ident])? $(named $names:path)? $(, $optional:ident)?;)* }) => {
         $(#[$of_row])*
-        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[derive(Clone, Debug, PartialEq, $crate::serde::Serialize, $crate::serde::Deserialize)]
+        #[serde(crate = "bubbletouch::serde")]
         pub struct $row {
             $($(#[$($of_field)*])* pub $field: $type,)*
         }

@@ -153,6 +153,31 @@ impl From<linfa::Error> for Error {
     }
 }
 
+/// Conversion for classifiers from outside of the crates, so that all parts of a program may return [`Error`].
+#[cfg(feature = "learning")]
+impl From<Error> for bubbletouch_svm::Error {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Input {
+                place,
+                given,
+                allowed,
+            } => Self::input(place, given, allowed),
+            other => Self::input("classifier", other, "a training without an error"),
+        }
+    }
+}
+
+/// Conversion of any error of a part from outside of this crate.
+impl From<Box<dyn std::error::Error + Send + Sync>> for Error {
+    fn from(error: Box<dyn std::error::Error + Send + Sync>) -> Self {
+        match error.downcast() {
+            Ok(ours) => *ours,
+            Err(other) => Self::input("part of the program", other, "a part without an error"),
+        }
+    }
+}
+
 #[cfg(feature = "learning")]
 impl From<bubbletouch_svm::Error> for Error {
     fn from(error: bubbletouch_svm::Error) -> Self {
@@ -211,6 +236,16 @@ mod tests {
         let long_lines = said(&("-".repeat(300) + "\n").repeat(20));
         assert!(long_lines.len() < BYTES + 400, "{long_lines}");
         assert!(long_lines.contains("and 13 more lines"), "{long_lines}");
+    }
+
+    #[test]
+    fn an_error_of_an_own_part_keeps_its_words() {
+        let boxed: Box<dyn std::error::Error + Send + Sync> = "no fit".into();
+        let said = Error::from(boxed).to_string();
+        assert_eq!(said, "part of the program: no fit; a part without an error");
+        let ours = Error::input("a", "b", "c");
+        let boxed: Box<dyn std::error::Error + Send + Sync> = ours.into();
+        assert_eq!(Error::from(boxed).to_string(), "a: b; c");
     }
 
     #[test]

@@ -108,6 +108,7 @@ pub mod frame_coding;
 pub mod geometry;
 pub mod mesh;
 pub mod objects;
+pub mod own;
 pub mod packing;
 pub mod random;
 pub mod raster;

@@ -28,6 +28,16 @@ impl Error {
     }
 }
 
+/// Converts any error of a classifier from outside of this crate.
+impl From<Box<dyn std::error::Error + Send + Sync>> for Error {
+    fn from(error: Box<dyn std::error::Error + Send + Sync>) -> Self {
+        match error.downcast() {
+            Ok(ours) => *ours,
+            Err(other) => Self::input("classifier", other, "a classifier without an error"),
+        }
+    }
+}
+
 /// Converts a linfa error into an input error, as linfa's traits require.
 impl From<linfa::Error> for Error {
     fn from(error: linfa::Error) -> Self {

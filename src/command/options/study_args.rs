@@ -1,5 +1,6 @@
 //! Study that a command uses: its file, and the values that options replace.
 
+use crate::command::program;
 use crate::command::terminal::output::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};
 use bubbletouch::shell_line::shell_line;
@@ -65,7 +66,7 @@ impl StudyArgs {
 
     /// Returns the shell command that repeats the study and writes its results to the folder `out`, or to the default folder.
     pub fn command(&self, subcommand: &str, out: Option<&Path>) -> String {
-        let mut words = vec!["bubbletouch".to_owned(), subcommand.to_owned()];
+        let mut words = vec![program(), subcommand.to_owned()];
         words.extend(self.arguments());
         if let Some(out) = out {
             words.extend(["--out".to_owned(), out.display().to_string()]);
@@ -126,8 +127,12 @@ pub fn set_threads(threads: Option<usize>) -> Result<()> {
         return Err(Error::input("--threads", threads, allowed));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    pool.build_global().map_err(|error| {
-        let allowed = "a number of threads that the system can start";
-        Error::input("--threads", format!("{threads} ({error})"), allowed)
-    })
+    match pool.build_global() {
+        // An earlier command of this process has started the threads.
+        Err(_) if rayon::current_num_threads() == threads => Ok(()),
+        started => started.map_err(|error| {
+            let allowed = "a number of threads that the system can start";
+            Error::input("--threads", format!("{threads} ({error})"), allowed)
+        }),
+    }
 }

@@ -1,5 +1,6 @@
 //! A small kind of study has all abilities of a study: it runs, continues with its journal, is verified, and is reported again.
 
+#[path = "../../../examples/own_kind/saturation.rs"]
 mod saturation;
 
 use crate::engine::journal::journal_file::{JOURNAL_FILE, Journal};
@@ -14,22 +15,7 @@ use std::fs;
 use std::path::Path;
 use std::time::SystemTime;
 
-const STUDY: &str = r#"
-question = "Which touches are saturated?"
-[objects]
-sets = ["household"]
-names = ["tennis_ball", "mug"]
-surface_error_mm = 1.0
-[skin]
-pitch_mm = 4.0
-taxels = 16
-stroke_mm = 2.0
-[touches]
-offset_x_mm = [0.0, 4.0]
-depth_mm = [1.0, 4.0]
-[saturation]
-n_taxels = [1, 60]
-"#;
+const STUDY: &str = include_str!("../../../examples/own_kind/saturation.toml");
 
 fn load(text: &str) -> Loaded<SaturationStudy> {
     Loaded::load(&Source::of_text("saturation.toml", text)).unwrap()
@@ -75,6 +61,13 @@ fn a_small_kind_of_study_runs_continues_is_verified_and_reported() {
     };
     more.report(folder, about).unwrap();
     assert!(before == drawn());
+    // The version of the kind is a part of the program.
+    let mut earlier = more.identity().clone();
+    assert!(earlier.program.ends_with(" with saturation@1"));
+    earlier.program = earlier.program.replace("@1", "@2");
+    let refused = Journal::open(&folder.join(JOURNAL_FILE), &earlier).unwrap_err();
+    let said = refused.to_string();
+    assert!(said.contains("saturation@1, is bubbletouch"), "{said}");
     // All results depend on the stroke.
     let other = load(&STUDY.replace("stroke_mm = 2.0", "stroke_mm = 3.0"));
     let refused = Journal::open(&folder.join(JOURNAL_FILE), other.identity()).unwrap_err();

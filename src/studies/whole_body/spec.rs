@@ -6,7 +6,7 @@ use crate::inputs::range::Range::{Any, Count, NotNegative, Positive, Unchecked};
 use crate::inputs::range::{COUNT, SURFACE_ERROR, TOUCHES};
 use crate::scene::{JointsSpec, ObjectSpec};
 use crate::sensing::Ensemble;
-use crate::study_file::study_file;
+use crate::study_file;
 
 study_file! {
 pub struct WholeBodyStudySpec {

@@ -1,4 +1,6 @@
-//! linfa's cross-validation on published data sets, and a press.
+//! Own parts of studies, linfa's cross-validation on published data sets, and a press.
+
+mod own_parts;
 
 use bubbletouch_sim::contact::{Workspace, press_to_depth};
 use bubbletouch_sim::geometry::Pose;
@@ -30,6 +32,7 @@ fn validated(mut data: Dataset<f64, usize, Ix1>) -> Result<Array1<f32>, Error> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    own_parts::check()?;
     let mut rng = ChaCha8Rng::seed_from_u64(2018);
     let iris = linfa_datasets::iris().shuffle(&mut rng);
     let accuracies = validated(iris)?;

@@ -19,12 +19,12 @@ type FileId = PathBuf;
 /// Input files recorded so far, each with the path under which it was read; `None` if recording is off.
 static INPUTS: Mutex<Option<BTreeMap<FileId, PathBuf>>> = Mutex::new(None);
 
-/// Starts recording the files that this process reads, and prevents overwriting them.
+/// Starts recording the files that this process reads, and prevents overwriting them. Inputs of an earlier command of the process are forgotten.
 ///
 /// Call this function first in a command. A library does not call this function, because a program may read a file and replace it on purpose.
 pub fn protect_inputs() {
     let mut inputs = INPUTS.lock().unwrap_or_else(|e| e.into_inner());
-    inputs.get_or_insert_default();
+    *inputs = Some(BTreeMap::new());
 }
 
 /// Opens a file for reading and records the file as an input.

@@ -10,7 +10,7 @@
 use super::noise::NoiseByNumber;
 use super::step::seed_of_repetition;
 use super::taxel_effect::{CHUNK, Chunk, TaxelEffect};
-use super::{MAX_STRENGTHS, Moment, Quantity, SENSOR_ERRORS, SensorError, SignalStep};
+use super::{MAX_STRENGTHS, Moment, Quantity, SensorError, SignalStep};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::whole_body::{BodyState, WholeBody};
@@ -255,7 +255,7 @@ fn prepare(
 const OF_OTHERS: &str = "which needs other taxels or other frames";
 
 fn refused(step: &str, why: &str) -> Error {
-    let errors = SENSOR_ERRORS.iter().map(|error| error.about());
+    let errors = SensorError::all().map(SensorError::about);
     let by_taxel = errors.filter(|about| about.by_taxel.is_some());
     let words: Vec<&str> = by_taxel.map(|about| about.step).collect();
     Error::input(

@@ -73,5 +73,5 @@ pub use quantity::Quantity;
 pub use resampling::{resample, resampled_instant};
 pub use sensor_error::{Effect, ErrorAbout, MAX_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;
-pub use step::SignalStep;
+pub use step::{MAX_OWN_STRENGTHS, SignalStep};
 pub use taxel_effect::Moment;

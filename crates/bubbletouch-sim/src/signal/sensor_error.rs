@@ -114,11 +114,7 @@ impl PartialEq for Strength {
 
 impl ErrorAbout {
     /// Describes a sensor error with default properties: not a property of a skin, not random between readings, and independent of earlier touches.
-    pub(super) const fn new(
-        step: &'static str,
-        strengths: &'static [Strength],
-        prepare: Prepare,
-    ) -> Self {
+    pub const fn new(step: &'static str, strengths: &'static [Strength], prepare: Prepare) -> Self {
         Self {
             step,
             strengths,
@@ -146,7 +142,7 @@ impl Strength {
     }
 
     /// Describes a strength that is a fraction from 0 to 1, with its key and its display name.
-    pub(super) const fn fraction(key: &'static str, words: &'static str) -> Self {
+    pub const fn fraction(key: &'static str, words: &'static str) -> Self {
         Self {
             key,
             words,
@@ -159,11 +155,7 @@ impl Strength {
     }
 
     /// Describes a strength that is a fraction without an upper bound, with its key, its display name and the allowed values in words.
-    pub(super) const fn share(
-        key: &'static str,
-        words: &'static str,
-        allowed: &'static str,
-    ) -> Self {
+    pub const fn share(key: &'static str, words: &'static str, allowed: &'static str) -> Self {
         Self {
             range: [0.0, f64::MAX],
             allowed,
@@ -181,9 +173,11 @@ macro_rules! sensor_errors {
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum SensorError {
             $(#[doc = $doc] $name,)*
+            /// Sensor error from outside of this crate; see [`register`](Self::register).
+            Own(crate::own::Own<ErrorAbout>),
         }
 
-        /// List of all sensor errors.
+        /// List of all sensor errors of this crate; [`SensorError::all`] also returns registered ones.
         pub const SENSOR_ERRORS: &[SensorError] = &[$(SensorError::$name),*];
 
         impl SensorError {
@@ -191,6 +185,7 @@ macro_rules! sensor_errors {
             pub const fn about(self) -> &'static ErrorAbout {
                 match self {
                     $(Self::$name => &$file::ABOUT,)*
+                    Self::Own(own) => own.about(),
                 }
             }
         }

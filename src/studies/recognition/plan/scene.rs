@@ -21,7 +21,7 @@ fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
 
 impl ObjectsSpec {
     /// Sets the defaults that depend on the arrays: the contact model of meshes and the maximum surface error of packed spheres.
-    pub(crate) fn settle_surface_error(&mut self, arrays: &[TaxelArray]) {
+    pub fn settle_surface_error(&mut self, arrays: &[TaxelArray]) {
         if self.meshes.is_some() {
             // The default is stored in the specification, so that the results record which model was used.
             self.model.get_or_insert_default();
@@ -58,6 +58,7 @@ impl SkinSpec {
 }
 
 impl Check<'_> {
+    /// Checks `[objects]`: the study names sets or meshes, and no key has no effect.
     pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
         let given = self.table("objects", objects)?;
         if objects.meshes.is_some() {

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::inputs::check::Check;
 use crate::inputs::sensor_errors::{NOISES, Strengths, TestSensor};
 use crate::inputs::units::MM;
-use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
+use crate::signal::{NoiseUnit, SensorError, Strength};
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec};
@@ -64,7 +64,7 @@ impl Check<'_> {
             let axis = signal.axes.get(strength.key).into_iter();
             axis.flat_map(Axis::values).fold(0.0, f64::max)
         };
-        for error in SENSOR_ERRORS {
+        for error in SensorError::all() {
             let about = error.about();
             if let [first, second] = about.strengths
                 && largest(first) + largest(second) > 1.0
@@ -101,7 +101,7 @@ impl Check<'_> {
         if skins.all(|skin| skin == TestSensor::SameSkin) || signal.steps.iter().any(is_of_skin) {
             return Ok(());
         }
-        let all = SENSOR_ERRORS.iter().map(|error| error.about());
+        let all = SensorError::all().map(SensorError::about);
         let of_skin: Vec<&str> = all.filter(|e| e.is_of_skin).map(|e| e.step).collect();
         let given = "given for skins without a difference";
         let allowed = format!("{} among signal.steps beside it", of_skin.join(" or "));

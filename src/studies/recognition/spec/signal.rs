@@ -8,7 +8,7 @@ use crate::inputs::range::Range::{self, Any, Unchecked};
 use crate::inputs::sensor_errors::{
     NOISES, TestSensor, all_strengths, noise_words, strength_keys, strength_words,
 };
-use crate::signal::{NoiseUnit, SENSOR_ERRORS, SensorError};
+use crate::signal::{NoiseUnit, SensorError};
 use crate::table::{Role, Scale};
 use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -111,7 +111,7 @@ impl StepSpec {
 
     /// Returns all steps that a signal chain may have.
     fn all() -> impl Iterator<Item = Self> {
-        let errors = SENSOR_ERRORS.iter().map(|error| Self::Error(*error));
+        let errors = SensorError::all().map(Self::Error);
         [Self::Force, Self::Noise, Self::Smoothing]
             .into_iter()
             .chain(errors)
@@ -122,9 +122,9 @@ impl TryFrom<String> for StepSpec {
     type Error = String;
 
     fn try_from(word: String) -> Result<Self, String> {
-        let found = Self::all().find(|step| step.word() == word);
+        let found = Self::all().find(|step| step.word() == word || String::from(*step) == word);
         found.ok_or_else(|| {
-            let known: Vec<&str> = Self::all().map(Self::word).collect();
+            let known: Vec<String> = Self::all().map(String::from).collect();
             unknown("variant", &word, &known)
         })
     }
@@ -132,7 +132,10 @@ impl TryFrom<String> for StepSpec {
 
 impl From<StepSpec> for String {
     fn from(step: StepSpec) -> Self {
-        step.word().to_owned()
+        match step {
+            StepSpec::Error(error) => error.text(),
+            step => step.word().to_owned(),
+        }
     }
 }
 
@@ -235,7 +238,9 @@ const NOISE: Range = Range::ZeroOrBetween(1e-12, 1000.0, "0, or 1e-12 to 1000");
 
 impl Described for StepSpec {
     fn schema() -> Value {
-        let words: Vec<&str> = Self::all().map(Self::word).collect();
+        let texts = |step: Self| [step.word().to_owned(), String::from(step)];
+        let mut words: Vec<String> = Self::all().flat_map(texts).collect();
+        words.dedup();
         json!({ "type": "string", "enum": words })
     }
 }

@@ -44,7 +44,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// Default random seed of all kinds of studies.
-pub(crate) const DEFAULT_SEED: u64 = 2018;
+pub const DEFAULT_SEED: u64 = 2018;
 
 params! {
     /// Contents of a recognition study file.

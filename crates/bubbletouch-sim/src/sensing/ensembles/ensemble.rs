@@ -1,10 +1,12 @@
 //! Descriptions of ensembles, and the operations of their maps.
 
 use crate::error::Result;
+use crate::own::{Own, Registry};
 use crate::random::Seed;
 use crate::sensing::{Ensemble, Selection};
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use std::fmt::Debug;
+use std::sync::OnceLock;
 
 /// Function that draws the linear map from an ny × nx array to m measurements with its own random stream, 1 ≤ m ≤ ny · nx.
 pub type Draw = fn((usize, usize), usize, &Seed) -> Box<dyn Operator>;
@@ -75,8 +77,8 @@ pub struct EnsembleAbout {
 }
 
 impl EnsembleAbout {
-    /// Describes an ensemble with default properties: nested measurements, little memory, and any layout. The map is drawn by `draw`.
-    pub(crate) const fn new(words: &'static str, draw: Draw) -> Self {
+    /// Describes an ensemble with default properties: nested measurements, 16 bytes for each taxel, and any layout. The map is drawn by `draw`.
+    pub const fn new(words: &'static str, draw: Draw) -> Self {
         Self {
             words,
             is_prefix_nested: true,
@@ -116,7 +118,69 @@ pub trait Operator: Debug + Send + Sync {
     }
 }
 
+/// Ensembles that a program has registered.
+static OWN: Registry<EnsembleAbout> = Registry::new("ensemble");
+
 impl Ensemble {
+    /// Registers an ensemble from outside of this crate, before the first study is read. Studies name it like a built-in ensemble; it is written as
+    /// `name@version`.
+    ///
+    /// ```
+    /// use bubbletouch_sim::random::Seed;
+    /// use bubbletouch_sim::sensing::{Ensemble, EnsembleAbout, Operator, Projection};
+    /// use ndarray::{ArrayView2, ArrayViewMut2, array, s};
+    ///
+    /// /// Reads the first m taxels.
+    /// #[derive(Debug)]
+    /// struct First(usize);
+    ///
+    /// impl Operator for First {
+    ///     fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+    ///         out.assign(&frames.slice(s![.., ..self.0]));
+    ///     }
+    ///
+    ///     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+    ///         (0..self.0).for_each(|taxel| visit(taxel, taxel, 1.0));
+    ///     }
+    ///
+    ///     fn row_norm(&self) -> f64 {
+    ///         1.0
+    ///     }
+    /// }
+    ///
+    /// let about = EnsembleAbout::new("first taxels", |_, m, _| Box::new(First(m)));
+    /// let first = Ensemble::register("first", "1", about)?;
+    /// let projection = Projection::new(first, (1, 4), 2, &Seed::new(1))?;
+    /// assert_eq!(projection.measure(array![[1.0, 2.0, 3.0, 4.0]].view()), array![[1.0, 2.0]]);
+    /// # Ok::<(), bubbletouch_sim::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If another ensemble has the name, the name or the version is invalid, or a study was read before.
+    pub fn register(
+        name: &'static str,
+        version: &'static str,
+        about: EnsembleAbout,
+    ) -> Result<Self> {
+        let is_taken = Self::NAMES.iter().any(|(known, _)| *known == name);
+        OWN.register(name, version, about, is_taken).map(Self::Own)
+    }
+
+    /// Returns the registered ensemble that a study names: its name, or `name@version`.
+    pub(super) fn own(text: &str) -> Option<Self> {
+        OWN.named(text).map(Self::Own)
+    }
+
+    /// Returns the names of all ensembles in the files of studies; those of registered ensembles are last, without and with the version.
+    pub(super) fn names() -> &'static [&'static str] {
+        static NAMES: OnceLock<Vec<&str>> = OnceLock::new();
+        NAMES.get_or_init(|| {
+            let built_in = Self::NAMES.iter().map(|(name, _)| *name);
+            let texts = |own: &Own<_>| [own.name(), own.to_string().leak()];
+            built_in.chain(OWN.all().iter().flat_map(texts)).collect()
+        })
+    }
+
     /// Returns whether the projection to m measurements gives the first m measurements of any larger projection with the same seed.
     pub fn is_prefix_nested(self) -> bool {
         self.about().is_prefix_nested
@@ -159,23 +223,38 @@ macro_rules! ensembles {
         $(mod $file;)*
 
         /// Family of linear maps that compress a frame to measurements.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
         #[serde(rename_all = "snake_case")]
         pub enum Ensemble {
             $(#[doc = $doc] $name,)*
+            /// Ensemble from outside of this crate; see [`register`](Self::register).
+            #[serde(untagged)]
+            Own(crate::own::Own<EnsembleAbout>),
+        }
+
+        /// Deserialises an ensemble from its name, or from `name@version` if it is registered.
+        impl<'de> Deserialize<'de> for Ensemble {
+            fn deserialize<D: serde::Deserializer<'de>>(names: D) -> Result<Self, D::Error> {
+                match &*String::deserialize(names)? {
+                    $(stringify!($file) => Ok(Self::$name),)*
+                    other => Self::own(other)
+                        .ok_or_else(|| serde::de::Error::unknown_variant(other, Self::names())),
+                }
+            }
         }
 
         impl Ensemble {
-            /// List of all ensembles.
+            /// List of all ensembles of this crate.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// Names of the ensembles in the file of a study, with their display names.
+            /// Names of the ensembles of this crate in the file of a study, with their display names.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
             /// Returns the description of the ensemble.
             pub const fn about(self) -> &'static EnsembleAbout {
                 match self {
                     $(Self::$name => &$file::ABOUT,)*
+                    Self::Own(own) => own.about(),
                 }
             }
         }

@@ -1,9 +1,9 @@
 //! Saturation studies: the fraction of the touches of an object that push taxels to the end of their stroke. This small kind of study is the example of
 //! `guide/adding.md`.
 
-use crate::contact::{Workspace, press_to_depth};
-use crate::inputs::range::COUNT;
-use crate::studies::prelude::*;
+use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::inputs::range::COUNT;
+use bubbletouch::kinds::prelude::*;
 use std::slice::from_ref;
 
 study_file! {
@@ -58,6 +58,7 @@ impl Study for SaturationStudy {
         table: "saturation",
         words: "a study of saturated touches",
     };
+    const VERSION: &'static str = "1";
     const TABLES: TableFiles = TableFiles::always(&[&SATURATION]);
 
     type Spec = SaturationStudySpec;
@@ -77,10 +78,11 @@ impl Study for SaturationStudy {
         let objects = load_objects(&spec.objects, source.packings.as_deref())?;
         let touched = draw_touches(objects, &placement, &Seed::new(spec.seed))?;
         let mut configurations = Vec::new();
-        nested! {
-            of in &touched;
-            n_taxels in spec.saturation.n_taxels.values();
-            configurations.push(SaturationConfiguration { object: of.object.name.clone(), n_taxels })
+        for of in &touched {
+            for n_taxels in spec.saturation.n_taxels.values() {
+                let object = of.object.name.clone();
+                configurations.push(SaturationConfiguration { object, n_taxels });
+            }
         }
         Ok(Self {
             spec,
