@@ -1,6 +1,7 @@
 //! Steps of a signal chain.
 
 use super::{MAX_STRENGTHS, Noise, SENSOR_ERRORS, SensorError};
+use crate::error::{Error, Result};
 use crate::random::Seed;
 
 /// Step of a signal chain, as listed in the file of a study.
@@ -44,14 +45,25 @@ impl SignalStep {
 
 impl SensorError {
     /// Returns the signal step of this sensor error with the strengths `given`; missing strengths are zero. `skin` is the seed of the skin.
-    pub fn step(self, given: &[f64], skin: Seed) -> SignalStep {
+    ///
+    /// # Errors
+    /// If more strengths are given than the sensor error has. [`Chain::new`](super::Chain::new) checks their values.
+    pub fn step(self, given: &[f64], skin: Seed) -> Result<SignalStep> {
+        let n_strengths = self.about().strengths.len();
+        if given.len() > n_strengths {
+            return Err(Error::input(
+                format!("strengths of {}", self.about().step),
+                format!("{} numbers", given.len()),
+                format!("at most {n_strengths}"),
+            ));
+        }
         let mut strengths = [0.0; MAX_STRENGTHS];
         strengths[..given.len()].copy_from_slice(given);
-        SignalStep::Error {
+        Ok(SignalStep::Error {
             error: self,
             strengths,
             skin,
-        }
+        })
     }
 
     /// Returns the sensor error whose signal step has the name `word`; `None` if there is none.
