@@ -5,7 +5,7 @@ use bubbletouch::contact::{
     Instructions, Workspace, press_at_pose, press_to_depth, press_with_contacts,
 };
 use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::{MeshFormat, Surface, TriangleMesh};
+use bubbletouch::mesh::{MeshFormat, SizeLimits, Surface, TriangleMesh};
 use bubbletouch::objects::{
     Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres, write_spheres,
 };
@@ -112,6 +112,7 @@ fn press(c: &mut Criterion) {
                         DEPTH,
                         &mut workspace,
                     )
+                    .unwrap()
                 });
             });
         }
@@ -128,6 +129,7 @@ fn press(c: &mut Criterion) {
         DEPTH,
         &mut Workspace::new(),
     )
+    .unwrap()
     .map_or(0.0, |contact| contact.travel);
     let mut deflections = vec![0.0; 64 * 64];
     group.sample_size(10);
@@ -162,6 +164,7 @@ fn catalogue(c: &mut Criterion) {
                     DEPTH,
                     &mut workspace,
                 )
+                .unwrap()
             });
         });
     }
@@ -208,7 +211,7 @@ fn bottles() -> [(&'static str, Model); 2] {
     };
     let place = path.display().to_string();
     let file = BufReader::new(File::open(&path).expect("the mesh can be read"));
-    let mesh = MeshFormat::Ply.read(&place, None, file);
+    let mesh = MeshFormat::Ply.read(&place, None, &SizeLimits::ANY, file);
     let mesh = mesh
         .and_then(|file| file.into_mesh(&place))
         .expect("a good mesh");
@@ -259,6 +262,7 @@ fn touches(c: &mut Criterion) {
                         DEPTH,
                         &mut workspace,
                     )
+                    .unwrap()
                 });
             });
         }
@@ -287,6 +291,7 @@ fn instructions(c: &mut Criterion) {
                         DEPTH,
                         &mut workspace,
                     )
+                    .unwrap()
                 });
             });
         }
@@ -322,6 +327,7 @@ fn mesh(c: &mut Criterion) {
                         DEPTH,
                         &mut workspace,
                     )
+                    .unwrap()
                 });
             });
         }
@@ -353,6 +359,7 @@ fn curved(c: &mut Criterion) {
         DEPTH,
         &mut Workspace::new(),
     )
+    .unwrap()
     .map_or(0.0, |contact| contact.travel);
     let down = Pose::from_translation(-travel * DVec3::Z).compose(&pose);
     // The egg lies with its broad side on the cylinder.
@@ -367,6 +374,8 @@ fn curved(c: &mut Criterion) {
         group.bench_function(id, |b| {
             b.iter(|| {
                 press_with_contacts(black_box(skin), &scene.objects, &[*pose], &mut workspace)
+                    .unwrap()
+                    .unwrap_or_default()
             });
         });
     }
@@ -379,6 +388,8 @@ fn curved(c: &mut Criterion) {
                 &[down],
                 &mut workspace,
             )
+            .unwrap()
+            .unwrap_or_default()
         });
     });
     group.finish();

@@ -71,7 +71,8 @@ fn pressed(scene: &Scene) -> Pose {
         &[pose],
         DEPTH,
         &mut workspace,
-    );
+    )
+    .unwrap();
     let travel = contact.expect("the bottle is over the patch").travel;
     Pose::from_translation(-travel * DVec3::Z).compose(&pose)
 }
@@ -114,6 +115,8 @@ fn touch(c: &mut Criterion) {
                     &[pose],
                     &mut workspace,
                 )
+                .unwrap()
+                .unwrap_or_default()
             });
         });
         let right = workspace.deflections().to_vec();

@@ -284,7 +284,7 @@ fn touch_to_answer(criterion: &mut Criterion) {
                 let place = &object.touches[next % object.touches.len()];
                 let pose = place.patch_from_object(&object.rests[place.rest]);
                 let model = std::slice::from_ref(&object.object.model);
-                press_to_depth(array.patch(), model, &[pose], place.depth, &mut press);
+                press_to_depth(array.patch(), model, &[pose], place.depth, &mut press).unwrap();
                 frame.copy_from_slice(press.deflections());
                 let seed = Seed::new(2).numbered(next as u64);
                 chain.apply(&mut frame, None, &seed, &mut scratch);

@@ -67,12 +67,24 @@ fn signal(criterion: &mut Criterion) {
         ("force", SignalStep::Force),
         ("noise", noise),
         ("smoothing_2_taxels", SignalStep::Smoothing { width: 4e-3 }),
-        ("hysteresis", SensorError::Hysteresis.step(&[0.1], skin)),
-        ("crosstalk", SensorError::Crosstalk.step(&[0.1], skin)),
-        ("gain", SensorError::Gain.step(&[0.1], skin)),
-        ("drift", SensorError::Drift.step(&[0.1], skin)),
-        ("faults", SensorError::Faults.step(&[0.05, 0.05], skin)),
-        ("quantisation", SensorError::Quantisation.step(&[8.0], skin)),
+        (
+            "hysteresis",
+            SensorError::Hysteresis.step(&[0.1], skin).unwrap(),
+        ),
+        (
+            "crosstalk",
+            SensorError::Crosstalk.step(&[0.1], skin).unwrap(),
+        ),
+        ("gain", SensorError::Gain.step(&[0.1], skin).unwrap()),
+        ("drift", SensorError::Drift.step(&[0.1], skin).unwrap()),
+        (
+            "faults",
+            SensorError::Faults.step(&[0.05, 0.05], skin).unwrap(),
+        ),
+        (
+            "quantisation",
+            SensorError::Quantisation.step(&[8.0], skin).unwrap(),
+        ),
     ] {
         let chain = Chain::new(&[step], &patch).expect("the step is valid");
         let (mut frame, mut scratch) = (vec![1e-3; SIDE * SIDE], SignalWorkspace::default());

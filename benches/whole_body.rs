@@ -73,7 +73,7 @@ impl Bench {
     fn new(n_taxels: usize, n_spheres: usize, away: f64) -> Self {
         let (body, poses) = body(n_taxels);
         let mut state = BodyState::at_rest(&body);
-        state.place(&body, &poses);
+        state.place(&body, &poses).unwrap();
         Self {
             body,
             state,
@@ -90,7 +90,10 @@ impl Bench {
         let angle = 0.8 + 0.2 * (3.0 * time).sin();
         let center = DVec3::new(angle.cos(), angle.sin(), 0.0) * self.away;
         let pose = Pose::new(glam::DQuat::from_rotation_y(time), center);
-        let contact = self.state.press(&self.body, &self.object, &[pose], 1e-3);
+        let contact = self
+            .state
+            .press(&self.body, &self.object, &[pose], 1e-3)
+            .unwrap();
         contact.n_touched
     }
 
@@ -205,7 +208,10 @@ fn draped(c: &mut Criterion) {
                 step += 1;
                 let turn = glam::DQuat::from_rotation_y(1e-3 * f64::from(step));
                 let pose = Pose::new(turn, DVec3::new(0.0, 0.0, 0.099));
-                state.press(&body, &object, &[pose], 1e-3).n_touched
+                state
+                    .press(&body, &object, &[pose], 1e-3)
+                    .unwrap()
+                    .n_touched
             });
         });
     }
@@ -238,7 +244,7 @@ impl Hug {
         let mut poses = Vec::new();
         covered.patch_poses(&links, &mut poses);
         let mut state = BodyState::at_rest(covered.body());
-        state.place(covered.body(), &poses);
+        state.place(covered.body(), &poses).unwrap();
         let trunk = Shape::Capsule {
             diameter: 0.3042,
             length: 0.76,
@@ -274,7 +280,8 @@ impl Hug {
         let pose = [self.world_from_trunk.compose(&moved)];
         let contact = self
             .state
-            .press(self.robot.body(), &self.object, &pose, 1e-3);
+            .press(self.robot.body(), &self.object, &pose, 1e-3)
+            .unwrap();
         contact.n_touched
     }
 
@@ -294,8 +301,8 @@ fn readout(c: &mut Criterion) {
         std: 0.05,
         unit: NoiseUnit::FullScale,
     });
-    let drift = SensorError::Drift.step(&[0.05], skin);
-    let faults = SensorError::Faults.step(&[0.01], skin);
+    let drift = SensorError::Drift.step(&[0.05], skin).unwrap();
+    let faults = SensorError::Faults.step(&[0.01], skin).unwrap();
     let all = [noise, drift, faults];
     let mut group = c.benchmark_group("body_hug_2045187_taxels");
     for n_threads in [1, 2] {

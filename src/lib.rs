@@ -63,7 +63,7 @@
 //! let touch = &all[2];
 //! let pose = touch.patch_from_object(&rests[touch.rest]);
 //! let mut workspace = Workspace::new();
-//! let contact = press_to_depth(&patch, &[mug.model], &[pose], touch.depth, &mut workspace);
+//! let contact = press_to_depth(&patch, &[mug.model], &[pose], touch.depth, &mut workspace)?;
 //! let contact = contact.expect("the mug is under the patch");
 //! assert!(contact.n_touched > 50 && contact.n_saturated == 0);
 //! let mut frame = workspace.deflections().to_vec();

@@ -108,6 +108,8 @@ pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
             &[pose(number, 4e-3)],
             &mut workspace,
         )
+        .unwrap()
+        .unwrap_or_default()
         .n_touched
     };
     assert_eq!(step(), n * n, "all are touched");
@@ -141,6 +143,7 @@ pub fn dense_body(n: usize, n_spheres: usize) -> HotPath {
         number += 1;
         state
             .press(&body, &objects, &[pose(number, 4e-3)], 1e-3)
+            .unwrap()
             .n_touched
     };
     assert_eq!(step(), n * n, "all are touched");
@@ -187,6 +190,7 @@ pub fn sparse_press() -> HotPath {
             3e-3,
             &mut workspace,
         )
+        .unwrap()
     };
     assert!(step().is_some_and(|contact| contact.n_touched > 50));
     HotPath {
@@ -216,7 +220,7 @@ pub fn body_step() -> HotPath {
         let turn = DQuat::from_rotation_z(0.5 * std::f64::consts::PI * f64::from(k % 4));
         Pose::new(turn, 0.5 * DVec3::Y * f64::from(k / 4))
     });
-    state.place(&body, &poses.collect::<Vec<_>>());
+    state.place(&body, &poses.collect::<Vec<_>>()).unwrap();
     let mut rng = Seed::new(7).rng();
     let spheres = (0..1_000).map(|_| {
         let direction = DVec3::from(rng.r#gen::<[f64; 3]>()) * 2.0 - DVec3::ONE;
@@ -234,7 +238,10 @@ pub fn body_step() -> HotPath {
         let angle = 0.8 + 0.2 * (3.0 * time).sin();
         let place = 0.136 * DVec3::new(angle.cos(), angle.sin(), 0.0);
         let pose = Pose::new(DQuat::from_rotation_y(time), place);
-        state.press(&body, &objects, &[pose], 1e-3).n_touched
+        state
+            .press(&body, &objects, &[pose], 1e-3)
+            .unwrap()
+            .n_touched
     };
     let touched = step();
     assert!((500..20_000).contains(&touched), "{touched}");

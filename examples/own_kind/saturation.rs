@@ -120,7 +120,8 @@ impl Study for SaturationStudy {
             let mut saturated = of.touches.clone();
             saturated.retain(|touch| {
                 let pose = [touch.patch_from_object(&of.rests[touch.rest])];
-                let contact = press_to_depth(patch, model, &pose, touch.depth, &mut workspace);
+                let contact =
+                    press_to_depth(patch, model, &pose, touch.depth, &mut workspace).unwrap();
                 contact.is_some_and(|contact| contact.n_saturated >= configuration.n_taxels)
             });
             let saturated = saturated.len() as f64 / of.touches.len() as f64;

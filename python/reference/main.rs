@@ -71,7 +71,8 @@ fn main() -> Result<()> {
         };
         let depth = frames(
             &mut |model, pose, workspace| {
-                press_to_depth(patch, std::slice::from_ref(model), &[pose], 3e-3, workspace);
+                press_to_depth(patch, std::slice::from_ref(model), &[pose], 3e-3, workspace)
+                    .unwrap();
                 Ok(())
             },
             &mut workspace,
@@ -86,7 +87,7 @@ fn main() -> Result<()> {
         let here = frames(
             &mut |model, mut pose, workspace| {
                 pose.translation.z = -0.02;
-                press_at_pose(patch, std::slice::from_ref(model), &[pose], workspace);
+                press_at_pose(patch, std::slice::from_ref(model), &[pose], workspace).unwrap();
                 Ok(())
             },
             &mut workspace,
@@ -108,13 +109,13 @@ fn after_presses(folder: &Path, patch: &Patch, mut frames: Array2<f64>) -> Resul
         unit: NoiseUnit::FullScale,
     };
     let steps = [
-        SensorError::Hysteresis.step(&[0.1], skin),
-        SensorError::Gain.step(&[0.05], skin),
-        SensorError::Drift.step(&[0.02], skin),
-        SensorError::Faults.step(&[0.01, 0.02], skin),
+        SensorError::Hysteresis.step(&[0.1], skin).unwrap(),
+        SensorError::Gain.step(&[0.05], skin).unwrap(),
+        SensorError::Drift.step(&[0.02], skin).unwrap(),
+        SensorError::Faults.step(&[0.01, 0.02], skin).unwrap(),
         SignalStep::Noise(noise),
         SignalStep::Smoothing { width: 4e-3 },
-        SensorError::Quantisation.step(&[10.0], skin),
+        SensorError::Quantisation.step(&[10.0], skin).unwrap(),
     ];
     let chain = Chain::new(&steps, patch)?;
     let (touches, mut scratch) = (Seed::new(2018), SignalWorkspace::default());

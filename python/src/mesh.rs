@@ -5,7 +5,7 @@ use crate::errors::{bad_input, check_readable, exception, guarded};
 use crate::length_unit::unit_of;
 use crate::sphere_union::SphereUnion;
 use crate::threads::aside;
-use bubbletouch::mesh::{Orientation, SizeLimits, Surface, TriangleMesh};
+use bubbletouch::mesh::{LengthUnit, Orientation, SizeLimits, Surface, TriangleMesh};
 use bubbletouch::objects::{MeshModel, Model, vertex_spheres};
 use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
 use bubbletouch::study::{pack_with, read_mesh_file};
@@ -92,7 +92,8 @@ impl Mesh {
             let vertices = points("vertices", vertices)?;
             let triangles = corner_numbers(triangles)?;
             let place = "mesh".to_owned();
-            let mesh = TriangleMesh::new(&place, vertices, triangles).map_err(exception)?;
+            let mesh = TriangleMesh::in_unit(&place, LengthUnit::Metre, vertices, triangles);
+            let mesh = mesh.map_err(exception)?;
             Ok(Self::new(place, mesh))
         })
     }

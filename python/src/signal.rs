@@ -33,7 +33,10 @@ impl Step {
     fn of_skin(&self, skin: Seed) -> SignalStep {
         match self.kind {
             Kind::Plain(step) => step,
-            Kind::Error(error, strengths) => error.step(&strengths, skin),
+            Kind::Error(error, strengths) => {
+                let step = error.step(&strengths[..error.about().strengths.len()], skin);
+                step.expect("one number for each strength")
+            }
         }
     }
 }

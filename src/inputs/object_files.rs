@@ -2,7 +2,6 @@
 
 use crate::error::{Error, Result};
 use crate::files::SetName;
-use crate::geometry::Aabb;
 use crate::inputs::content_hash::sha256;
 use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
 use crate::inputs::packings::pack_within;
@@ -12,7 +11,7 @@ use crate::mesh::{
 };
 use crate::note::note;
 use crate::objects::{
-    Catalogue, Entry, MeshModel, Object, Sphere, SphereUnion, read_spheres, vertex_spheres,
+    Catalogue, Entry, MeshModel, Object, SphereUnion, read_spheres, vertex_spheres,
 };
 use crate::packing::{Body, packing_error};
 use rayon::prelude::*;
@@ -126,18 +125,7 @@ pub fn read_mesh_file(
     let format = MeshFormat::from_path(path)?;
     check_regular(path)?;
     let place = path.display().to_string();
-    let mesh = format.read(&place, unit, open(path, "a mesh")?)?;
-    if unit.is_none() {
-        let vertices = mesh.vertices().iter();
-        let points = vertices.map(|&point| Aabb {
-            min: point,
-            max: point,
-        });
-        if let Some(bounds) = Aabb::around(points) {
-            sizes.check(&place, bounds.size())?;
-        }
-    }
-    Ok(mesh)
+    format.read(&place, unit, sizes, open(path, "a mesh")?)
 }
 
 /// Reads spheres from a CSV file with columns x, y, z, r. Without a unit, the numbers are metres, and the size must be within `sizes`.
@@ -150,17 +138,7 @@ pub fn load_spheres(
     sizes: &SizeLimits,
 ) -> Result<SphereUnion> {
     let place = path.display().to_string();
-    let union = read_spheres(&place, open(path, "a CSV of spheres")?)?;
-    if unit.is_none() {
-        sizes.check(&place, union.bounds().size())?;
-    }
-    let metres = unit.unwrap_or_default().metres();
-    let scaled = |sphere: &Sphere| Sphere {
-        center: metres * sphere.center,
-        radius: metres * sphere.radius,
-    };
-    let spheres = SphereUnion::new(union.spheres().iter().map(scaled).collect());
-    spheres.map_err(|error| error.under(format!("{place}: ")))
+    read_spheres(&place, unit, sizes, open(path, "a CSV of spheres")?)
 }
 
 fn open(path: &Path, allowed: &str) -> Result<BufReader<File>> {

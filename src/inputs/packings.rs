@@ -7,7 +7,7 @@
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::inputs::content_hash::{bytes_of_mesh, bytes_of_numbers, sha256};
-use crate::mesh::{Surface, TriangleMesh};
+use crate::mesh::{LengthUnit, SizeLimits, Surface, TriangleMesh};
 use crate::note::note;
 use crate::objects::{Represented, SphereUnion, read_spheres, write_spheres};
 use crate::packing::{Body, Packing, error_of_file, pack_mesh, slow_packing};
@@ -116,7 +116,12 @@ fn read_packing(path: &Path) -> Result<Option<SphereUnion>> {
     }
     let bytes = fs::read(path).map_err(|e| Error::io(path, "read", e))?;
     let (rows, said) = bytes.split_at(bytes.len().saturating_sub(SEAL));
-    let spheres = read_spheres(&path.display().to_string(), rows);
+    let spheres = read_spheres(
+        &path.display().to_string(),
+        Some(LengthUnit::Metre),
+        &SizeLimits::ANY,
+        rows,
+    );
     match spheres {
         Ok(spheres) if said == seal(rows).as_bytes() => Ok(Some(spheres)),
         _ => {

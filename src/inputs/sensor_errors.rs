@@ -133,11 +133,10 @@ impl Strengths {
 
     /// Returns the signal step that applies a sensor error with these strengths.
     pub(crate) fn step(&self, error: SensorError, skin: &Seed) -> SignalStep {
-        let mut strengths = [0.0; MAX_STRENGTHS];
-        for (to, strength) in strengths.iter_mut().zip(error.about().strengths) {
-            *to = self.get(strength.key).unwrap_or(0.0);
-        }
-        error.step(&strengths, *skin)
+        let strengths = error.about().strengths.iter();
+        let strengths = strengths.map(|strength| self.get(strength.key).unwrap_or(0.0));
+        let step = error.step(&strengths.collect::<Vec<_>>(), *skin);
+        step.expect("one number for each strength")
     }
 }
 

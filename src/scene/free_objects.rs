@@ -93,8 +93,8 @@ impl FreeObjects {
         for free in &self.all {
             objects.poses[free.object] = OUT_OF_REACH;
         }
-        self.push_by_others(plan, skins, objects);
-        self.attach_tangential_springs(plan, skins, objects);
+        self.push_by_others(plan, skins, objects)?;
+        self.attach_tangential_springs(plan, skins, objects)?;
         let is_there = |free: &&mut Free| !matches!(free.reading.held, PoseControl::Escaped { .. });
         let mut there: Vec<&mut Free> = self.all.iter_mut().filter(is_there).collect();
         let own = |tip: TangentialSpring| {
@@ -184,7 +184,7 @@ impl FreeObjects {
         plan: &ScenePlan,
         skins: &mut [SkinState],
         objects: &PlacedObjects,
-    ) {
+    ) -> Result<()> {
         let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
         for free in &mut self.all {
             let is_put = std::mem::take(&mut free.is_put);
@@ -200,23 +200,30 @@ impl FreeObjects {
                     .any(|spring| spring.object == free.object);
                 if is_put || !is_held {
                     let one = (free.object, &only);
-                    skin.put(patch, &plan.models, one, &mut self.workspace);
+                    skin.put(patch, &plan.models, one, &mut self.workspace)?;
                 }
             }
         }
+        Ok(())
     }
 
     /// Computes the deflections of each patch that are caused by imposed and pressed objects.
-    fn push_by_others(&mut self, plan: &ScenePlan, skins: &[SkinState], objects: &PlacedObjects) {
+    fn push_by_others(
+        &mut self,
+        plan: &ScenePlan,
+        skins: &[SkinState],
+        objects: &PlacedObjects,
+    ) -> Result<()> {
         let patches = plan.patches.iter().zip(skins).zip(&mut self.pushed);
         for ((patch, skin), pushed) in patches {
             pushed.clear();
             if objects.can_reach(patch, &skin.pose) {
                 let poses: Vec<Pose> = objects.seen_by(patch, &skin.pose).collect();
-                press_with_contacts(&patch.skin, &plan.models, &poses, &mut self.workspace);
+                press_with_contacts(&patch.skin, &plan.models, &poses, &mut self.workspace)?;
                 pushed.extend_from_slice(self.workspace.deflections());
             }
         }
+        Ok(())
     }
 
     /// Writes the pose and equilibrium of each free object into `readings`, at the object's number in the scene.

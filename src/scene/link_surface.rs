@@ -5,7 +5,7 @@
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::inputs::object_files::read_mesh;
-use crate::mesh::{SizeLimits, TriangleMesh};
+use crate::mesh::{LengthUnit, SizeLimits, TriangleMesh};
 use crate::world::{Link, LinkGeometry, LinkShape, MeshFolders, Robot, ShapeRole};
 use glam::DVec3;
 use std::path::Path;
@@ -69,7 +69,7 @@ pub fn link_surface(
         let corners = mesh.triangles().iter();
         triangles.extend(corners.map(|corners| corners.map(|corner| first + corner)));
     }
-    TriangleMesh::new(&link.name, vertices, triangles)
+    TriangleMesh::in_unit(&link.name, LengthUnit::Metre, vertices, triangles)
 }
 
 /// Returns all shapes of a link that have the given role and a volume. Without a role, returns the collision shapes, or the visual shapes if there are none.

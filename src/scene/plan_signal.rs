@@ -144,6 +144,6 @@ impl Reader<'_> {
                 strength.allowed,
             )?;
         }
-        Ok(error.step(&strengths, skin))
+        error.step(&strengths[..about.strengths.len()], skin)
     }
 }

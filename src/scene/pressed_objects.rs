@@ -5,6 +5,7 @@ use super::plan::ScenePlan;
 use super::plan_press::PlannedPress;
 use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
+use crate::error::Result;
 use crate::geometry::Pose;
 use glam::DVec3;
 
@@ -61,7 +62,7 @@ impl PressedObjects {
         skins: &[SkinState],
         objects: &mut PlacedObjects,
         [time, dt]: [f64; 2],
-    ) {
+    ) -> Result<()> {
         let Self {
             all,
             poses,
@@ -103,7 +104,7 @@ impl PressedObjects {
                         (before[number] + way).min(press.travel),
                     ],
                 };
-                pressed.go(&moved, poses, (way, limits), workspace);
+                pressed.go(&moved, poses, (way, limits), workspace)?;
                 is_moving |= pressed.now.travel != here;
                 let pose = &mut objects.poses[pressed.object];
                 pose.translation += pressed.now.travel * press.direction;
@@ -112,6 +113,7 @@ impl PressedObjects {
                 break;
             }
         }
+        Ok(())
     }
 
     /// Returns the contacts of a patch, given by its index, with the objects that are pressed onto the patch.
@@ -159,7 +161,7 @@ impl Pressed {
         poses: &mut [Pose],
         (way, [low, high]): (f64, [f64; 2]),
         workspace: &mut Workspace,
-    ) {
+    ) -> Result<()> {
         let start = poses[self.object];
         let n_parts = moved.patch.n_steps(way);
         let step = way / n_parts as f64;
@@ -174,7 +176,7 @@ impl Pressed {
             };
             poses[self.object] = start;
             workspace.hold(&self.contacts);
-            self.now = moved.hold(poses, travels, self.wanted, workspace);
+            self.now = moved.hold(poses, travels, self.wanted, workspace)?;
             let contacts = workspace.contacts().iter();
             let its = contacts.filter(|contact| contact.object == self.object);
             self.contacts.clear();
@@ -184,5 +186,6 @@ impl Pressed {
                 break;
             }
         }
+        Ok(())
     }
 }

@@ -147,7 +147,7 @@ impl<'p> Simulation<'p> {
     pub fn observe(&mut self) -> Result<&Frame> {
         self.begin()?;
         if let Some(dt) = self.pending_dt.take() {
-            self.read(dt);
+            self.read(dt)?;
             self.n_read += 1;
             self.frame.time = self.time;
         }
@@ -180,7 +180,7 @@ impl<'p> Simulation<'p> {
     /// Advances the simulation to `time`, which is `dt` seconds after the last step.
     pub(super) fn advance(&mut self, time: f64, dt: f64) -> Result<()> {
         if let Some(dt) = self.pending_dt.take() {
-            self.update_deflections(dt);
+            self.update_deflections(dt)?;
         }
         self.move_to_time(time, dt)?;
         self.time = time;
@@ -214,7 +214,7 @@ impl<'p> Simulation<'p> {
             skin.pose = patch.mount.place(&self.robots, &self.objects.poses);
         }
         let objects = &mut self.objects;
-        self.pressed.push(plan, &self.skins, objects, [time, dt]);
+        self.pressed.push(plan, &self.skins, objects, [time, dt])?;
         for (number, skin) in self.skins.iter_mut().enumerate() {
             skin.hold(self.pressed.contacts_on(plan, number));
         }
@@ -226,7 +226,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// Updates the deflections of the patches after a time step at which no frame is written.
-    fn update_deflections(&mut self, dt: f64) {
+    fn update_deflections(&mut self, dt: f64) -> Result<()> {
         let plan = self.plan;
         for (number, (skin, patch)) in self.skins.iter_mut().zip(&plan.patches).enumerate() {
             if patch.remembers() || self.stepping == Stepping::Always {
@@ -237,9 +237,10 @@ impl<'p> Simulation<'p> {
                     &self.objects,
                     (dt, &tips),
                     Detail::Deflections,
-                );
+                )?;
             }
         }
+        Ok(())
     }
 
     /// Returns the elapsed fraction of the scene's duration, 0 to 1; the drift of the sensors depends on this fraction.
@@ -252,7 +253,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// Computes all patches after a step of `dt` seconds, and writes the results to the frame.
-    fn read(&mut self, dt: f64) {
+    fn read(&mut self, dt: f64) -> Result<()> {
         let plan = self.plan;
         let share = self.share();
         let patches = self.skins.iter_mut().zip(&plan.patches);
@@ -260,7 +261,7 @@ impl<'p> Simulation<'p> {
         for (number, ((skin, patch), reading)) in patches {
             let loads: Vec<_> = self.free.on_patch(number).collect();
             let carried = (&loads[..], &self.free.tips_on(number)[..]);
-            skin.step_and_read(patch, &plan.models, &self.objects, dt, carried, reading);
+            skin.step_and_read(patch, &plan.models, &self.objects, dt, carried, reading)?;
             skin.keep_stopped(patch, |object| {
                 let object = &plan.objects[object];
                 object.press.is_none() && !matches!(object.movement, Movement::Free { .. })
@@ -277,6 +278,7 @@ impl<'p> Simulation<'p> {
         self.free.read(&mut self.frame.objects);
         self.frame.touches.clear();
         self.frame.touches.extend(self.free.touches());
+        Ok(())
     }
 }
 

@@ -8,6 +8,7 @@ use crate::contact::{
     Contact, ContactModeCounts, DamperState, FrictionState, NormalForce, TaxelContact, Workspace,
     Wrench, axial_load, press_at_pose, press_with_contacts,
 };
+use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::Model;
 use glam::DVec3;
@@ -137,19 +138,20 @@ impl SkinState {
         models: &[Model],
         (object, only): (usize, &PlacedObjects),
         workspace: &mut Workspace,
-    ) {
+    ) -> Result<()> {
         if let Some(friction) = &mut self.friction {
             let poses: Vec<Pose> = only.seen_by(patch, &self.pose).collect();
             let is_reached = only.can_reach(patch, &self.pose);
             let contacts = match is_reached {
                 true => {
-                    press_with_contacts(&patch.skin, models, &poses, workspace);
+                    press_with_contacts(&patch.skin, models, &poses, workspace)?;
                     workspace.contacts()
                 }
                 false => &[],
             };
             friction.put(&patch.skin, contacts, (object, &poses[object]));
         }
+        Ok(())
     }
 
     /// Returns the deflections of the taxels, metres, shape (n_taxels,).
@@ -167,8 +169,8 @@ impl SkinState {
         dt: f64,
         (loads, tips): (&[&TaxelLoad], &[TangentialSpringState]),
         reading: &mut PatchReading,
-    ) {
-        self.update_deflections(patch, models, objects, (dt, tips), Detail::Contacts);
+    ) -> Result<()> {
+        self.update_deflections(patch, models, objects, (dt, tips), Detail::Contacts)?;
         let contacts = self.workspace.contacts();
         reading.pose = self.pose;
         reading.deflection.clone_from(&self.damper.deflection);
@@ -197,6 +199,7 @@ impl SkinState {
                 reading.force3[contact.taxel] += frame * force;
             }
         }
+        Ok(())
     }
 
     /// Makes a time step of `dt` seconds to the current poses of the objects; an infinite `dt` gives the steady state. The tangential springs of free objects
@@ -208,10 +211,10 @@ impl SkinState {
         objects: &PlacedObjects,
         (dt, tips): (f64, &[TangentialSpringState]),
         detail: Detail,
-    ) {
+    ) -> Result<()> {
         let is_reached = self.workspace.holds_any() || objects.can_reach(patch, &self.pose);
         if !is_reached && self.is_idle {
-            return;
+            return Ok(());
         }
         self.poses.clear();
         let models = match is_reached {
@@ -225,7 +228,7 @@ impl SkinState {
             true => press_with_contacts,
             false => press_at_pose,
         };
-        self.counts = press(&patch.skin, models, &self.poses, workspace);
+        self.counts = press(&patch.skin, models, &self.poses, workspace)?.unwrap_or_default();
         self.damper
             .step(patch.skin.taxels(), dt, workspace.deflections());
         if let Some(friction) = &mut self.friction {
@@ -237,6 +240,7 @@ impl SkinState {
         }
         let mut deflections = self.damper.deflection.iter();
         self.is_idle = !is_reached && deflections.all(|&deflection| deflection == 0.0);
+        Ok(())
     }
 }
 

@@ -209,7 +209,9 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
             let pose = Pose::new(rotation, DVec3::new(pose[0], pose[1], pose[2]));
             let spheres = &study.touched[files.labels[touch] as usize].object.model;
             let objects = [spheres.clone()];
-            let contact = press_at_pose(array.patch(), &objects, &[pose], &mut workspace);
+            let contact = press_at_pose(array.patch(), &objects, &[pose], &mut workspace)
+                .unwrap()
+                .unwrap_or_default();
             let row = &files.touches[touch];
             if row.n_touched == 0 {
                 assert!(

@@ -7,7 +7,7 @@ use bubbletouch::kinds::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec}
 use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
-use bubbletouch::mesh::{LengthUnit, MeshFormat};
+use bubbletouch::mesh::{LengthUnit, MeshFormat, SizeLimits};
 use bubbletouch::objects::{Catalogue, read_spheres};
 use bubbletouch::report::advice::{AdviceQuery, Candidates, Requirement};
 use bubbletouch::report::compared::differences_text;
@@ -280,7 +280,7 @@ fn mesh(
         most_bytes: (20, 4 << 20),
         least_s: SOON,
         read: &|input| {
-            let file = format.read(PLACE, Some(LengthUnit::Millimetre), input)?;
+            let file = format.read(PLACE, Some(LengthUnit::Millimetre), &SizeLimits::ANY, input)?;
             file.into_mesh(PLACE).map(drop)
         },
     }
@@ -497,7 +497,7 @@ fn spheres() {
         n_inputs: 4000,
         most_bytes: (FIELDS, 1 << 18),
         least_s: SOON,
-        read: &|input| read_spheres(PLACE, input).map(drop),
+        read: &|input| read_spheres(PLACE, None, &SizeLimits::ANY, input).map(drop),
     }
     .run();
 }

@@ -47,7 +47,7 @@ fn film(touch: &HumanTouch) -> Vec<HandState> {
 fn felt(skin: &Patch, state: &HandState) -> (f64, Option<(f64, f64)>) {
     let mut workspace = Workspace::new();
     let hand: [Model; 1] = [state.spheres().into()];
-    press_with_contacts(skin, &hand, &[state.patch_from_hand], &mut workspace);
+    press_with_contacts(skin, &hand, &[state.patch_from_hand], &mut workspace).unwrap();
     let load = spring_load(skin, workspace.contacts());
     let place = load.center_of_pressure.map(|p| (p.z, p.y.atan2(p.x)));
     (load.spring_force, place)
@@ -138,7 +138,7 @@ fn a_hand_goes_exactly_as_deep_as_it_says() {
         let state = deepest(&touch);
         assert!((state.height + touch.depth).abs() < 1e-5 || touch.hold < STEP);
         let hand: [Model; 1] = [state.spheres().into()];
-        press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace);
+        press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace).unwrap();
         let most = workspace.deflections().iter().copied().fold(0.0, f64::max);
         assert!(most <= -state.height + 1e-9, "{most} for {}", state.height);
         assert!(most > -state.height - 3e-4, "{most} for {}", state.height);
@@ -239,7 +239,7 @@ fn a_grab_closes_its_fingers_around_the_arm_and_opens_them() {
     let angles = |state: &HandState| {
         let mut workspace = Workspace::new();
         let hand: [Model; 1] = [state.spheres().into()];
-        press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace);
+        press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace).unwrap();
         let touched = workspace.contacts().iter();
         let angles: Vec<f64> = touched.map(|c| c.point.y.atan2(c.point.x)).collect();
         let most = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -393,7 +393,7 @@ fn touches_are_balanced_and_alone_the_same() {
         for frame in 0..human.n_frames() {
             let state = recorded.touch.at(frame as f64 / 15.0 - recorded.onset);
             let hand: [Model; 1] = [state.spheres().into()];
-            press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace);
+            press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace).unwrap();
             let row = deflection.row(number * human.n_frames() + frame);
             for (&stored, &pressed) in row.iter().zip(workspace.deflections()) {
                 assert!((stored - pressed).abs() < 1e-8);

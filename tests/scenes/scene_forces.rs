@@ -85,7 +85,7 @@ fn tips_are_dragged_from_step_to_step_as_by_hand() {
                 false => before + share * (frame.time - before),
             };
             let pose = Pose::IDENTITY.inverse().compose(&motion.pose_at(time));
-            press_with_contacts(&patch.skin, &plan.models, &[pose], &mut workspace);
+            press_with_contacts(&patch.skin, &plan.models, &[pose], &mut workspace).unwrap();
             let contacts = workspace.contacts();
             counts = state.step(&patch.skin, contacts, &[pose], NormalForce::Springs);
         }

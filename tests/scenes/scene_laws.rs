@@ -207,7 +207,9 @@ fn what_is_out_of_reach_is_left_out_and_nothing_else() {
                 let poses: Vec<Pose> = objects
                     .map(|object| object.pose.seen_from(&reading.pose))
                     .collect();
-                let counts = press_with_contacts(&patch.skin, &plan.models, &poses, &mut workspace);
+                let counts = press_with_contacts(&patch.skin, &plan.models, &poses, &mut workspace)
+                    .unwrap()
+                    .unwrap_or_default();
                 assert_eq!(reading.deflection, workspace.deflections());
                 assert_eq!(reading.n_touched, counts.n_touched);
                 assert_eq!(reading.n_saturated, counts.n_saturated);
@@ -460,7 +462,8 @@ fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes_and_on_it()
         &plan.models[..1],
         &[frame.objects[0].pose],
         &mut workspace,
-    );
+    )
+    .unwrap();
     let ball = plan.models[1].spheres().unwrap();
     let ball = FreeObject::new(ball, mass, center_of_mass).unwrap();
     let obstacles = [Obstacle {

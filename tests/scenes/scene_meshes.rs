@@ -71,7 +71,7 @@ fn a_box_rests_in_a_tray_and_the_bed_carries_both() {
     // The recorded deflections are those of a press at the final poses.
     let poses: Vec<Pose> = frame.objects.iter().map(|object| object.pose).collect();
     let mut workspace = Workspace::new();
-    press_with_contacts(&plan.patches[0].skin, &plan.models, &poses, &mut workspace);
+    press_with_contacts(&plan.patches[0].skin, &plan.models, &poses, &mut workspace).unwrap();
     assert_eq!(frame.patches[0].deflection, workspace.deflections());
 }
 

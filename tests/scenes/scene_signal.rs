@@ -41,13 +41,13 @@ fn the_signal_of_a_frame_is_what_the_chain_makes_of_its_forces() {
         unit: NoiseUnit::N,
     };
     let steps = [
-        SensorError::Crosstalk.step(&[0.2], skin),
+        SensorError::Crosstalk.step(&[0.2], skin).unwrap(),
         SignalStep::Smoothing { width: 3e-3 },
-        SensorError::Gain.step(&[0.1], skin),
-        SensorError::Drift.step(&[0.05], skin),
+        SensorError::Gain.step(&[0.1], skin).unwrap(),
+        SensorError::Drift.step(&[0.05], skin).unwrap(),
         SignalStep::Noise(noise),
-        SensorError::Faults.step(&[0.05, 0.02], skin),
-        SensorError::Quantisation.step(&[8.0], skin),
+        SensorError::Faults.step(&[0.05, 0.02], skin).unwrap(),
+        SensorError::Quantisation.step(&[8.0], skin).unwrap(),
     ];
     let chain = Chain::with_quantity(&steps, &plan.patches[0].skin, Quantity::Force).unwrap();
     for (number, (frame, bare)) in frames.iter().zip(&bare).enumerate() {

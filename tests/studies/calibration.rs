@@ -57,15 +57,19 @@ impl Settings {
             unit: NoiseUnit::FullScale,
         };
         vec![
-            SensorError::Crosstalk.step(&[self.crosstalk], skin),
-            SensorError::Gain.step(&[self.gain], skin),
-            SensorError::Drift.step(&[self.drift], skin),
+            SensorError::Crosstalk
+                .step(&[self.crosstalk], skin)
+                .unwrap(),
+            SensorError::Gain.step(&[self.gain], skin).unwrap(),
+            SensorError::Drift.step(&[self.drift], skin).unwrap(),
             SignalStep::Noise(noise),
             SignalStep::Smoothing {
                 width: self.smoothing * 2e-3,
             },
-            SensorError::Faults.step(&[self.dead, self.stuck], skin),
-            SensorError::Quantisation.step(&[self.bits], skin),
+            SensorError::Faults
+                .step(&[self.dead, self.stuck], skin)
+                .unwrap(),
+            SensorError::Quantisation.step(&[self.bits], skin).unwrap(),
         ]
     }
 

@@ -61,7 +61,7 @@ fn slow_rows(study: &Study, configuration: &Configuration, trial: u64) -> Array2
                 let pose = touch.patch_from_object(&touched.rests[touch.rest]);
                 let depth = touch.depth * (frame as f64 / depths as f64);
                 let mut workspace = Workspace::new();
-                press_to_depth(array.patch(), &object, &[pose], depth, &mut workspace);
+                press_to_depth(array.patch(), &object, &[pose], depth, &mut workspace).unwrap();
                 let kept = workspace.deflections().iter().map(|&d| f64::from(d as f32));
                 let mut values: Vec<f64> = kept.collect();
                 let noise = match frame == depths {

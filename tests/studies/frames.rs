@@ -26,7 +26,8 @@ fn every_frame_is_its_touch_pressed_alone() {
             let model = [object.object.model.clone()];
             let pose = touch.patch_from_object(&object.rests[touch.rest]);
             let contact =
-                press_to_depth(array.patch(), &model, &[pose], touch.depth, &mut workspace);
+                press_to_depth(array.patch(), &model, &[pose], touch.depth, &mut workspace)
+                    .unwrap();
             let alone = workspace.deflections().iter();
             let alone: Vec<f64> = alone.map(|&d| f64::from(d as f32)).collect();
             assert_eq!(deflection.row(row).to_vec(), alone, "row {row}");

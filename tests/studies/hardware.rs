@@ -155,14 +155,15 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
             &[pose],
             touch.depth * depth,
             &mut workspace,
-        );
+        )
+        .unwrap();
         let pressed = workspace.deflections();
         // Frames are stored in f32.
         pressed.iter().map(|&d| f64::from(d as f32)).collect()
     };
     let steps = [
-        SensorError::Hysteresis.step(&[0.2], Seed::new(1)),
-        SensorError::Scan.step(&[30.0], Seed::new(1)),
+        SensorError::Hysteresis.step(&[0.2], Seed::new(1)).unwrap(),
+        SensorError::Scan.step(&[30.0], Seed::new(1)).unwrap(),
     ];
     let chain = Chain::new(&steps, array.patch()).unwrap();
     let trial = 1;

@@ -297,7 +297,7 @@ fn readings_of_a_touch_differ_if_and_only_if_the_error_is_random_by_reading() {
     };
     let patch = Patch::grid(grid, taxel).unwrap();
     for &error in SENSOR_ERRORS {
-        let step = error.step(&strengths(error), Seed::new(1));
+        let step = error.step(&strengths(error), Seed::new(1)).unwrap();
         let chain = Chain::new(&[step], &patch).unwrap();
         let read = |touch: u64| {
             let mut frames: Vec<f64> = (0..3 * 36).map(|i| 1e-5 * (i * i % 397) as f64).collect();

@@ -81,7 +81,9 @@ fn frames_are_those_of_the_skin_pressed_by_hand() {
             let pose = touch.patch_from_object(&object.rests[touch.rest]);
             for depth in [0.5 * touch.depth, touch.depth] {
                 let model = [object.object.model.clone()];
-                approach.press_to_depth(&model, &[pose], depth, &mut workspace);
+                approach
+                    .press_to_depth(&model, &[pose], depth, &mut workspace)
+                    .unwrap();
                 let expected = workspace.deflections().iter().map(|&d| f64::from(d as f32));
                 assert!(frames.row(row).iter().copied().eq(expected), "row {row}");
                 row += 1;

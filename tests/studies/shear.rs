@@ -52,7 +52,9 @@ fn frames_are_those_of_the_skin_pressed_and_drawn_by_hand() {
                 let motion = (way.min(touch.depth), (way - touch.depth).max(0.0) * along);
                 let model = [object.object.model.clone()];
                 let state = Some(&mut friction);
-                approach.press_and_slide(&model, &[pose], motion, state, &mut workspace);
+                approach
+                    .press_and_slide(&model, &[pose], motion, state, &mut workspace)
+                    .unwrap();
                 for taxel in 0..N_TAXELS {
                     let force = friction.force3()[taxel];
                     let felt = [workspace.deflections()[taxel], force.x, force.y];

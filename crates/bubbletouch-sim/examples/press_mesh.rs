@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release --example press_mesh`
 
+use bubbletouch_sim::Error;
 use bubbletouch_sim::contact::{Workspace, press_to_depth};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::TriangleMesh;
@@ -11,7 +12,7 @@ use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 use std::time::Instant;
 
-fn main() -> Result<(), bubbletouch_sim::Error> {
+fn main() -> Result<(), Error> {
     // A box of 40 × 20 × 10 mm with sharp edges.
     let mesh = TriangleMesh::cuboid("box", DVec3::new(0.04, 0.02, 0.01))?;
     let object = [Model::from(MeshModel::new(mesh))];
@@ -34,10 +35,10 @@ fn main() -> Result<(), bubbletouch_sim::Error> {
         .map_init(Workspace::new, |workspace, pose| {
             let turn = DQuat::from_rotation_z(f64::from(pose) * std::f64::consts::TAU / 1000.0);
             let pose = Pose::new(turn, DVec3::new(0.0, 0.0, -0.05));
-            press_to_depth(&patch, &object, &[pose], 1e-3, workspace)
-                .map_or(0, |contact| contact.n_touched)
+            let contact = press_to_depth(&patch, &object, &[pose], 1e-3, workspace)?;
+            Ok::<_, Error>(contact.map_or(0, |contact| contact.n_touched))
         });
-    let touched: Vec<usize> = touched.collect();
+    let touched: Vec<usize> = touched.collect::<Result<_, _>>()?;
     let mean = touched.iter().sum::<usize>() as f64 / touched.len() as f64;
     println!(
         "{} presses in {:.2?}; {mean:.1} of {} taxels are touched",

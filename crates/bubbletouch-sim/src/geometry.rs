@@ -1,5 +1,6 @@
 //! Rigid motions, bounding boxes and points.
 
+use crate::error::{Error, Result};
 use glam::{DMat3, DQuat, DVec3, EulerRot};
 use std::collections::HashSet;
 
@@ -75,6 +76,39 @@ impl Pose {
     /// Returns the image of a direction under the motion, that is, the rotated direction.
     pub fn transform_vector(&self, vector: DVec3) -> DVec3 {
         self.rotation * vector
+    }
+}
+
+/// Maximum deviation of the squared length of a quaternion from 1. If larger, poses scale their objects visibly; if smaller, quaternions that were stored in
+/// single precision are refused.
+const UNIT_TOLERANCE: f64 = 1e-6;
+
+/// Returns an error unless there is one pose for each of `n` parts of a scene (`object` or `patch`), and each pose is finite and has a unit quaternion.
+pub(crate) fn check_poses(part: &str, n: usize, poses: &[Pose]) -> Result<()> {
+    if poses.len() != n {
+        return Err(Error::input(
+            format!("poses of {part}s"),
+            format!("{} poses for {n} {part}s", poses.len()),
+            format!("one pose for each {part}"),
+        ));
+    }
+    let is_valid = |pose: &Pose| {
+        let deviation = pose.rotation.length_squared() - 1.0;
+        pose.translation.is_finite() && deviation.abs() <= UNIT_TOLERANCE
+    };
+    match poses.iter().position(|pose| !is_valid(pose)) {
+        None => Ok(()),
+        Some(index) => {
+            let Pose {
+                rotation,
+                translation,
+            } = poses[index];
+            Err(Error::input(
+                format!("pose of {part} {}", index + 1),
+                format!("translation {translation} m, quaternion {rotation}"),
+                "finite numbers, and a quaternion of length one",
+            ))
+        }
     }
 }
 

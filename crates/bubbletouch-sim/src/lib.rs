@@ -58,7 +58,7 @@
 //! let touch = touches(&placement, &rests, &seed)?.remove(0);
 //! let pose = touch.patch_from_object(&rests[touch.rest]);
 //! let mut workspace = Workspace::new();
-//! let contact = press_to_depth(&patch, &[mug.model], &[pose], touch.depth, &mut workspace);
+//! let contact = press_to_depth(&patch, &[mug.model], &[pose], touch.depth, &mut workspace)?;
 //! assert!(contact.is_some_and(|contact| contact.n_saturated == 0));
 //! let mut frame = workspace.deflections().to_vec();
 //! let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));

@@ -241,7 +241,6 @@ impl Batch<'_> {
                 wanted.output.convert(patch, changes);
             }
             if wanted.contacts {
-                let pressed = goal.unless_missed(pressed);
                 let of_pose = OfPose::new(patch, (pressed, met), workspace);
                 if let Ok(mut found) = found.lock() {
                     found.push((number, of_pose));

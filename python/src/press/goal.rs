@@ -99,12 +99,6 @@ impl Goal {
         (self.kind)(0.0)
     }
 
-    /// Returns the result of a press, or `None` if no taxel was touched. A press to a pose or a travel may end without contact.
-    pub fn unless_missed(&self, pressed: Option<Contact>) -> Option<Contact> {
-        let may_touch_none = matches!(self.kind(), contact::Goal::Pose | contact::Goal::Travel(_));
-        pressed.filter(|contact| !may_touch_none || contact.n_touched > 0)
-    }
-
     /// Returns the amount of the press with the given number: metres or newtons.
     pub fn amount(&self, number: usize) -> f64 {
         match self.amounts[..] {
@@ -178,7 +172,7 @@ impl Press<'_> {
         if let (Some(pressed), false) = (pressed, self.goal == contact::Goal::Pose) {
             // The contacts of a flat patch depend on its travel only.
             let travel = pressed.travel;
-            let met = approach.contacts_at_travel(models, poses, travel, workspace);
+            let met = approach.contacts_at_travel(models, poses, travel, workspace)?;
             if let Some(met) = met {
                 return Ok(Some(met).filter(|met| met.n_touched > 0));
             }
@@ -186,20 +180,18 @@ impl Press<'_> {
         let to_depth = |depth, workspace: &mut Workspace| {
             approach.press_to_depth(models, poses, depth, workspace)
         };
-        Ok(match self.goal {
-            contact::Goal::Pose => Some(contact::press_with_contacts(
-                patch, models, poses, workspace,
-            )),
+        match self.goal {
+            contact::Goal::Pose => contact::press_with_contacts(patch, models, poses, workspace),
             contact::Goal::Depth(depth) => to_depth(depth, workspace),
             contact::Goal::Travel(travel) => {
-                let first = first_contact(patch, models, poses, workspace);
+                let first = first_contact(patch, models, poses, workspace)?;
                 let depth = first.map(|first| travel - first);
-                let depth = depth.filter(|depth| *depth > 0.0);
-                depth.and_then(|depth| to_depth(depth, workspace))
+                match depth.filter(|depth| *depth > 0.0) {
+                    Some(depth) => to_depth(depth, workspace),
+                    None => Ok(None),
+                }
             }
-            contact::Goal::Force(force) => {
-                approach.press_to_force(models, poses, force, workspace)?
-            }
-        })
+            contact::Goal::Force(force) => approach.press_to_force(models, poses, force, workspace),
+        }
     }
 }

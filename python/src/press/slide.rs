@@ -82,8 +82,8 @@ pub fn press_and_slide<'py>(
         let motion = (depth.amount(number), slides[number]);
         let approach = Approach::new(patch, DVec3::Z).map_err(exception)?;
         let state = Some(&mut *friction);
-        let Some(contact) = approach.press_and_slide(models, poses, motion, state, workspace)
-        else {
+        let pressed = approach.press_and_slide(models, poses, motion, state, workspace);
+        let Some(contact) = pressed.map_err(exception)? else {
             return Ok(());
         };
         *rows.travel = contact.travel;

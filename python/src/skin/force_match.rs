@@ -64,6 +64,7 @@ pub fn press_pair(
         poses.clear();
         poses.extend(at_poses());
         let held = moved.hold(poses, [back, here, ahead], force, workspace);
+        let held = held.expect("checked poses, forces and directions");
         if held.travel > back || held.force <= force || back < -FARTHEST {
             return held;
         }

@@ -112,7 +112,7 @@ impl SkinPatch {
         workspace: &mut Workspace,
     ) {
         let model = std::slice::from_ref(&body.model);
-        press_at_pose(&self.patch, model, &[patch_from_body], workspace);
+        press_at_pose(&self.patch, model, &[patch_from_body], workspace).expect("checked poses");
         take_maximum(frame, workspace.deflections());
     }
 

@@ -95,7 +95,7 @@ impl ShearState {
         wrench: &mut [f64],
         workspace: &mut Workspace,
     ) {
-        press_with_contacts(patch, models, poses, workspace);
+        press_with_contacts(patch, models, poses, workspace).expect("checked poses");
         // A rigid object moves with its first body.
         let object_of = |body: usize| {
             objects

@@ -536,12 +536,9 @@ impl Skin {
                 scratch
                     .object_poses
                     .extend(object_of.members.iter().map(deeper));
-                press_at_pose(
-                    &part_of.deep(reach),
-                    &object_of.models,
-                    &scratch.object_poses,
-                    workspace,
-                );
+                let deeper = &scratch.object_poses;
+                press_at_pose(&part_of.deep(reach), &object_of.models, deeper, workspace)
+                    .expect("checked poses");
                 let deep = (workspace.deflections(), reach);
                 carry_loads(
                     &part_of.patch,

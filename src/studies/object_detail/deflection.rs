@@ -63,6 +63,9 @@ const N_STEPS: usize = 30;
 /// Number of times that each touch is repeated to measure its computing time.
 const N_REPEATS: usize = 3;
 
+/// Reason why a press of a reading cannot fail: the touch of the exact model had the same numbers.
+const CHECKED: &str = "poses and travels of readings are finite";
+
 impl Truth {
     /// Computes the touches of the exact model of an object. The poses are those in which other studies touch an object of this name.
     pub fn new(
@@ -84,7 +87,7 @@ impl Truth {
         for touch in &touched.touches {
             let pose = touch.patch_from_object(&touched.rests[touch.rest]);
             let contact =
-                press_to_depth(array.patch(), object, &[pose], touch.depth, &mut workspace);
+                press_to_depth(array.patch(), object, &[pose], touch.depth, &mut workspace)?;
             let Some(contact) = contact else {
                 truth.n_missed += 1;
                 continue;
@@ -110,7 +113,7 @@ impl Truth {
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         DeflectionError::new(self.errors_of(|pose, reading, workspace| {
-            press_to_depth(patch, object, pose, reading.depth, workspace);
+            press_to_depth(patch, object, pose, reading.depth, workspace).map(drop)
         }))
     }
 
@@ -136,7 +139,7 @@ impl Truth {
         let mut workspace = Workspace::new();
         let mut press = |reading: &Reading| {
             let pose = [reading.patch_from_object];
-            press_to_depth(patch, object, &pose, reading.depth, &mut workspace);
+            press_to_depth(patch, object, &pose, reading.depth, &mut workspace).expect(CHECKED);
         };
         // One run before the measurement allocates the workspace and fills the caches.
         self.readings.iter().for_each(&mut press);
@@ -148,17 +151,20 @@ impl Truth {
     fn errors(&self, model: &Model, offset: f64) -> Vec<f64> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         self.errors_of(|pose, reading, workspace| {
-            press_to_travel(patch, object, pose, reading.travel - offset, workspace);
+            press_to_travel(patch, object, pose, reading.travel - offset, workspace).map(drop)
         })
     }
 
     /// Returns |δ − δ\*| in metres for each touched taxel, where δ is the deflection by the model and δ\* by the mesh. The function `press` computes the
     /// deflections on the model.
-    fn errors_of(&self, press: impl Fn(&[Pose], &Reading, &mut Workspace)) -> Vec<f64> {
+    fn errors_of(
+        &self,
+        press: impl Fn(&[Pose], &Reading, &mut Workspace) -> Result<()>,
+    ) -> Vec<f64> {
         let mut workspace = Workspace::new();
         let mut errors = Vec::new();
         for reading in &self.readings {
-            press(&[reading.patch_from_object], reading, &mut workspace);
+            press(&[reading.patch_from_object], reading, &mut workspace).expect(CHECKED);
             errors.extend(reading.errors(workspace.deflections()));
         }
         errors
@@ -171,7 +177,7 @@ impl Truth {
         let mut workspace = Workspace::new();
         let ahead = self.readings.iter().filter_map(|reading| {
             let pose = [reading.patch_from_object];
-            let first = first_contact(patch, object, &pose, &mut workspace)?;
+            let first = first_contact(patch, object, &pose, &mut workspace).expect(CHECKED)?;
             let ahead = reading.travel - reading.depth - first;
             Some((ahead - reading.depth, ahead + reading.depth))
         });

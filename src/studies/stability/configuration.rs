@@ -114,7 +114,7 @@ fn simulate(
 ) -> Result<Answer> {
     if configuration.method == ContactMethod::QuasiStatic {
         return match (configuration.scene, &scene.drive) {
-            (_, Drive::Imposed(plan)) => Ok(press_and_release(configuration, scene, plan)),
+            (_, Drive::Imposed(plan)) => press_and_release(configuration, scene, plan),
             (StabilityScene::Plunger, _) => press_to_weight(scene),
             (_, Drive::Free { mass, .. }) => {
                 put_to_rest(scene, *mass, configuration.scene.n_balls())
@@ -208,7 +208,7 @@ fn put_to_rest(scene: &ConfigurationScene, mass: f64, n_balls: usize) -> Result<
     let mut workspace = Workspace::new();
     let poses: Vec<Pose> = balances.iter().map(|balance| balance.pose).collect();
     let models = vec![test_bed.ball.clone(); n_balls];
-    press_at_pose(&test_bed.patch, &models, &poses, &mut workspace);
+    press_at_pose(&test_bed.patch, &models, &poses, &mut workspace)?;
     let imbalances = balances.iter().map(|balance| match balance.outcome {
         EquilibriumOutcome::AtRest => balance.imbalance,
         _ => f64::INFINITY,
@@ -243,7 +243,7 @@ fn press_and_release(
     configuration: &StabilityConfiguration,
     scene: &ConfigurationScene,
     plan: &VelocityPlan,
-) -> Answer {
+) -> Result<Answer> {
     let (dt, patch) = (configuration.dt_s, &scene.test_bed.patch);
     let frames = scene.frames(dt);
     let mut state = DamperState::at_rest(patch.n_taxels());
@@ -259,7 +259,7 @@ fn press_and_release(
             from_ref(&scene.test_bed.ball),
             &[pose],
             &mut workspace,
-        );
+        )?;
         state.step(patch.taxels(), dt, workspace.deflections());
         if step == frames[0] {
             let force: f64 = state.force.iter().sum();
@@ -268,7 +268,7 @@ fn press_and_release(
         }
     }
     answer.left_over = state.deflection.iter().sum();
-    answer
+    Ok(answer)
 }
 
 fn judge(

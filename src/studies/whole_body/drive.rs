@@ -74,10 +74,10 @@ pub(super) struct Drive<'a> {
 }
 
 impl<'a> Drive<'a> {
-    pub fn new(posture: &Posture<'a>, object: &SphereUnion, aim: &Aim) -> Self {
+    pub fn new(posture: &Posture<'a>, object: &SphereUnion, aim: &Aim) -> Result<Self> {
         let mut state = BodyState::at_rest(posture.body);
-        state.place(posture.body, &posture.patches);
-        Self {
+        state.place(posture.body, &posture.patches)?;
+        Ok(Self {
             body: posture.body,
             state,
             object: [SphereClusters::new(object)],
@@ -85,11 +85,11 @@ impl<'a> Drive<'a> {
                 world_from_link: posture.links[aim.link],
                 motion: aim.motion,
             },
-        }
+        })
     }
 
     /// Presses the object against the undeformed skin at the start of a path.
-    pub fn probe(&mut self, path: Path) -> BodyContact {
+    pub fn probe(&mut self, path: Path) -> Result<BodyContact> {
         let pose = [path.at(0.0)];
         self.state.press(self.body, &self.object, &pose, FORGOTTEN)
     }
@@ -104,9 +104,11 @@ impl<'a> Drive<'a> {
     pub fn approach(&mut self, from: DVec3, depth: f64) -> Result<()> {
         let reach = self.object[0].ball().radius + self.object[0].ball().center.length();
         let path = self.path;
-        let mut is_touched = |away: f64| self.probe(path.shifted(away * from)).n_touched > 0;
+        let mut is_touched = |away: f64| -> Result<bool> {
+            Ok(self.probe(path.shifted(away * from))?.n_touched > 0)
+        };
         let mut outside = reach + SEARCH_START;
-        while !is_touched(outside - SEARCH_STEP) {
+        while !is_touched(outside - SEARCH_STEP)? {
             outside -= SEARCH_STEP;
             if outside < -reach {
                 let allowed = "a place and a direction from which the object meets the skin";
@@ -116,7 +118,7 @@ impl<'a> Drive<'a> {
         let mut inside = outside - SEARCH_STEP;
         while outside - inside > SEARCH_END {
             let middle = 0.5 * (outside + inside);
-            match is_touched(middle) {
+            match is_touched(middle)? {
                 true => inside = middle,
                 false => outside = middle,
             }

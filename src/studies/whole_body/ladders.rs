@@ -130,13 +130,14 @@ pub(super) fn climb(plan: &WholeBodyPlan, rung: &ScalingPoint) -> Result<Driven>
             period: PERIOD,
         },
     };
-    let mut drive = Drive::new(&posture, &object, &aim);
+    let mut drive = Drive::new(&posture, &object, &aim)?;
     let path = drive.path;
     // Beyond the stroke, a deeper cushion only saturates more taxels.
     let (mut out, mut deep) = (0.0, plan.taxel.stroke);
     for _ in 0..N_HALVINGS {
         let depth = 0.5 * (out + deep);
-        match drive.probe(path.shifted(-depth * aim.from)).n_touched < rung.n_touched {
+        let probed = drive.probe(path.shifted(-depth * aim.from))?;
+        match probed.n_touched < rung.n_touched {
             true => out = depth,
             false => deep = depth,
         }

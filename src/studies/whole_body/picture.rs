@@ -68,7 +68,7 @@ fn view(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SceneView> {
     let covered = plan.cover(plan.pitch)?;
     let poses = plan.posture(&covered, &scene.positions)?.patches;
     let (mut drive, object) = plan.begin(scene, &covered)?;
-    drive.probe(drive.path);
+    drive.probe(drive.path)?;
     let felt: Vec<(usize, f64)> = drive.touched().collect();
     let (mut pressures, mut touched) = (Vec::new(), Vec::new());
     let body = covered.body();

@@ -80,12 +80,12 @@ fn measure(
             let object = number / wanted.of_each();
             let (_, drive) = match kept {
                 Some(of) if of.0 == object => of,
-                _ => kept.insert((object, Drive::new(posture, &unions[object], &plan.aim))),
+                _ => kept.insert((object, Drive::new(posture, &unions[object], &plan.aim)?)),
             };
             let (start, depth) = draw(plan, object, number % wanted.of_each());
             drive.path = drive.path.starting_at(start);
             drive.approach(plan.aim.from, depth)?;
-            drive.probe(drive.path);
+            drive.probe(drive.path)?;
             let row = row.as_slice_mut().expect("rows are whole");
             for (columns, row) in columns.iter().zip(row.chunks_exact_mut(m)) {
                 drive.state.measure(drive.body, columns, row);

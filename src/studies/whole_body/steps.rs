@@ -72,7 +72,8 @@ impl Drive<'_> {
     ) -> Result<Driven> {
         let n_steps = WARM_UP + plan.n_steps();
         let away = [Pose::from_translation(DVec3::splat(1e6))];
-        self.state.press(self.body, &self.object, &away, FORGOTTEN);
+        self.state
+            .press(self.body, &self.object, &away, FORGOTTEN)?;
         let n_bytes = self.body.n_bytes() + self.state.n_bytes();
         let mut steps = Vec::with_capacity(n_steps);
         let of_each = compressions.iter();
@@ -84,7 +85,7 @@ impl Drive<'_> {
         for step in 0..n_steps {
             let pose = [self.path.at(step as f64 * plan.dt)];
             let start = Instant::now();
-            let contact = self.state.press(self.body, &self.object, &pose, plan.dt);
+            let contact = self.state.press(self.body, &self.object, &pose, plan.dt)?;
             steps.push(Step {
                 press_s: start.elapsed().as_secs_f64(),
                 contact,

@@ -283,7 +283,7 @@ impl WholeBodyPlan {
         let begin = || {
             let object = of_scene(self, scene)?;
             let posture = self.posture(covered, &scene.positions)?;
-            let mut drive = Drive::new(&posture, &object, &scene.aim);
+            let mut drive = Drive::new(&posture, &object, &scene.aim)?;
             if let Some(depth_mm) = scene.spec.depth_mm {
                 drive.approach(scene.aim.from, MM * depth_mm)?;
             }

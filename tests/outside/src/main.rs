@@ -1,13 +1,15 @@
-//! Own parts of studies, linfa's cross-validation on published data sets, and a press.
+//! Own parts of studies, linfa's cross-validation on published data sets, and presses with numbers that are none.
 
 mod own_parts;
 
-use bubbletouch_sim::contact::{Workspace, press_to_depth};
+use bubbletouch_sim::contact::{Goal, Row, Workspace, press_into, press_to_depth};
 use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::{LengthUnit, TriangleMesh};
 use bubbletouch_sim::objects::Catalogue;
 use bubbletouch_sim::world::{Grid, Patch, Taxel};
 use bubbletouch_svm::kernel::{Gamma, Kernel};
 use bubbletouch_svm::{Error, SvmParams};
+use glam::DVec3;
 use linfa::Dataset;
 use linfa::dataset::DatasetBase;
 use linfa::prelude::ToConfusionMatrix;
@@ -72,8 +74,30 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         taxel,
     )?;
     let mut workspace = Workspace::new();
-    let mut press =
-        |depth| press_to_depth(&patch, &ball, &[Pose::default()], depth, &mut workspace);
-    assert!(press(1e-3).is_some_and(|contact| contact.n_touched > 0));
+    let mut press = |place: f64, depth: f64| {
+        let pose = Pose::from_translation(place * DVec3::X);
+        press_to_depth(&patch, &ball, &[pose], depth, &mut workspace)
+    };
+    assert!(press(0.0, 1e-3)?.is_some_and(|contact| contact.n_touched > 0));
+    // Numbers that are none, and an output of another size, are errors of one sentence.
+    for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for pressed in [press(number, 1e-3), press(0.0, number)] {
+            let sentence = pressed.expect_err("no number").to_string();
+            println!("{sentence}");
+            assert!(sentence.contains(&number.to_string()), "{sentence}");
+        }
+    }
+    let (goal, mut row) = (Goal::Depth(1e-3), [0.0; 63]);
+    let row = Row::Double(&mut row);
+    let pressed = press_into(&patch, &ball, &[Pose::default()], goal, row, &mut workspace);
+    let sentence = pressed.expect_err("63 values for 64 taxels").to_string();
+    println!("{sentence}");
+    assert!(sentence.contains("63 values for 64 taxels"));
+    // A mesh in millimetres needs its unit.
+    let corners = || [DVec3::ZERO, 20.0 * DVec3::X, 20.0 * DVec3::Y].to_vec();
+    let metres = TriangleMesh::new("die", corners(), vec![[0, 1, 2]]);
+    println!("{}", metres.expect_err("20 m").to_string());
+    let unit = LengthUnit::Millimetre;
+    TriangleMesh::in_unit("die", unit, corners(), vec![[0, 1, 2]])?;
     Ok(())
 }

@@ -1,11 +1,15 @@
 //! Motion of one object, or of all objects together, along a line until a skin carries a given force, within travel limits.
 
+use super::checks::check_direction;
 use super::force_goal::FORCE_ACCURACY;
 use super::root_search::crossing;
 use super::spring_load::sample;
-use super::{Workspace, press_with_contacts};
-use crate::geometry::Pose;
+use super::tree::deflect_with_contacts;
+use super::{Goal, Workspace};
+use crate::error::{Error, Result};
+use crate::geometry::{Pose, check_poses};
 use crate::objects::Model;
+use crate::text::in_range::not_negative;
 use crate::world::Patch;
 use glam::DVec3;
 
@@ -40,15 +44,31 @@ impl MovedObject<'_> {
     /// limits, the object moves to the nearer limit. If the total force jumps past `force` at some travel, the side of the jump with the larger force is
     /// returned.
     ///
-    /// # Panics
-    /// If the number of poses differs from the number of objects, or `moving` is not the index of an object.
+    /// # Errors
+    /// If the poses are invalid, as in [`press`](crate::contact::press()), the direction is not a unit vector, a travel is not finite, or the force is
+    /// negative or not finite. If `moving` is not the index of an object.
     pub fn hold(
         &self,
         poses: &mut [Pose],
         travels: [f64; 3],
         force: f64,
         workspace: &mut Workspace,
-    ) -> HeldForce {
+    ) -> Result<HeldForce> {
+        check_poses("object", self.objects.len(), poses)?;
+        check_direction(self.direction)?;
+        not_negative("touch force", force, "N")?;
+        for travel in travels {
+            Goal::Travel(travel).check()?;
+        }
+        let n = self.objects.len();
+        if self.moving.is_some_and(|moving| moving >= n) {
+            let given = format!("{}", self.moving.unwrap_or_default());
+            return Err(Error::input(
+                "moving object",
+                given,
+                format!("below {n}, the number of objects"),
+            ));
+        }
         let [back, here, ahead] = travels;
         let range = self.moving.map_or(0..poses.len(), |moved| moved..moved + 1);
         let starts = poses[range.clone()].iter().map(|pose| pose.translation);
@@ -57,7 +77,7 @@ impl MovedObject<'_> {
             for (pose, start) in poses[range.clone()].iter_mut().zip(&starts) {
                 pose.translation = *start + travel * self.direction;
             }
-            press_with_contacts(self.patch, self.objects, poses, workspace);
+            deflect_with_contacts(self.patch, self.objects, poses, workspace);
             let is_moved = |number| range.contains(&number);
             sample(self.patch, workspace.contacts(), self.direction, is_moved)
         };
@@ -77,9 +97,9 @@ impl MovedObject<'_> {
             true => crossing([low, high], (force, tolerance), &mut carried),
             false => low,
         };
-        HeldForce {
+        Ok(HeldForce {
             travel,
             force: carried(travel).value,
-        }
+        })
     }
 }

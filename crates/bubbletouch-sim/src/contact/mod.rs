@@ -35,6 +35,7 @@
 //! measures a three-axis force ([`FrictionState`] has the equations). Without friction, and also with μ = 0, the forces are bitwise equal to `spring_load`.
 
 mod assigned_loads;
+mod checks;
 mod damper;
 pub mod equilibrium;
 mod force_goal;
@@ -72,13 +73,14 @@ pub use point_loads::{
 };
 pub use press::{
     Goal, first_contact, press, press_at_pose, press_into, press_onto_zeros, press_to_depth,
-    press_to_force, press_to_travel,
+    press_to_force, press_to_travel, press_with_contacts,
 };
 pub use press_summary::Contact;
 pub(crate) use root_search::{Sample, crossing};
 pub use simulate::{Recording, simulate};
 pub use spring_load::{AxialLoad, SpringLoad, axial_load, spring_load};
 pub use taxel_contact::{GRAZING, TaxelContact};
-pub use tree::{Approach, press_with_contacts};
+pub use tree::Approach;
+pub(crate) use tree::deflect_with_contacts;
 pub use workspace::Workspace;
 pub use wrench::Wrench;

@@ -476,7 +476,7 @@ mod tests {
         let patch = Patch::grid(grid, taxel).unwrap();
         let mut workspace = Workspace::new();
         let pose = Pose::from_translation(at - REACH * DVec3::Z);
-        press_at_pose(&patch, objects, &[pose], &mut workspace);
+        press_at_pose(&patch, objects, &[pose], &mut workspace).unwrap();
         workspace.deflections().to_vec()
     }
 

@@ -3,12 +3,13 @@
 //! A flat grid with equal radii and substrate heights is pressed row by row (`grid`), any other patch taxel by taxel (`tree`). The results of the two kernels
 //! are equal up to rounding.
 
+use super::checks::check_output;
 use super::grid::{OutputBuffer, Row, TravelGoal, force};
 use super::press_summary::Contact;
 use super::tree::{self, Approach};
 use super::workspace::Workspace;
 use crate::error::Result;
-use crate::geometry::Pose;
+use crate::geometry::{Pose, check_poses};
 use crate::objects::Model;
 use crate::world::{Patch, Taxels};
 
@@ -17,21 +18,21 @@ use crate::world::{Patch, Taxels};
 pub enum Goal {
     /// The patch presses at its given pose, without travel ([`press_at_pose`]).
     Pose,
-    /// The patch travels to a depth past first contact, metres ([`press_to_depth`]).
+    /// The patch travels to a depth past first contact, metres, zero or positive ([`press_to_depth`]).
     Depth(f64),
     /// The patch moves by a travel from the given pose, metres ([`press_to_travel`]).
     Travel(f64),
-    /// The patch travels until the springs of all taxels together carry a force, newtons ([`press_to_force`]).
+    /// The patch travels until the springs of all taxels together carry a force, newtons, positive ([`press_to_force`]).
     Force(f64),
 }
 
-/// Presses a patch against objects until `goal` is reached. Returns `None`, with zero deflections, if the patch meets nothing on its path.
+/// Presses a patch against objects until `goal` is reached. Returns `None`, with zero deflections, if the patch meets nothing.
+///
+/// A press to a depth or a force meets nothing if no travel touches anything. A press at a pose or to a travel meets nothing if no taxel is touched there.
 ///
 /// # Errors
-/// If [`press_to_force`] fails.
-///
-/// # Panics
-/// If the number of poses differs from the number of objects.
+/// If there is not one pose for each object, a pose is not finite or has no unit quaternion, or the number of the goal is out of its range ([`Goal`]). If
+/// the force exceeds the largest possible force, as in [`press_to_force`].
 pub fn press(
     patch: &Patch,
     objects: &[Model],
@@ -46,10 +47,7 @@ pub fn press(
 /// Presses a patch against objects until `goal` is reached and writes the deflections into `row`, which is faster than copying them afterwards.
 ///
 /// # Errors
-/// If [`press_to_force`] fails; the contents of `row` are then unspecified.
-///
-/// # Panics
-/// If the number of poses differs from the number of objects, or `row` has not `n_taxels` elements.
+/// If [`press`] fails; the contents of `row` are then unspecified. If `row` has not `n_taxels` elements.
 pub fn press_into(
     patch: &Patch,
     objects: &[Model],
@@ -67,9 +65,6 @@ pub fn press_into(
 ///
 /// # Errors
 /// If [`press_into`] fails.
-///
-/// # Panics
-/// If the number of poses differs from the number of objects, or `zeros` has not `n_taxels` elements.
 pub fn press_onto_zeros(
     patch: &Patch,
     objects: &[Model],
@@ -93,7 +88,7 @@ fn press_with_output(
     goal: Goal,
     (workspace, mut output): (&mut Workspace, OutputBuffer),
 ) -> Result<Option<Contact>> {
-    assert_eq!(output.row.len(), patch.n_taxels(), "one number a taxel");
+    check_output(output.row.len(), patch.n_taxels())?;
     let contact = to_goal(patch, placed, goal, (workspace, &mut output))?;
     match workspace.is_on_grid() {
         // Either the kernel has written the row, or nothing is touched.
@@ -103,19 +98,24 @@ fn press_with_output(
     Ok(contact)
 }
 
+/// Checks the numbers of a press, and presses.
 fn to_goal(
     patch: &Patch,
     placed: (&[Model], &[Pose]),
     goal: Goal,
     scratch: (&mut Workspace, &mut OutputBuffer),
 ) -> Result<Option<Contact>> {
+    check_poses("object", placed.0.len(), placed.1)?;
+    goal.check()?;
     let until = match goal {
         Goal::Pose => TravelGoal::Pose,
         Goal::Depth(depth) => TravelGoal::Depth(depth),
         Goal::Travel(travel) => TravelGoal::Travel(travel),
         Goal::Force(force) => return to_force(patch, placed, force, scratch),
     };
-    Ok(to_place(patch, placed, until, scratch))
+    let contact = to_place(patch, placed, until, scratch);
+    let is_depth = matches!(goal, Goal::Depth(_));
+    Ok(contact.filter(|contact| is_depth || contact.n_touched > 0))
 }
 
 /// Presses the patch at its pose, to a travel or to a depth. Returns `None` if the goal is a depth and the patch meets nothing.
@@ -150,20 +150,13 @@ fn to_place(
         return Some(tree::deflect(patch, objects, patch_from_objects, workspace));
     }
     let approach = Approach::ahead(patch);
-    let first = approach.first_contact(objects, patch_from_objects);
+    let first = approach.meets(objects, patch_from_objects);
     let travels = first.and_then(|first| match until {
         TravelGoal::Depth(depth) => Some([first, first + depth]),
         TravelGoal::Travel(travel) => (first < travel).then_some([first, travel]),
         TravelGoal::Pose => None,
     });
-    let contact = approach.deflect(objects, patch_from_objects, travels, workspace);
-    match until {
-        TravelGoal::Travel(travel) => Some(Contact {
-            travel,
-            ..contact.unwrap_or_default()
-        }),
-        _ => contact,
-    }
+    approach.deflect(objects, patch_from_objects, travels, workspace)
 }
 
 /// Returns the travel of the patch along its z axis at which the first taxel is touched, metres; negative if a taxel is touched already. Returns `None` if no
@@ -172,23 +165,24 @@ fn to_place(
 /// `patch_from_objects` contains one pose per object. The travel is computed in closed form: a taxel that travels along a line meets a sphere at a root of a
 /// quadratic equation.
 ///
-/// # Panics
-/// If the number of poses differs from the number of objects.
+/// # Errors
+/// If the poses are invalid, as in [`press`].
 pub fn first_contact(
     patch: &Patch,
     objects: &[Model],
     patch_from_objects: &[Pose],
     workspace: &mut Workspace,
-) -> Option<f64> {
-    match patch.even_grid() {
+) -> Result<Option<f64>> {
+    check_poses("object", objects.len(), patch_from_objects)?;
+    Ok(match patch.even_grid() {
         Some(grid) => {
             let until = TravelGoal::Depth(0.0);
             workspace
                 .on_grid()
                 .gather(grid, objects, patch_from_objects, until)
         }
-        None => Approach::ahead(patch).first_contact(objects, patch_from_objects),
-    }
+        None => Approach::ahead(patch).meets(objects, patch_from_objects),
+    })
 }
 
 /// Presses a patch against objects until it is `depth` metres past first contact. Returns `None`, with zero deflections, if the patch meets nothing.
@@ -196,35 +190,33 @@ pub fn first_contact(
 /// The patch approaches from the front, and spheres push at any distance behind the taxels. Taxels pushed past their stroke are saturated. On a flat patch
 /// the deflection of a taxel never decreases with the depth.
 ///
-/// # Panics
-/// If the number of poses differs from the number of objects.
+/// # Errors
+/// If the depth is negative or not finite, or the poses are invalid, as in [`press`].
 pub fn press_to_depth(
     patch: &Patch,
     objects: &[Model],
     patch_from_objects: &[Pose],
     depth: f64,
     workspace: &mut Workspace,
-) -> Option<Contact> {
-    let placed = (objects, patch_from_objects);
-    let scratch = (workspace, &mut OutputBuffer::none());
-    to_place(patch, placed, TravelGoal::Depth(depth), scratch)
+) -> Result<Option<Contact>> {
+    let goal = Goal::Depth(depth);
+    press(patch, objects, patch_from_objects, goal, workspace)
 }
 
 /// Presses a patch from the front until it has moved `travel` metres along its z axis from the given pose. The result equals [`press_to_depth`] at the depth
-/// with this travel.
+/// with this travel. Returns `None`, with zero deflections, if no taxel is touched.
 ///
-/// # Panics
-/// If the number of poses differs from the number of objects.
+/// # Errors
+/// If the travel is not finite, or the poses are invalid, as in [`press`].
 pub fn press_to_travel(
     patch: &Patch,
     objects: &[Model],
     patch_from_objects: &[Pose],
     travel: f64,
     workspace: &mut Workspace,
-) -> Contact {
-    let placed = (objects, patch_from_objects);
-    let scratch = (workspace, &mut OutputBuffer::none());
-    to_place(patch, placed, TravelGoal::Travel(travel), scratch).unwrap_or_default()
+) -> Result<Option<Contact>> {
+    let goal = Goal::Travel(travel);
+    press(patch, objects, patch_from_objects, goal, workspace)
 }
 
 /// Presses a patch until the sum of all spring forces equals `force` newtons. The relative error is at most 1e-12, or what rounding of the travel causes.
@@ -234,10 +226,7 @@ pub fn press_to_travel(
 ///
 /// # Errors
 /// If `force` is not a positive number or exceeds the largest force that the object can exert within the taxels' strokes. The message contains
-/// this largest force and its travel.
-///
-/// # Panics
-/// If the number of poses differs from the number of objects.
+/// this largest force and its travel. If the poses are invalid, as in [`press`].
 ///
 /// ```
 /// use bubbletouch_sim::contact::{Workspace, press_to_force};
@@ -283,21 +272,70 @@ fn to_force(
             force,
             (workspace.on_grid(), output),
         ),
-        _ => Approach::ahead(patch).press_to_force(objects, patch_from_objects, force, workspace),
+        _ => Approach::ahead(patch).to_force(objects, patch_from_objects, force, workspace),
     }
 }
 
-/// Presses a patch at its given pose as `press_with_contacts` does, but without recording contacts.
+/// Presses a patch at its given pose as [`press_with_contacts`] does, but without recording contacts.
 ///
-/// # Panics
-/// If the number of poses differs from the number of objects.
+/// # Errors
+/// If the poses are invalid, as in [`press`].
 pub fn press_at_pose(
     patch: &Patch,
     objects: &[Model],
     patch_from_objects: &[Pose],
     workspace: &mut Workspace,
-) -> Contact {
-    let placed = (objects, patch_from_objects);
-    let scratch = (workspace, &mut OutputBuffer::none());
-    to_place(patch, placed, TravelGoal::Pose, scratch).unwrap_or_default()
+) -> Result<Option<Contact>> {
+    press(patch, objects, patch_from_objects, Goal::Pose, workspace)
+}
+
+/// Presses a patch on objects at their given poses and records the contacts; `patch_from_objects` contains one pose per object. Returns `None`, with zero
+/// deflections and without contacts, if no taxel is touched.
+///
+/// Parts of objects behind the substrate of a taxel do not push this taxel (rule in the module `contact`). An object below a forearm therefore does not
+/// press the taxels on the upper side. A part that is pushed far past the stroke is also behind the substrate. Only a press to a depth includes such parts,
+/// because its path is known. One part determines each deflection. If several parts require equal deflections, the first sphere of the first object
+/// determines the deflection.
+///
+/// A free object at rest often lies on taxels that two of its parts push equally far, such as two faces of a valley. Their shares of the force are needed for the balance;
+/// [`EquilibriumSolver::loads`](crate::contact::equilibrium::EquilibriumSolver::loads) contains them.
+///
+/// ```
+/// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
+/// use bubbletouch_sim::geometry::Pose;
+/// use bubbletouch_sim::objects::{Sphere, SphereUnion};
+/// use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
+/// use glam::DVec3;
+///
+/// // A fingertip: half a ball of 8 mm with a taxel every 1.5 mm.
+/// let layout = Layout::sphere_cap(8e-3, std::f64::consts::FRAC_PI_2, 1.5e-3)?;
+/// let taxel = Taxel { radius: 0.5e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
+/// let fingertip = Patch::new("fingertip", layout, Taxels::Equal(taxel))?;
+///
+/// // A marble presses half a millimetre deep, from the side.
+/// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
+/// let objects = [SphereUnion::new(vec![marble])?.into()];
+/// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
+/// let mut workspace = Workspace::new();
+/// let counts = press_with_contacts(&fingertip, &objects, &[pose], &mut workspace)?;
+/// assert!(counts.is_some_and(|counts| counts.n_touched > 3 && counts.n_saturated == 0));
+///
+/// // The force on the marble points back along its approach.
+/// let load = spring_load(&fingertip, workspace.contacts());
+/// let force = load.on_object.force;
+/// assert!(force.normalize().dot(DVec3::new(0.6, 0.0, 0.8)) > 0.95);
+/// # Ok::<(), bubbletouch_sim::Error>(())
+/// ```
+///
+/// # Errors
+/// If the poses are invalid, as in [`press`].
+pub fn press_with_contacts(
+    patch: &Patch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Result<Option<Contact>> {
+    check_poses("object", objects.len(), patch_from_objects)?;
+    let contact = tree::deflect_with_contacts(patch, objects, patch_from_objects, workspace);
+    Ok(Some(contact).filter(|contact| contact.n_touched > 0))
 }

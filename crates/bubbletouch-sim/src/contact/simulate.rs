@@ -2,8 +2,8 @@
 
 use super::tree;
 use super::{DamperState, Workspace};
-use crate::error::{Error, Result};
-use crate::geometry::Pose;
+use crate::error::Result;
+use crate::geometry::{Pose, check_poses};
 use crate::objects::Model;
 use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
@@ -29,7 +29,7 @@ pub struct Recording {
 /// The list `world_from_objects` contains one plan per object; the plan of a fixed object has no phases. The simulation is stable for any `dt`.
 ///
 /// # Errors
-/// If `dt` is not positive, or the number of plans differs from the number of objects.
+/// If `dt` is not positive, the number of plans differs from the number of objects, or a planned pose is invalid, as in [`press`](super::press()).
 pub fn simulate(
     patch: &Patch,
     objects: &[Model],
@@ -39,17 +39,6 @@ pub fn simulate(
     n_frames: usize,
 ) -> Result<Recording> {
     positive("time step", dt, "s")?;
-    if world_from_objects.len() != objects.len() {
-        return Err(Error::input(
-            "object trajectories",
-            format!(
-                "{} plans for {} objects",
-                world_from_objects.len(),
-                objects.len()
-            ),
-            "one plan an object",
-        ));
-    }
     let n_taxels = patch.n_taxels();
     let mut recording = Recording {
         time: Array1::from_shape_fn(n_frames, |k| (k + 1) as f64 * dt),
@@ -69,6 +58,7 @@ pub fn simulate(
                 .iter()
                 .map(|plan| plan.pose_at(time).seen_from(&world_from_patch)),
         );
+        check_poses("object", objects.len(), &poses)?;
         let contact = tree::deflect(patch, objects, &poses, &mut workspace);
         workspace.hold_touched();
         state.step(patch.taxels(), dt, workspace.deflections());

@@ -1,10 +1,10 @@
 //! Mechanical system: taxels with mass, and an object that can move only along the taxels' axis.
 
-use crate::contact::{Workspace, press_with_contacts};
+use crate::contact::{Workspace, deflect_with_contacts};
 use crate::error::{Error, Result};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, check_poses};
 use crate::objects::Model;
-use crate::text::in_range::positive;
+use crate::text::in_range::{finite, positive};
 use crate::world::{Patch, VelocityPlan};
 use glam::DVec3;
 
@@ -46,7 +46,7 @@ impl<'a> System<'a> {
     /// Creates a system and checks it. Taxels that the object does not touch within `reach` metres of travel are never pushed.
     ///
     /// # Errors
-    /// If a mass, gravity or reach is not positive, or the axis of a taxel is not +z (the error names the first such taxel).
+    /// If a mass, gravity or reach is not positive, the travel or the pose is not finite, or the axis of a taxel is not +z (the error names the first such taxel).
     pub fn new(
         patch: &'a Patch,
         taxel_mass: f64,
@@ -57,7 +57,14 @@ impl<'a> System<'a> {
     ) -> Result<Self> {
         positive("taxel mass", taxel_mass, "kg")?;
         positive("reach of an object on a guide", reach, "m")?;
-        if let Drive::Free { mass, gravity, .. } = drive {
+        check_poses("object", 1, &[pose])?;
+        if let Drive::Free {
+            mass,
+            gravity,
+            travel,
+        } = drive
+        {
+            finite("travel of the object at the start", travel, "m")?;
             positive("object mass", mass, "kg")?;
             positive("gravity", gravity, "m/s²")?;
         }
@@ -147,7 +154,7 @@ impl<'a> System<'a> {
 fn starts(patch: &Patch, object: &Model, pose: &Pose, reach: f64) -> Vec<f64> {
     let mut workspace = Workspace::new();
     let low = Pose::new(pose.rotation, pose.translation - reach * DVec3::Z);
-    press_with_contacts(patch, std::slice::from_ref(object), &[low], &mut workspace);
+    deflect_with_contacts(patch, std::slice::from_ref(object), &[low], &mut workspace);
     let mut starts = vec![f64::INFINITY; patch.n_taxels()];
     for contact in workspace.contacts() {
         starts[contact.taxel] = reach - contact.needed;

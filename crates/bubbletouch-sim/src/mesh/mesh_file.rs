@@ -1,7 +1,7 @@
 //! Contents of a mesh file, before conversion to a triangle mesh.
 
-use super::TriangleMesh;
 use super::triangle_mesh::check_vertices;
+use super::{LengthUnit, TriangleMesh};
 use crate::error::{Error, Result};
 use glam::DVec3;
 
@@ -19,7 +19,11 @@ impl MeshFile {
     ///
     /// # Errors
     /// If the invariant does not hold; errors begin with `place` and count from 1.
-    pub fn new(place: &str, vertices: Vec<DVec3>, polygons: Vec<Vec<u32>>) -> Result<Self> {
+    pub(in crate::mesh) fn new(
+        place: &str,
+        vertices: Vec<DVec3>,
+        polygons: Vec<Vec<u32>>,
+    ) -> Result<Self> {
         check_vertices(place, &vertices)?;
         if let Some(index) = polygons.iter().position(|corners| corners.len() < 3) {
             return Err(Error::input(
@@ -42,6 +46,9 @@ impl MeshFile {
 
     /// Returns the contents of the file with every coordinate multiplied by a factor.
     pub(in crate::mesh) fn scaled(self, place: &str, factor: f64) -> Result<Self> {
+        if factor == 1.0 {
+            return Ok(self);
+        }
         let vertices = self.vertices.into_iter().map(|v| v * factor).collect();
         Self::new(place, vertices, self.polygons)
     }
@@ -75,7 +82,7 @@ impl MeshFile {
                 .collect::<Vec<_>>()
         };
         let triangles = self.polygons.iter().flat_map(fan).collect();
-        TriangleMesh::new(place, self.vertices, triangles)
+        TriangleMesh::in_unit(place, LengthUnit::Metre, self.vertices, triangles)
     }
 
     /// Returns whether a triangle of the polygon's fan is reversed relative to the area vector of the polygon.

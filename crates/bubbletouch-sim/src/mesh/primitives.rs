@@ -9,8 +9,8 @@
 //!
 //! The diagonal of a facet of a sphere is √2 times as long as its sides. Therefore a facet deviates twice as far as a chord of the circle.
 
-use super::TriangleMesh;
 use super::triangle_mesh::check_vertices;
+use super::{LengthUnit, TriangleMesh};
 use crate::error::{Error, Result};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -182,5 +182,5 @@ fn revolved(place: &str, profile: &[(f64, f64)], n: usize) -> Result<TriangleMes
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    TriangleMesh::new(place, vertices, triangles)
+    TriangleMesh::in_unit(place, LengthUnit::Metre, vertices, triangles)
 }

@@ -1,6 +1,6 @@
 //! Triangle meshes, as scanners and modelling programs produce them.
 
-use super::Triangle;
+use super::{LengthUnit, SizeLimits, Triangle};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use glam::DVec3;
@@ -15,11 +15,34 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Creates a triangle mesh and checks the invariant. Vertices are in metres.
+    /// Creates a triangle mesh from vertices in metres, and checks the invariant and the size.
+    ///
+    /// # Errors
+    /// If the invariant does not hold, or the size is not within [`SizeLimits::ANY`]: numbers in millimetres need [`in_unit`](Self::in_unit). Errors begin with
+    /// `place` and count from 1.
+    pub fn new(place: &str, vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
+        let mesh = Self::in_unit(place, LengthUnit::Metre, vertices, triangles)?;
+        let sizes = SizeLimits {
+            option: "TriangleMesh::in_unit",
+            ..SizeLimits::ANY
+        };
+        sizes.check(place, extent(&mesh.vertices))?;
+        Ok(mesh)
+    }
+
+    /// Creates a triangle mesh of any size from vertices in a unit, such as [`LengthUnit::Millimetre`], and checks the invariant.
     ///
     /// # Errors
     /// If the invariant does not hold; errors begin with `place` and count from 1.
-    pub fn new(place: &str, vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
+    pub fn in_unit(
+        place: &str,
+        unit: LengthUnit,
+        mut vertices: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self> {
+        vertices
+            .iter_mut()
+            .for_each(|vertex| *vertex *= unit.metres());
         check_vertices(place, &vertices)?;
         if triangles.is_empty() {
             return Err(Error::input(place, "no triangles", "at least one triangle"));
@@ -90,6 +113,15 @@ impl TriangleMesh {
             triangles: self.triangles.clone(),
         }
     }
+}
+
+/// Returns the edge lengths of the bounding box of points, metres; zero if there are no points.
+pub(super) fn extent(points: &[DVec3]) -> DVec3 {
+    let boxes = points.iter().map(|&point| Aabb {
+        min: point,
+        max: point,
+    });
+    Aabb::around(boxes).map_or(DVec3::ZERO, |bounds| bounds.size())
 }
 
 /// Returns an error if there is no vertex or if a coordinate is not finite.

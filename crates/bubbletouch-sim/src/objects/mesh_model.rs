@@ -7,7 +7,7 @@ use super::mesh_blocks::MeshBlocks;
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
 use crate::mesh::primitives::check_capsule;
-use crate::mesh::{Bvh, MeshFeatures, Triangle, TriangleMesh, Welded};
+use crate::mesh::{Bvh, LengthUnit, MeshFeatures, Triangle, TriangleMesh, Welded};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::{Arc, OnceLock};
 
@@ -106,10 +106,9 @@ impl MeshModel {
         const PLACE: &str = "capsule";
         check_capsule(PLACE, radius, length)?;
         let end = DVec3::new(0.0, 0.0, 0.5 * length);
-        Self::rounded(
-            TriangleMesh::new(PLACE, vec![-end, end], vec![[0, 1, 1]])?,
-            radius,
-        )
+        let line = vec![-end, end];
+        let line = TriangleMesh::in_unit(PLACE, LengthUnit::Metre, line, vec![[0, 1, 1]])?;
+        Self::rounded(line, radius)
     }
 
     /// Returns the triangle mesh without its rounding, metres.

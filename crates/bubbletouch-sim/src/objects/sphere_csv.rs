@@ -2,6 +2,7 @@
 
 use super::{Sphere, SphereUnion};
 use crate::error::{Error, Result};
+use crate::mesh::{LengthUnit, SizeLimits};
 use crate::text::numbers_csv::{check_width, finite, line_of, rows_of, unreadable};
 use glam::DVec3;
 use std::io::{self, Read, Write};
@@ -9,12 +10,17 @@ use std::io::{self, Read, Write};
 /// Names of the columns: centre coordinates and radius, in this order.
 const COLUMNS: [&str; 4] = ["x", "y", "z", "r"];
 
-/// Reads spheres from CSV with the columns `x,y,z,r` in metres. With a header, columns may have any order and further columns are ignored; without a header
+/// Reads spheres from CSV with the columns `x,y,z,r`. Without a unit the numbers are metres, and the size must be within `sizes`. With a header, columns may have any order and further columns are ignored; without a header
 /// there must be exactly four columns.
 ///
 /// # Errors
-/// If the file is invalid; errors begin with `place`, the name of the file, and contain line and column.
-pub fn read_spheres(place: &str, source: impl Read) -> Result<SphereUnion> {
+/// If the file is invalid, or the size is outside the limits; errors begin with `place`, the name of the file, and contain line and column.
+pub fn read_spheres(
+    place: &str,
+    unit: Option<LengthUnit>,
+    sizes: &SizeLimits,
+    source: impl Read,
+) -> Result<SphereUnion> {
     let mut reader = rows_of(source);
     let mut layout = None;
     let mut spheres = Vec::new();
@@ -40,7 +46,18 @@ pub fn read_spheres(place: &str, source: impl Read) -> Result<SphereUnion> {
             "rows of x,y,z,r in metres",
         ));
     }
-    SphereUnion::new(spheres)
+    let union = SphereUnion::new(spheres)?;
+    let Some(unit) = unit else {
+        sizes.check(place, union.bounds().size())?;
+        return Ok(union);
+    };
+    let metres = unit.metres();
+    let scaled = |sphere: &Sphere| Sphere {
+        center: metres * sphere.center,
+        radius: metres * sphere.radius,
+    };
+    let spheres = SphereUnion::new(union.spheres().iter().map(scaled).collect());
+    spheres.map_err(|error| error.under(format!("{place}: ")))
 }
 
 /// Writes a header and one row per sphere with 17 significant digits; [`read_spheres`] restores equal bits.

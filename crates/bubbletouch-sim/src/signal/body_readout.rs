@@ -38,12 +38,12 @@ pub const WORTH_THREADS: usize = 4 * CHUNK;
 /// let mut state = BodyState::at_rest(&body);
 /// let ball = SphereUnion::new(vec![Sphere { center: DVec3::ZERO, radius: 0.03 }])?;
 /// let at = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.0305))];
-/// state.press(&body, &[SphereClusters::new(&ball)], &at, 1e-3);
+/// state.press(&body, &[SphereClusters::new(&ball)], &at, 1e-3)?;
 ///
 /// // Noise of 1 % of full scale, and one taxel in a hundred is dead.
 /// let skin = Seed::new(2018).named("skin");
 /// let noise = SignalStep::Noise(Noise { std: 0.01, unit: NoiseUnit::FullScale });
-/// let steps = [noise, SensorError::Faults.step(&[0.01], skin)];
+/// let steps = [noise, SensorError::Faults.step(&[0.01], skin)?];
 /// let readout = BodyReadout::new(&steps, &body, &skin)?;
 ///
 /// // Frame 7, in the middle of a session: the touched taxels, and all of a patch.

@@ -92,7 +92,7 @@ impl SensorError {
     /// let grid = Grid { nx: 2, ny: 1, pitch: 2e-3 };
     /// let taxel = Taxel { radius: 1e-3, stiffness: 200.0, damping: 0.0, stroke: 5e-3 };
     /// let seed = Seed::new(2018);
-    /// let chain = Chain::new(&[too_much.step(&[0.5], seed)], &Patch::grid(grid, taxel)?)?;
+    /// let chain = Chain::new(&[too_much.step(&[0.5], seed)?], &Patch::grid(grid, taxel)?)?;
     /// let mut frame = vec![2e-3, 0.0];
     /// chain.apply(&mut frame, None, &seed, &mut SignalWorkspace::default());
     /// assert_eq!(frame, [3e-3, 0.0]);
@@ -153,14 +153,25 @@ impl SensorError {
     }
 
     /// Returns the signal step of this sensor error with the strengths `given`; missing strengths are zero. `skin` is the seed of the skin.
-    pub fn step(self, given: &[f64], skin: Seed) -> SignalStep {
+    ///
+    /// # Errors
+    /// If more strengths are given than the sensor error has. [`Chain::new`](super::Chain::new) checks their values.
+    pub fn step(self, given: &[f64], skin: Seed) -> Result<SignalStep> {
+        let n_strengths = self.about().strengths.len();
+        if given.len() > n_strengths {
+            return Err(Error::input(
+                format!("strengths of {}", self.about().step),
+                format!("{} numbers", given.len()),
+                format!("at most {n_strengths}"),
+            ));
+        }
         let mut strengths = [0.0; MAX_STRENGTHS];
         strengths[..given.len()].copy_from_slice(given);
-        SignalStep::Error {
+        Ok(SignalStep::Error {
             error: self,
             strengths,
             skin,
-        }
+        })
     }
 
     /// Returns the sensor error whose signal step has the name `word`, or `name@version` if it is registered; `None` if there is none.

@@ -33,6 +33,21 @@ pub fn not_negative(place: &str, value: f64, unit: &str) -> Result<f64> {
     ))
 }
 
+/// Returns the number if it is finite, otherwise an error that contains `unit`.
+///
+/// # Errors
+/// If the value is infinite or NaN.
+pub fn finite(place: &str, value: f64, unit: &str) -> Result<f64> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(Error::input(
+        place,
+        format!("{value} {unit}"),
+        "a finite number",
+    ))
+}
+
 /// Returns the number if it is from 0 to 1, otherwise an error.
 ///
 /// # Errors

@@ -3,9 +3,11 @@
 use super::body_patch::WholeBody;
 use super::patch_state::PatchState;
 use crate::contact::Instructions;
-use crate::geometry::Pose;
+use crate::error::Result;
+use crate::geometry::{Pose, check_poses};
 use crate::objects::{Sphere, SphereClusters};
 use crate::sensing::Columns;
+use crate::text::in_range::positive;
 
 /// Number of taxels deflected in the last step above which several threads compute a step. If smaller, the work ends before a second thread has started.
 pub const WORTH_THREADS: usize = 4000;
@@ -50,7 +52,8 @@ impl BodyState {
             patches: body.patches().iter().map(PatchState::at_rest).collect(),
             ..Self::default()
         };
-        state.place(body, &vec![Pose::IDENTITY; body.patches().len()]);
+        let poses = vec![Pose::IDENTITY; body.patches().len()];
+        state.place(body, &poses).expect("valid poses");
         state
     }
 
@@ -61,11 +64,11 @@ impl BodyState {
 
     /// Moves the patches to the poses `world_from_patches`, one per patch. A fixed body needs this only once.
     ///
-    /// # Panics
-    /// If the number of poses differs from the number of patches.
-    pub fn place(&mut self, body: &WholeBody, world_from_patches: &[Pose]) {
+    /// # Errors
+    /// If there is not one pose for each patch, or a pose is not finite or has no unit quaternion.
+    pub fn place(&mut self, body: &WholeBody, world_from_patches: &[Pose]) -> Result<()> {
         let patches = body.patches();
-        assert_eq!(world_from_patches.len(), patches.len(), "one pose a patch");
+        check_poses("patch", patches.len(), world_from_patches)?;
         self.world_from_patches.clear();
         self.world_from_patches
             .extend_from_slice(world_from_patches);
@@ -78,28 +81,26 @@ impl BodyState {
                     radius: radius + patch.taxel().radius,
                 }
             }));
+        Ok(())
     }
 
     /// Advances the deflections by `dt` seconds (positive; irrelevant for taxels without dampers) to the objects' poses `world_from_objects`, one per object.
     ///
     /// Only patches near an object or with deflected taxels are evaluated. The result does not depend on the number of threads.
     ///
-    /// # Panics
-    /// If the number of poses differs from the number of objects, or the state belongs to another body.
+    /// # Errors
+    /// If there is not one pose for each object, a pose is not finite or has no unit quaternion, or `dt` is not positive. If the state belongs to a body with
+    /// another number of patches.
     pub fn press(
         &mut self,
         body: &WholeBody,
         objects: &[SphereClusters],
         world_from_objects: &[Pose],
         dt: f64,
-    ) -> BodyContact {
-        let n_objects = objects.len();
-        assert_eq!(n_objects, world_from_objects.len(), "one pose an object");
-        assert_eq!(
-            self.patches.len(),
-            body.patches().len(),
-            "a state of this body"
-        );
+    ) -> Result<BodyContact> {
+        check_poses("object", objects.len(), world_from_objects)?;
+        check_poses("patch", body.patches().len(), &self.world_from_patches)?;
+        positive("time step", dt, "s")?;
         self.dt = dt;
         self.find_busy(objects, world_from_objects);
         let (poses, balls, object_balls) =
@@ -115,7 +116,7 @@ impl BodyState {
         };
         let share = self.contact.n_touched >= WORTH_THREADS;
         step_each(&self.busy, 0, &mut self.patches, share, &step);
-        self.count()
+        Ok(self.count())
     }
 
     /// Returns the taxels that were deflected in the last step, ascending, as pairs of index and deflection (metres).

@@ -32,13 +32,13 @@
 //! let patches = ["left", "right"].map(|name| Patch::new(name, sleeve.clone(), taxel));
 //! let body = WholeBody::new(&patches.into_iter().collect::<Result<Vec<_>, _>>()?)?;
 //! let mut state = BodyState::at_rest(&body);
-//! state.place(&body, &[-0.15, 0.15].map(|y| Pose::from_translation(y * DVec3::Y)));
+//! state.place(&body, &[-0.15, 0.15].map(|y| Pose::from_translation(y * DVec3::Y)))?;
 //!
 //! // A ball is pressed one millimetre into the right forearm.
 //! let ball = Sphere { center: DVec3::ZERO, radius: 0.03 };
 //! let ball = SphereClusters::new(&SphereUnion::new(vec![ball])?);
 //! let at = Pose::from_translation(DVec3::new(0.07, 0.15, 0.0));
-//! let contact = state.press(&body, &[ball], &[at], 1e-3);
+//! let contact = state.press(&body, &[ball], &[at], 1e-3)?;
 //! assert!(contact.n_touched > 10 && contact.n_patches == 1);
 //! let (first, _) = state.touched(&body).next().unwrap();
 //! assert!(first >= body.patches()[0].n_taxels(), "it is on the second patch");

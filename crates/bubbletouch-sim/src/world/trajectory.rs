@@ -1,7 +1,7 @@
 //! Given motion of a floating robot: piecewise-constant velocities \[BT\].
 
 use crate::error::{Error, Result};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, check_poses};
 use glam::{DQuat, DVec3};
 
 /// Phase of a motion with constant velocity.
@@ -29,8 +29,10 @@ impl VelocityPlan {
     /// Creates a motion that starts at a pose and runs through the phases in order.
     ///
     /// # Errors
-    /// If a phase has a negative duration or a value that is not finite; the error contains the first such phase (from 1).
+    /// If a phase has a negative duration or a value that is not finite; the error contains the first such phase (from 1). If the start pose is not finite or
+    /// has no unit quaternion.
     pub fn new(start: Pose, phases: Vec<Phase>) -> Result<Self> {
+        check_poses("body", 1, &[start])?;
         for (index, phase) in phases.iter().enumerate() {
             let place = format!("velocity plan, phase {}", index + 1);
             if !(phase.duration.is_finite() && phase.duration >= 0.0) {

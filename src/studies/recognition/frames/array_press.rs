@@ -41,9 +41,15 @@ impl TaxelArray {
     }
 }
 
+/// Reason why a press of a study cannot fail.
+const CHECKED: &str = "the plan has checked poses and depths";
+
 impl ArrayPress<'_> {
     /// Presses the array by a distance past first contact, metres, and then slides it along the object. Only the first part of this path is simulated; `part`
     /// is its fraction of the whole path. Returns `None` if the path misses the object.
+    ///
+    /// # Panics
+    /// If a number of the pose or of the depth is not finite; the plan of a study has checked them.
     pub fn touch(
         &self,
         pose: Pose,
@@ -57,12 +63,14 @@ impl ArrayPress<'_> {
             let at_rest = || FrictionState::at_rest(patch, Shears::Equal(shear));
             friction.get_or_insert_with(|| at_rest().expect("checked shear springs"));
         } else if slide == DVec2::ZERO {
-            return press_to_depth(patch, &self.object, &[pose], way, press);
+            return press_to_depth(patch, &self.object, &[pose], way, press).expect(CHECKED);
         }
         let slid = (way - depth).max(0.0) * slide.normalize_or_zero();
         let motion = (way.min(depth), slid.extend(0.0));
         let approach = Approach::new(patch, DVec3::Z).expect("an axis has length one");
-        approach.press_and_slide(&self.object, &[pose], motion, friction.as_mut(), press)
+        let pressed =
+            approach.press_and_slide(&self.object, &[pose], motion, friction.as_mut(), press);
+        pressed.expect(CHECKED)
     }
 
     /// Returns the pose of the object, in the patch frame, at the end of a touch that starts at `pose`.

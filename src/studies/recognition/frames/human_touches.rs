@@ -84,7 +84,8 @@ pub fn record_touch(
         let (_, hand) =
             shape.insert(known.unwrap_or_else(|| (state.hand, [state.spheres().into()])));
         let contact = press_with_contacts(skin, hand, &[state.patch_from_hand], workspace);
-        n_saturated += contact.n_saturated;
+        let contact = contact.expect("a hand has a finite pose");
+        n_saturated += contact.map_or(0, |contact| contact.n_saturated);
         let row = row.into_slice().expect("rows are whole");
         round_to_single(workspace.deflections(), row);
         is_missed &= row.iter().all(|&deflection| deflection == 0.0);

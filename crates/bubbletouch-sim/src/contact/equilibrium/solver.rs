@@ -9,7 +9,7 @@ use super::pair::Key;
 use super::reports::{TaxelLoad, Touch};
 use crate::contact::friction::TangentialSpringState;
 use crate::error::{Error, Result};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, check_poses};
 use glam::DVec3;
 
 /// Outcome of the search for the equilibrium of one object.
@@ -114,10 +114,7 @@ impl EquilibriumSolver {
     /// The energy never increases from the start poses to the solution, and objects at rest do not move. The ground is fixed.
     ///
     /// # Errors
-    /// If the gravity is zero or not finite, or a pose is not finite.
-    ///
-    /// # Panics
-    /// If the number of poses differs from the number of objects.
+    /// If the gravity is zero or not finite, there is not one pose for each object, or a pose is not finite or has no unit quaternion.
     pub fn solve_all(
         &mut self,
         objects: &[FreeObject],
@@ -125,8 +122,7 @@ impl EquilibriumSolver {
         gravity: DVec3,
         starts: &[Pose],
     ) -> Result<Vec<Equilibrium>> {
-        assert_eq!(objects.len(), starts.len());
-        check(gravity, starts)?;
+        check(objects, ground, gravity, starts)?;
         // The origin is at the first object. Far from the world's origin, coordinates have too few digits to balance stiff springs.
         let origin = starts.first().map_or(DVec3::ZERO, |pose| pose.translation);
         let ground = ground.seen_from(origin);
@@ -272,7 +268,7 @@ impl EquilibriumSolver {
     }
 }
 
-fn check(gravity: DVec3, starts: &[Pose]) -> Result<()> {
+fn check(objects: &[FreeObject], ground: &Ground, gravity: DVec3, starts: &[Pose]) -> Result<()> {
     if !(gravity.is_finite() && gravity != DVec3::ZERO) {
         return Err(Error::input(
             "gravity",
@@ -280,13 +276,10 @@ fn check(gravity: DVec3, starts: &[Pose]) -> Result<()> {
             "finite, and not zero for a free object",
         ));
     }
-    let is_odd = |pose: &&Pose| !(pose.translation.is_finite() && pose.rotation.is_finite());
-    match starts.iter().find(is_odd) {
-        Some(odd) => Err(Error::input(
-            "object pose",
-            odd.translation,
-            "finite numbers",
-        )),
-        None => Ok(()),
-    }
+    let of_skins = ground.skins.iter().map(|skin| skin.world_from_patch);
+    let of_obstacles = ground.obstacles.iter().map(|obstacle| obstacle.pose);
+    check_poses("patch", ground.skins.len(), &of_skins.collect::<Vec<_>>())?;
+    let of_obstacles: Vec<Pose> = of_obstacles.collect();
+    check_poses("obstacle", ground.obstacles.len(), &of_obstacles)?;
+    check_poses("object", objects.len(), starts)
 }

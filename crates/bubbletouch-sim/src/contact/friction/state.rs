@@ -107,7 +107,7 @@ pub struct FrictionLoad {
 /// let mut workspace = Workspace::new();
 /// for step in 0..=10 {
 ///     let pose = Pose::from_translation(DVec3::new(1e-4 * f64::from(step), 0.0, 0.029));
-///     press_with_contacts(&palm, &objects, &[pose], &mut workspace);
+///     press_with_contacts(&palm, &objects, &[pose], &mut workspace)?;
 ///     friction.step(&palm, workspace.contacts(), &[pose], NormalForce::Springs);
 /// }
 ///

@@ -13,7 +13,6 @@ use crate::contact::root_search::{Sample, crossing};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::text::in_range::positive;
 use crate::world::EvenGrid;
 
 /// Presses a grid of taxels until its spring force reaches a target; the fast path of `press_to_force`. All taxels have one stiffness, N/m.
@@ -24,7 +23,6 @@ pub(crate) fn press(
     force: f64,
     (press, output): (&mut GridPress, &mut OutputBuffer),
 ) -> Result<Option<Contact>> {
-    positive("touch force", force, "N")?;
     let stroke = grid.stroke;
     let gathered = press.gather(grid, objects, patch_from_objects, TravelGoal::Depth(stroke));
     let Some(first) = gathered else {

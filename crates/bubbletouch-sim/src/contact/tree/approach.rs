@@ -2,12 +2,13 @@
 
 use super::near_spheres::{PlacedUnion, needed_of_leaf};
 use super::path::{ApproachPath, ContactRequest, meeting};
+use crate::contact::checks::{check_direction, check_output};
 use crate::contact::instructions::{Instructions, for_instructions};
 use crate::contact::mesh::skin_mesh::MeshAt;
 use crate::contact::mesh::{LeafStops, SearchStack, stop_leaf};
-use crate::contact::{Contact, FrictionState, Workspace};
-use crate::error::Result;
-use crate::geometry::Pose;
+use crate::contact::{Contact, FrictionState, Goal, Workspace};
+use crate::error::{Error, Result};
+use crate::geometry::{Pose, check_poses};
 use crate::objects::{Model, Sphere, SphereUnion};
 use crate::world::{Leaf, Node, Patch, Travelling};
 use glam::DVec3;
@@ -32,7 +33,7 @@ impl<'a> Approach<'a> {
     /// # Errors
     /// If the direction is not a unit vector.
     pub fn new(patch: &'a Patch, direction: DVec3) -> Result<Self> {
-        ApproachPath::check(direction)?;
+        check_direction(direction)?;
         Ok(Self::along(patch, direction))
     }
 
@@ -63,14 +64,19 @@ impl<'a> Approach<'a> {
     ///
     /// `patch_from_objects` has one pose per object.
     ///
-    /// # Panics
-    /// If the number of poses differs from the number of objects.
-    pub fn first_contact(&self, objects: &[Model], patch_from_objects: &[Pose]) -> Option<f64> {
-        assert_eq!(
-            objects.len(),
-            patch_from_objects.len(),
-            "one pose an object"
-        );
+    /// # Errors
+    /// If the poses are invalid, as in [`press`](crate::contact::press()).
+    pub fn first_contact(
+        &self,
+        objects: &[Model],
+        patch_from_objects: &[Pose],
+    ) -> Result<Option<f64>> {
+        check_poses("object", objects.len(), patch_from_objects)?;
+        Ok(self.meets(objects, patch_from_objects))
+    }
+
+    /// Returns the travel at first contact as [`first_contact`](Self::first_contact) does, for poses that have been checked.
+    pub(crate) fn meets(&self, objects: &[Model], patch_from_objects: &[Pose]) -> Option<f64> {
         let [_, end] = meeting(self.patch, objects, patch_from_objects, self.direction)?;
         // At this travel the patch is past all objects on its path.
         let mut farthest = 0.0;
@@ -155,20 +161,20 @@ impl<'a> Approach<'a> {
         }
     }
 
-    /// Presses the patch to a depth (metres, positive) past first contact and records the contacts in the workspace. Returns `None`, with zero deflections,
+    /// Presses the patch to a depth (metres, zero or positive) past first contact and records the contacts in the workspace. Returns `None`, with zero deflections,
     /// if the path misses all objects.
     ///
     /// A part of an object that pushes a taxel continues to push this taxel even from behind the substrate. No object can therefore pass through the skin.
     ///
-    /// # Panics
-    /// If the number of poses differs from the number of objects.
+    /// # Errors
+    /// If the depth is negative or not finite, or the poses are invalid, as in [`press`](crate::contact::press()).
     pub fn press_to_depth(
         &self,
         objects: &[Model],
         patch_from_objects: &[Pose],
         depth: f64,
         workspace: &mut Workspace,
-    ) -> Option<Contact> {
+    ) -> Result<Option<Contact>> {
         let motion = (depth, DVec3::ZERO);
         self.press_and_slide(objects, patch_from_objects, motion, None, workspace)
     }
@@ -176,8 +182,9 @@ impl<'a> Approach<'a> {
     /// Presses the patch to a depth and then slides it along a straight line (metres, in the patch frame). With friction, the objects drag the taxels
     /// sideways. The friction is zero at the start of the path; `friction` then contains the forces at the end of the path.
     ///
-    /// # Panics
-    /// If the number of poses differs from the number of objects, or the friction belongs to another patch.
+    /// # Errors
+    /// If the depth is negative, a number is not finite, or the poses are invalid, as in [`press`](crate::contact::press()). If the friction belongs to a
+    /// patch with another number of taxels.
     pub fn press_and_slide(
         &self,
         objects: &[Model],
@@ -185,11 +192,23 @@ impl<'a> Approach<'a> {
         (depth, slide): (f64, DVec3),
         friction: Option<&mut FrictionState>,
         workspace: &mut Workspace,
-    ) -> Option<Contact> {
-        let first = self.first_contact(objects, patch_from_objects);
+    ) -> Result<Option<Contact>> {
+        check_poses("object", objects.len(), patch_from_objects)?;
+        Goal::Depth(depth).check()?;
+        if !slide.is_finite() {
+            return Err(Error::input(
+                "slide",
+                format!("{slide} m"),
+                "finite numbers",
+            ));
+        }
+        if let Some(friction) = &friction {
+            check_output(friction.force3().len(), self.patch.n_taxels())?;
+        }
+        let first = self.meets(objects, patch_from_objects);
         let travels = first.map(|first| [first, first + depth]);
         let mut path = self.path(objects, patch_from_objects, workspace);
-        path.press_and_slide(travels, slide, friction)
+        Ok(path.press_and_slide(travels, slide, friction))
     }
 
     /// Computes the deflections from one travel to another without recording contacts; returns `None` if `travels` is `None`. Taxels whose axes are parallel to
@@ -214,19 +233,21 @@ impl<'a> Approach<'a> {
     /// Records the contacts after the patch, whose taxels are all parallel to the direction, has travelled a distance, metres. Unlike
     /// [`press_to_depth`](Self::press_to_depth), the function needs no first contact and no steps. Returns `None` if the patch is curved.
     ///
-    /// # Panics
-    /// If the number of poses differs from the number of objects.
+    /// # Errors
+    /// If the travel is not finite, or the poses are invalid, as in [`press`](crate::contact::press()).
     pub fn contacts_at_travel(
         &self,
         objects: &[Model],
         patch_from_objects: &[Pose],
         travel: f64,
         workspace: &mut Workspace,
-    ) -> Option<Contact> {
+    ) -> Result<Option<Contact>> {
+        check_poses("object", objects.len(), patch_from_objects)?;
+        Goal::Travel(travel).check()?;
         let travelling = self.travelling();
         let mut path = self.path(objects, patch_from_objects, workspace);
         let is_flat = travelling.is_flat;
-        is_flat.then(|| path.press_through_with_contacts(&travelling.taxels, travel))
+        Ok(is_flat.then(|| path.press_through_with_contacts(&travelling.taxels, travel)))
     }
 
     pub(crate) fn path<'w>(

@@ -5,11 +5,10 @@ use super::path::{ApproachPath, meeting};
 use crate::contact::force_goal::{FORCE_ACCURACY, unreachable_force};
 use crate::contact::root_search::{Sample, crossing};
 use crate::contact::spring_load::sample;
-use crate::contact::{Contact, Workspace};
+use crate::contact::{Contact, Goal, Workspace};
 use crate::error::Result;
-use crate::geometry::Pose;
+use crate::geometry::{Pose, check_poses};
 use crate::objects::Model;
-use crate::text::in_range::positive;
 
 impl Approach<'_> {
     /// Presses the patch until the sum of all spring forces equals `force` newtons. The relative error is at most 1e-12, or what rounding of the travel
@@ -21,10 +20,8 @@ impl Approach<'_> {
     /// A part of an object that pushes a taxel continues to push this taxel even from behind the substrate. No object can therefore pass through the skin.
     ///
     /// # Errors
-    /// If `force` is not a positive number or is not reached on the path past the objects. The message contains the largest force and its travel.
-    ///
-    /// # Panics
-    /// If the number of poses differs from the number of objects.
+    /// If `force` is not a positive number or is not reached on the path past the objects. The message contains the largest force and its travel. If the
+    /// poses are invalid, as in [`press`](crate::contact::press()).
     pub fn press_to_force(
         &self,
         objects: &[Model],
@@ -32,7 +29,19 @@ impl Approach<'_> {
         force: f64,
         workspace: &mut Workspace,
     ) -> Result<Option<Contact>> {
-        positive("touch force", force, "N")?;
+        check_poses("object", objects.len(), patch_from_objects)?;
+        Goal::Force(force).check()?;
+        self.to_force(objects, patch_from_objects, force, workspace)
+    }
+
+    /// Presses the patch as [`press_to_force`](Self::press_to_force) does, with numbers that have been checked.
+    pub(crate) fn to_force(
+        &self,
+        objects: &[Model],
+        patch_from_objects: &[Pose],
+        force: f64,
+        workspace: &mut Workspace,
+    ) -> Result<Option<Contact>> {
         workspace.hold([]);
         let mut path = self.path(objects, patch_from_objects, workspace);
         let pressed = path.go(force);

@@ -16,4 +16,4 @@ mod press;
 
 pub use approach::Approach;
 pub(super) use press::deflect;
-pub use press::press_with_contacts;
+pub(crate) use press::deflect_with_contacts;

@@ -1,8 +1,7 @@
 //! Path of a patch along a line past objects, divided into steps.
 
-use super::press::{self, press_with_contacts};
+use super::press;
 use crate::contact::{Contact, FrictionState, NormalForce, Workspace};
-use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::{EvenGrid, Patch, Taxel, TaxelTree};
@@ -50,18 +49,6 @@ impl Patch {
 }
 
 impl ApproachPath<'_> {
-    /// Returns an error unless the direction is a unit vector.
-    pub fn check(direction: DVec3) -> Result<()> {
-        match direction.is_finite() && (direction.length() - 1.0).abs() < 1e-9 {
-            true => Ok(()),
-            false => Err(Error::input(
-                "touch direction",
-                direction,
-                "a vector of length one",
-            )),
-        }
-    }
-
     /// Returns the number of steps with friction for a part of the path with this `length`, metres.
     pub fn n_friction_steps(&self, length: f64) -> usize {
         let step = FRICTION_STEP * self.patch.least(|taxel| taxel.radius);
@@ -78,7 +65,7 @@ impl ApproachPath<'_> {
 
     /// Presses after the patch has moved by a vector (metres, in the patch frame), computed as the opposite motion of the objects.
     pub fn press_at(&mut self, moved: DVec3) -> Contact {
-        self.at(moved, press_with_contacts)
+        self.at(moved, press::deflect_with_contacts)
     }
 
     /// Presses a flat patch along its axis from the front, using taxels whose axes are the direction of travel.

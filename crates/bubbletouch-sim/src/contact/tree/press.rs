@@ -216,46 +216,8 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
     counts
 }
 
-/// Presses a patch on objects at their given poses and records the contacts; `patch_from_objects` contains one pose per object.
-///
-/// Parts of objects behind the substrate of a taxel do not push this taxel (rule in the module `contact`). An object below a forearm therefore does not
-/// press the taxels on the upper side. A part that is pushed far past the stroke is also behind the substrate. Only a press to a depth includes such parts,
-/// because its path is known. One part determines each deflection. If several parts require equal deflections, the first sphere of the first object
-/// determines the deflection.
-///
-/// A free object at rest often lies on taxels that two of its parts push equally far, such as two faces of a valley. Their shares of the force are needed for the balance;
-/// [`EquilibriumSolver::loads`](crate::contact::equilibrium::EquilibriumSolver::loads) contains them.
-///
-/// ```
-/// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
-/// use bubbletouch_sim::geometry::Pose;
-/// use bubbletouch_sim::objects::{Sphere, SphereUnion};
-/// use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
-/// use glam::DVec3;
-///
-/// // A fingertip: half a ball of 8 mm with a taxel every 1.5 mm.
-/// let layout = Layout::sphere_cap(8e-3, std::f64::consts::FRAC_PI_2, 1.5e-3)?;
-/// let taxel = Taxel { radius: 0.5e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
-/// let fingertip = Patch::new("fingertip", layout, Taxels::Equal(taxel))?;
-///
-/// // A marble presses half a millimetre deep, from the side.
-/// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
-/// let objects = [SphereUnion::new(vec![marble])?.into()];
-/// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
-/// let mut workspace = Workspace::new();
-/// let counts = press_with_contacts(&fingertip, &objects, &[pose], &mut workspace);
-/// assert!(counts.n_touched > 3 && counts.n_saturated == 0);
-///
-/// // The force on the marble points back along its approach.
-/// let load = spring_load(&fingertip, workspace.contacts());
-/// let force = load.on_object.force;
-/// assert!(force.normalize().dot(DVec3::new(0.6, 0.0, 0.8)) > 0.95);
-/// # Ok::<(), bubbletouch_sim::Error>(())
-/// ```
-///
-/// # Panics
-/// If the number of poses differs from the number of objects.
-pub fn press_with_contacts(
+/// Presses a patch on objects at their given poses and records the contacts.
+pub(crate) fn deflect_with_contacts(
     patch: &Patch,
     objects: &[Model],
     patch_from_objects: &[Pose],

@@ -7,7 +7,8 @@ use super::ply::read_ply;
 use super::stl::read_stl;
 use crate::error::{Error, Result};
 use crate::files::check_content;
-use crate::mesh::MeshFile;
+use crate::mesh::triangle_mesh::extent;
+use crate::mesh::{MeshFile, SizeLimits};
 use serde::{Deserialize, Serialize};
 use std::io::BufRead;
 use std::path::Path;
@@ -70,14 +71,15 @@ impl MeshFormat {
     }
 
     /// Reads a file of this format and converts it to metres. Without a unit, the numbers of a Collada file are in the unit that the file contains. The
-    /// numbers of other files are then metres.
+    /// numbers of other files are then metres. The size of the object must then be within `sizes` ([`SizeLimits::ANY`] if no narrower limits are known).
     ///
     /// # Errors
-    /// If the file is invalid; errors begin with `place`, the path of the file.
+    /// If the file is invalid, or the size is outside the limits; errors begin with `place`, the path of the file.
     pub fn read(
         self,
         place: &str,
         unit: Option<LengthUnit>,
+        sizes: &SizeLimits,
         mut source: impl BufRead,
     ) -> Result<MeshFile> {
         // A file whose beginning cannot be read fails in its reader, with the error of the format.
@@ -89,11 +91,11 @@ impl MeshFormat {
             Self::Collada => read_collada(place, source)?,
             Self::Gltf => (read_gltf(place, source)?, 1.0),
         };
-        let metres = unit.map_or(own_unit, LengthUnit::metres);
-        match metres == 1.0 {
-            true => Ok(file),
-            false => file.scaled(place, metres),
+        let file = file.scaled(place, unit.map_or(own_unit, LengthUnit::metres))?;
+        if unit.is_none() {
+            sizes.check(place, extent(file.vertices()))?;
         }
+        Ok(file)
     }
 }
 

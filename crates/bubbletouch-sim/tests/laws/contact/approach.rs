@@ -49,8 +49,10 @@ fn on_a_grid_it_is_the_grids_own_press() {
             .map(|_| random_pose(&mut rng, 0.03))
             .collect();
         let depth = TAXEL.stroke * 10f64.powf(rng.gen_range(-2.0..0.5));
-        let touch = approach.press_to_depth(&objects, &poses, depth, &mut workspace);
-        let contact = press_to_depth(&patch, &objects, &poses, depth, &mut of_grid);
+        let touch = approach
+            .press_to_depth(&objects, &poses, depth, &mut workspace)
+            .unwrap();
+        let contact = press_to_depth(&patch, &objects, &poses, depth, &mut of_grid).unwrap();
         assert_eq!(touch.is_some(), contact.is_some(), "case {case}");
         for (own, grid) in workspace.deflections().iter().zip(of_grid.deflections()) {
             assert!((own - grid).abs() < 1e-12, "case {case}: {own} for {grid}");
@@ -137,7 +139,7 @@ fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
         let union = random_union(&mut rng);
         let pose = random_pose(&mut rng, 0.05);
         let objects = [Model::from(union.clone())];
-        let found = approach.first_contact(&objects, &[pose]);
+        let found = approach.first_contact(&objects, &[pose]).unwrap();
         let mut expected = f64::INFINITY;
         for sphere in union.spheres() {
             for center in skin.layout().centers() {
@@ -166,7 +168,10 @@ fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
                 translation: pose.translation - travel * direction,
                 ..pose
             };
-            press_with_contacts(&skin, &objects, &[moved], &mut workspace).n_touched
+            press_with_contacts(&skin, &objects, &[moved], &mut workspace)
+                .unwrap()
+                .unwrap_or_default()
+                .n_touched
         };
         assert!(n_touched(found + 1e-9) > 0, "case {case}");
     }
@@ -185,10 +190,14 @@ fn what_was_pressed_goes_on_being_pressed_behind_the_substrate() {
     };
     let objects = [SphereUnion::new(vec![pin]).unwrap().into()];
     let pose = Pose::from_translation(0.05 * DVec3::Z);
-    let touch = approach.press_to_depth(&objects, &[pose], 3.0 * TAXEL.stroke, &mut workspace);
+    let touch = approach
+        .press_to_depth(&objects, &[pose], 3.0 * TAXEL.stroke, &mut workspace)
+        .unwrap();
     assert!(touch.unwrap().n_saturated >= 1);
     let moved = Pose::from_translation((0.05 - touch.unwrap().travel) * DVec3::Z);
-    let there = press_with_contacts(&skin, &objects, &[moved], &mut workspace);
+    let there = press_with_contacts(&skin, &objects, &[moved], &mut workspace)
+        .unwrap()
+        .unwrap_or_default();
     assert_eq!(there.n_touched, 0, "without its way it is behind");
 }
 
@@ -220,11 +229,11 @@ fn taxels_that_do_not_know_their_grid_are_pressed_alike() {
                 n_touched[goal] += a.n_touched;
             };
         let depth = TAXEL.stroke * 10f64.powf(rng.gen_range(-2.0..0.5));
-        let a = press_to_depth(&grid, &objects, &poses, depth, &mut of_grid);
-        let b = press_to_depth(&loose, &objects, &poses, depth, &mut of_loose);
+        let a = press_to_depth(&grid, &objects, &poses, depth, &mut of_grid).unwrap();
+        let b = press_to_depth(&loose, &objects, &poses, depth, &mut of_loose).unwrap();
         same(a, b, [&of_grid, &of_loose], 0);
-        let first = first_contact(&grid, &objects, &poses, &mut of_grid);
-        let found = first_contact(&loose, &objects, &poses, &mut of_loose);
+        let first = first_contact(&grid, &objects, &poses, &mut of_grid).unwrap();
+        let found = first_contact(&loose, &objects, &poses, &mut of_loose).unwrap();
         let (Some(first), Some(found)) = (first, found) else {
             assert_eq!((first, found), (None, None), "case {case}");
             continue;
@@ -234,8 +243,12 @@ fn taxels_that_do_not_know_their_grid_are_pressed_alike() {
             "case {case}: {first} {found}"
         );
         let travel = first + rng.gen_range(-1e-3..0.02);
-        let a = press_to_travel(&grid, &objects, &poses, travel, &mut of_grid);
-        let b = press_to_travel(&loose, &objects, &poses, travel, &mut of_loose);
+        let a = press_to_travel(&grid, &objects, &poses, travel, &mut of_grid)
+            .unwrap()
+            .unwrap_or_default();
+        let b = press_to_travel(&loose, &objects, &poses, travel, &mut of_loose)
+            .unwrap()
+            .unwrap_or_default();
         same(Some(a), Some(b), [&of_grid, &of_loose], 1);
         let force = 10f64.powf(rng.gen_range(-3.0..0.0));
         let a = press_to_force(&grid, &objects, &poses, force, &mut of_grid);

@@ -126,7 +126,7 @@ fn the_skin_feels_the_weight_that_rests_on_it() {
     assert_eq!(rest.outcome, Outcome::AtRest);
     let objects = [Model::from(union.clone())];
     let mut workspace = Workspace::new();
-    press_with_contacts(&patch, &objects, &[rest.pose], &mut workspace);
+    press_with_contacts(&patch, &objects, &[rest.pose], &mut workspace).unwrap();
     let load = spring_load(&patch, workspace.contacts());
     // For taxels between two spheres, only one sphere counts as deciding, so the lateral forces may differ slightly.
     assert!(
@@ -205,7 +205,8 @@ fn two_skins_in_a_v_carry_a_ball_together() {
                 &[Model::from(union.clone())],
                 &[pose],
                 &mut workspace,
-            );
+            )
+            .unwrap();
             let force = spring_load(&patch, workspace.contacts()).on_object.force;
             (skin.world_from_patch.rotation * force).z
         })
@@ -480,5 +481,8 @@ fn bad_input_is_named() {
     let error = balancer
         .solve(&object, &[], DOWN, &Pose::from_translation(nowhere))
         .unwrap_err();
-    assert!(error.to_string().starts_with("object pose"), "{error}");
+    assert!(
+        error.to_string().starts_with("pose of object 1:"),
+        "{error}"
+    );
 }

@@ -194,7 +194,7 @@ fn a_taxel_in_a_valley_shares_its_force_between_the_faces() {
         assert_eq!(n_ties(&rest), 1);
         let mut workspace = Workspace::new();
         let models = [free[0].model.clone()];
-        press_with_contacts(&patch, &models, &[found.pose], &mut workspace);
+        press_with_contacts(&patch, &models, &[found.pose], &mut workspace).unwrap();
         let contact = workspace.contacts()[0];
         let alone = contact.push(100.0 * contact.deflection).force;
         assert!((alone.z - weight).abs() < 1e-6 * weight);

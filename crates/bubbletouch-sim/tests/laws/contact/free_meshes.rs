@@ -130,7 +130,7 @@ fn residual(patch: &Patch, free: &[Free], rest: &Rest) -> f64 {
         .map(|solution| solution.pose)
         .collect();
     let mut workspace = Workspace::new();
-    press_with_contacts(patch, &models, &poses, &mut workspace);
+    press_with_contacts(patch, &models, &poses, &mut workspace).unwrap();
     let mut sums: Vec<(DVec3, DVec3)> = free
         .iter()
         .zip(&poses)

@@ -59,7 +59,7 @@ impl Bench {
     }
 
     fn step(&mut self, poses: &[Pose]) -> ContactModeCounts {
-        press_with_contacts(&self.skin, &self.objects, poses, &mut self.workspace);
+        press_with_contacts(&self.skin, &self.objects, poses, &mut self.workspace).unwrap();
         let contacts = self.workspace.contacts();
         self.state
             .step(&self.skin, contacts, poses, NormalForce::Springs)
@@ -441,7 +441,7 @@ fn a_damped_taxel_grips_with_all_that_presses_it() {
             let step = f64::from(k);
             let place = DVec3::new(5e-3 * step, 0.0, -1e-3 - 0.5e-3 * step);
             let poses = [Pose::from_translation(place)];
-            press_with_contacts(&skin, &objects, &poses, &mut workspace);
+            press_with_contacts(&skin, &objects, &poses, &mut workspace).unwrap();
             damper.step(skin.taxels(), 1e-3, workspace.deflections());
             let normal = NormalForce::Dampers(&damper);
             state.step(&skin, workspace.contacts(), &poses, normal);

@@ -65,8 +65,9 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_th
             &scene.objects,
             &[Pose::IDENTITY],
             &mut workspace,
-        );
-        press_with_contacts(&skin, &scene.objects, &[Pose::IDENTITY], &mut of_skin);
+        )
+        .unwrap();
+        press_with_contacts(&skin, &scene.objects, &[Pose::IDENTITY], &mut of_skin).unwrap();
         for (taxel, &place) in skin.layout().centers().iter().enumerate() {
             let exact = exactly_needed(place, TAXEL.radius, &of_object).unwrap_or(0.0);
             // Change of √(S² − b²) = δ + h due to the last bit of S².
@@ -150,7 +151,8 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
             &ball.objects,
             &[Pose::from_translation(place)],
             &mut workspace,
-        );
+        )
+        .unwrap();
         let behind = -taxel.stroke - taxel.radius;
         n_through += usize::from(height < behind);
         state.step(&taxels, dt, workspace.deflections());
@@ -197,7 +199,7 @@ fn what_jumps_through_the_skin_between_two_frames_is_not_felt_and_what_is_seen_t
     assert!(fine.n_saturated > 0 && fine.deflection.iter().any(|&d| d == TAXEL.stroke));
     let mut workspace = Workspace::new();
     let last = Pose::from_translation(DVec3::new(0.0, 0.0, -0.15));
-    press_at_pose(&scene.patch, &scene.objects, &[last], &mut workspace);
+    press_at_pose(&scene.patch, &scene.objects, &[last], &mut workspace).unwrap();
     assert_eq!(
         workspace.deflections().iter().sum::<f64>(),
         0.0,
@@ -210,6 +212,7 @@ fn what_jumps_through_the_skin_between_two_frames_is_not_felt_and_what_is_seen_t
         0.2,
         &mut workspace,
     )
+    .unwrap()
     .unwrap();
     assert_eq!(
         fine.deflection.row(299).as_slice().unwrap(),
@@ -236,6 +239,7 @@ fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
             2e-3,
             &mut workspace,
         )
+        .unwrap()
         .unwrap();
         let middle = workspace.deflections()[GRID.n_taxels() / 2];
         assert!((middle - 2e-3).abs() < 1e-15, "{thickness} m: {middle}");
@@ -247,6 +251,7 @@ fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
             10e-3,
             &mut workspace,
         )
+        .unwrap()
         .unwrap();
         let middle = workspace.deflections()[GRID.n_taxels() / 2];
         assert_eq!(
@@ -297,12 +302,13 @@ fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
             0.1,
             &mut workspace,
         )
+        .unwrap()
         .unwrap();
         assert_eq!((deep.n_touched, deep.n_saturated), (n, n));
         let skin = scene.patch.clone();
         let mut of_skin = Workspace::new();
         let pressed = Pose::from_translation(DVec3::new(0.0, 0.0, -deep.travel));
-        press_with_contacts(&skin, &scene.objects, &[pressed], &mut of_skin);
+        press_with_contacts(&skin, &scene.objects, &[pressed], &mut of_skin).unwrap();
         let load = spring_load(&skin, of_skin.contacts());
         assert_eq!(load.saturated_share, 1.0);
         assert!((load.spring_force / all - 1.0).abs() < 1e-12);
@@ -328,7 +334,7 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
             continue;
         }
         let flank = Model::from(sphere(DVec3::new(beside, 0.0, height), radius));
-        press_with_contacts(&skin, &[flank], &[Pose::IDENTITY], &mut workspace);
+        press_with_contacts(&skin, &[flank], &[Pose::IDENTITY], &mut workspace).unwrap();
         // Rounding may move the shallowest flanks out of reach entirely.
         let [contact] = workspace.contacts() else {
             assert!(cosine < 1e-7, "case {case}: {cosine}");
@@ -370,7 +376,7 @@ fn a_taxel_exactly_between_two_spheres_is_pushed_as_far_as_each_of_them_needs() 
         let pair = union(vec![at(beside), at(-beside)]);
         let exact = exactly_needed(DVec3::ZERO, TAXEL.radius, &pair.spheres()[0]);
         let exact = exact.unwrap().clamp(0.0, TAXEL.stroke);
-        press_with_contacts(&skin, &[pair.into()], &[Pose::IDENTITY], &mut workspace);
+        press_with_contacts(&skin, &[pair.into()], &[Pose::IDENTITY], &mut workspace).unwrap();
         let found = workspace.deflections()[0];
         assert!(
             (found - exact).abs() <= 8.0 * f64::EPSILON * reach,

@@ -223,7 +223,7 @@ fn a_patch_feels_what_every_triangle_does_to_every_taxel() {
         let (scene, poses) = random_scene(&mut rng, case);
         let heights = every_triangle(&scene, &poses);
         let travel = rng.gen_range(-0.03..0.03);
-        press_to_travel(&scene.patch, &scene.objects, &poses, travel, &mut workspace);
+        press_to_travel(&scene.patch, &scene.objects, &poses, travel, &mut workspace).unwrap();
         let all = f64::NEG_INFINITY;
         let expected = deflections(&scene, &heights, travel, all);
         assert_close(
@@ -236,7 +236,8 @@ fn a_patch_feels_what_every_triangle_does_to_every_taxel() {
 
         let lowest = heights.iter().flat_map(|(_, heights)| heights).copied();
         let lowest = lowest.fold(f64::INFINITY, f64::min);
-        let Some(first) = first_contact(&scene.patch, &scene.objects, &poses, &mut workspace)
+        let Some(first) =
+            first_contact(&scene.patch, &scene.objects, &poses, &mut workspace).unwrap()
         else {
             assert_eq!(lowest, f64::INFINITY, "case {case}");
             continue;
@@ -249,8 +250,9 @@ fn a_patch_feels_what_every_triangle_does_to_every_taxel() {
             0 => rng.gen_range(0.0..0.2),
             _ => rng.gen_range(0.0..0.02),
         };
-        let contact =
-            press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut workspace).unwrap();
+        let contact = press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut workspace)
+            .unwrap()
+            .unwrap();
         assert_eq!(contact.travel, first + depth);
         let expected = deflections(&scene, &heights, first + depth, all);
         let what = format!("case {case}, depth {depth}");
@@ -271,7 +273,9 @@ fn a_box_pressed_flat_is_flat_and_its_edge_is_round() {
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
     let objects = vec![MeshModel::new(cuboid(DVec3::new(10.4e-3, 0.02, 0.05))).into()];
     let mut workspace = Workspace::new();
-    let contact = press_to_depth(&patch, &objects, &[pose], 2e-3, &mut workspace).unwrap();
+    let contact = press_to_depth(&patch, &objects, &[pose], 2e-3, &mut workspace)
+        .unwrap()
+        .unwrap();
     assert!((contact.travel - (2e-3 - TAXEL.radius)).abs() < 1e-16);
     for (column, &found) in workspace.deflections().iter().enumerate() {
         let beside: f64 = (grid.x(column).abs() - 10.4e-3).max(0.0);
@@ -302,7 +306,7 @@ fn a_finer_ball_feels_like_a_sphere() {
     );
     let mut workspace = Workspace::new();
     let mut felt = |object: Model| {
-        press_to_travel(&patch, &[object], &[pose], 4e-3, &mut workspace);
+        press_to_travel(&patch, &[object], &[pose], 4e-3, &mut workspace).unwrap();
         workspace.deflections().to_vec()
     };
     let sphere = Sphere {
@@ -348,8 +352,12 @@ fn spheres_and_a_mesh_in_one_scene_feel_like_the_larger_of_both() {
         let poses = vec![pose; objects.len()];
         let objects: Vec<Model> = objects.iter().map(|&o| o.clone()).collect();
         let contact = match travel {
-            Some(travel) => press_to_travel(&patch, &objects, &poses, travel, &mut workspace),
-            None => press_to_depth(&patch, &objects, &poses, 3e-3, &mut workspace).unwrap(),
+            Some(travel) => press_to_travel(&patch, &objects, &poses, travel, &mut workspace)
+                .unwrap()
+                .unwrap_or_default(),
+            None => press_to_depth(&patch, &objects, &poses, 3e-3, &mut workspace)
+                .unwrap()
+                .unwrap(),
         };
         (contact.travel, workspace.deflections().to_vec())
     };
@@ -381,14 +389,18 @@ fn a_mesh_behind_the_substrate_does_not_count_unless_it_was_pressed_through_the_
     let mut workspace = Workspace::new();
     let mut n_touched = |height: f64| {
         let pose = Pose::from_translation(DVec3::new(0.0, 0.0, height));
-        press_at_pose(&scene.patch, &scene.objects, &[pose], &mut workspace).n_touched
+        press_at_pose(&scene.patch, &scene.objects, &[pose], &mut workspace)
+            .unwrap()
+            .unwrap_or_default()
+            .n_touched
     };
     // The top of the mesh is at height + 10 mm. A taxel that rests on it is 1 mm higher, and the limit is 6 mm behind the skin.
     assert_eq!(n_touched(-0.01701), 0);
     assert_eq!(n_touched(-0.01699), 64);
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
-    let through =
-        press_to_depth(&scene.patch, &scene.objects, &[pose], 0.05, &mut workspace).unwrap();
+    let through = press_to_depth(&scene.patch, &scene.objects, &[pose], 0.05, &mut workspace)
+        .unwrap()
+        .unwrap();
     assert_eq!((through.n_touched, through.n_saturated), (64, 64));
     // The patch moves 60 mm in steps of a millimetre.
     let down = Phase {

@@ -113,11 +113,17 @@ fn presses_in_one_workspace_equal_all_triangles_one_by_one() {
             // At a pose, the law of all triangles needs a closed mesh.
             let goal = rng.gen_range(if is_closed { 0..3 } else { 0..2 });
             let contact = match goal {
-                0 => press_to_depth(&patch, &objects, &[pose], depth, &mut workspace).unwrap(),
-                1 => press_to_travel(&patch, &objects, &[pose], travel, &mut workspace),
+                0 => press_to_depth(&patch, &objects, &[pose], depth, &mut workspace)
+                    .unwrap()
+                    .unwrap(),
+                1 => press_to_travel(&patch, &objects, &[pose], travel, &mut workspace)
+                    .unwrap()
+                    .unwrap_or_default(),
                 _ => {
                     pose.translation.z -= travel;
                     press_at_pose(&patch, &objects, &[pose], &mut workspace)
+                        .unwrap()
+                        .unwrap_or_default()
                 }
             };
             let placed = Surface::new(mesh.moved(&pose));

@@ -15,6 +15,7 @@ mod many_bodies;
 mod mesh;
 mod mesh_at_pose;
 mod mesh_sequences;
+mod press_numbers;
 mod press_variants;
 mod reference_scenes;
 mod rounded;

@@ -44,7 +44,8 @@ fn vector_instructions_change_no_bit() {
         let press = |instructions: Instructions| {
             let mut workspace = Workspace::with(instructions);
             let contact =
-                press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut workspace);
+                press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut workspace)
+                    .unwrap();
             let deflections = workspace.deflections().iter();
             (
                 contact,

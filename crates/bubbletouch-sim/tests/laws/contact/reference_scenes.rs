@@ -96,7 +96,7 @@ fn deflections(json: &Value, frame: &Value, spheres: &[Vec<f64>], patch: &Patch)
     }
     let poses = vec![Pose::IDENTITY; objects.len()];
     let mut workspace = Workspace::new();
-    press_at_pose(patch, &objects, &poses, &mut workspace);
+    press_at_pose(patch, &objects, &poses, &mut workspace).unwrap();
     workspace.deflections().to_vec()
 }
 

@@ -76,7 +76,8 @@ fn a_contact_lies_on_its_triangle_a_radius_from_the_taxel() {
             &[MeshModel::new(mesh).into()],
             &[pose],
             &mut workspace,
-        );
+        )
+        .unwrap();
         for contact in workspace.contacts() {
             let axis = skin.layout().axes()[contact.taxel];
             let pushed = skin.layout().centers()[contact.taxel] - contact.needed * axis;
@@ -105,7 +106,7 @@ fn balls_as_spheres_and_as_fine_meshes_press_nearly_the_same() {
     let pose = Pose::from_translation(DVec3::new(0.02, 0.01, 0.043));
     let [a, b] = [mesh, ball].map(|model: Model| {
         let mut workspace = Workspace::new();
-        press_with_contacts(&skin, &[model], &[pose], &mut workspace);
+        press_with_contacts(&skin, &[model], &[pose], &mut workspace).unwrap();
         let load = spring_load(&skin, workspace.contacts());
         (workspace.deflections().to_vec(), load)
     });
@@ -136,7 +137,9 @@ fn what_a_forearm_lies_on_does_not_press_its_other_side() {
     // The top of the mesh is at x = −0.029. Taxels rest at x = −0.03 with a radius of 1 mm, so they are pushed by up to 2 mm.
     let pose = Pose::from_translation(DVec3::new(-0.039, 0.0, 0.0));
     let mut workspace = Workspace::new();
-    let counts = press_with_contacts(&skin, &[table], &[pose], &mut workspace);
+    let counts = press_with_contacts(&skin, &[table], &[pose], &mut workspace)
+        .unwrap()
+        .unwrap_or_default();
     assert!(
         counts.n_touched > 50 && counts.n_saturated == 0,
         "{counts:?}"
@@ -166,7 +169,9 @@ fn walls_on_both_sides_of_a_forearm_press_only_their_own_sides() {
     let both = TriangleMesh::new("walls", corners.collect(), faces.collect()).unwrap();
     let mut workspace = Workspace::new();
     let model: Model = MeshModel::new(both).into();
-    let counts = press_with_contacts(&skin, &[model], &[Pose::IDENTITY], &mut workspace);
+    let counts = press_with_contacts(&skin, &[model], &[Pose::IDENTITY], &mut workspace)
+        .unwrap()
+        .unwrap_or_default();
     assert!(
         counts.n_touched > 100 && counts.n_saturated == 0,
         "{counts:?}"
@@ -187,7 +192,9 @@ fn a_taxel_whose_substrate_is_inside_of_a_mesh_is_saturated() {
     for mesh in [cuboid(DVec3::splat(0.05)), icosphere(0.05, 3)] {
         assert!(Surface::new(mesh.clone()).contains(DVec3::ZERO));
         let model: Model = MeshModel::new(mesh).into();
-        let counts = press_with_contacts(&skin, &[model], &[Pose::IDENTITY], &mut workspace);
+        let counts = press_with_contacts(&skin, &[model], &[Pose::IDENTITY], &mut workspace)
+            .unwrap()
+            .unwrap_or_default();
         assert_eq!((counts.n_touched, counts.n_saturated), (25, 25));
         assert!(workspace.contacts().iter().all(|c| c.needed > 0.04));
     }

@@ -43,7 +43,9 @@ fn forces(skin: &Patch, objects: &[Model], pose: Pose, motion: (f64, DVec3)) -> 
     let before = (2e-3, DVec3::new(1e-3, 2e-3, 0.0));
     for motion in [before, motion] {
         let state = Some(&mut friction);
-        approach.press_and_slide(objects, &[pose], motion, state, &mut workspace);
+        approach
+            .press_and_slide(objects, &[pose], motion, state, &mut workspace)
+            .unwrap();
     }
     friction.force3().to_vec()
 }
@@ -98,7 +100,7 @@ fn the_shear_is_that_of_many_small_steps() {
         let (depth, slide) = (3e-3, DVec3::new(3e-3, 1.5e-3, 0.0));
         let found = forces(&skin, &objects, start, (depth, slide));
         let approach = Approach::new(&skin, DVec3::Z).unwrap();
-        let first = approach.first_contact(&objects, &[start]).unwrap();
+        let first = approach.first_contact(&objects, &[start]).unwrap().unwrap();
         let mut friction = FrictionState::at_rest(&skin, Shears::Equal(SHEAR)).unwrap();
         let mut workspace = Workspace::new();
         let mut to = |moved: DVec3| {
@@ -106,7 +108,7 @@ fn the_shear_is_that_of_many_small_steps() {
                 translation: start.translation - moved,
                 ..start
             };
-            press_with_contacts(&skin, &objects, &[pose], &mut workspace);
+            press_with_contacts(&skin, &objects, &[pose], &mut workspace).unwrap();
             friction.step(&skin, workspace.contacts(), &[pose], NormalForce::Springs);
             friction.force3().to_vec()
         };

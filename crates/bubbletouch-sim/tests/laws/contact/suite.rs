@@ -152,12 +152,12 @@ type Perturbation = fn(&Scene) -> Option<Vec<f64>>;
 const WAYS: [(&str, Perturbation); 4] = [
     ("at a pose", |scene| {
         let mut workspace = Workspace::new();
-        press_at_pose(&scene.patch, &scene.models, &scene.poses, &mut workspace);
+        press_at_pose(&scene.patch, &scene.models, &scene.poses, &mut workspace).unwrap();
         Some(workspace.deflections().to_vec())
     }),
     ("with contacts", |scene| {
         let mut workspace = Workspace::new();
-        press_with_contacts(&scene.patch, &scene.models, &scene.poses, &mut workspace);
+        press_with_contacts(&scene.patch, &scene.models, &scene.poses, &mut workspace).unwrap();
         Some(workspace.deflections().to_vec())
     }),
     ("taxels one by one", |scene| {
@@ -165,7 +165,7 @@ const WAYS: [(&str, Perturbation); 4] = [
         let loose = Layout::new(places.centers().to_vec(), places.axes().to_vec()).unwrap();
         let loose = Patch::new("loose", loose, scene.patch.taxels().clone()).unwrap();
         let mut workspace = Workspace::new();
-        press_at_pose(&loose, &scene.models, &scene.poses, &mut workspace);
+        press_at_pose(&loose, &scene.models, &scene.poses, &mut workspace).unwrap();
         Some(workspace.deflections().to_vec())
     }),
     ("as a body", |scene| {
@@ -176,7 +176,7 @@ const WAYS: [(&str, Perturbation); 4] = [
         let clusters = clusters?;
         let body = WholeBody::new(std::slice::from_ref(&scene.patch)).ok()?;
         let mut state = BodyState::at_rest(&body);
-        state.press(&body, &clusters, &scene.poses, 1.0);
+        state.press(&body, &clusters, &scene.poses, 1.0).unwrap();
         Some(state.deflections(0).to_vec())
     }),
 ];
@@ -307,7 +307,8 @@ fn a_way_from_the_front_counts_all_and_takes_nothing_away_on_flat_patches() {
                 &scene.poses,
                 travel,
                 &mut workspace,
-            );
+            )
+            .unwrap();
             let found = workspace.deflections();
             let pairs = found.iter().zip(&before);
             assert!(
@@ -426,7 +427,9 @@ fn force_and_torque_are_minus_the_gradient_of_the_energy() {
         };
         let objects = [object];
         let pose = Pose::from_translation(place + (radius - 1e-3) * axis);
-        let contact = press_with_contacts(&patch, &objects, &[pose], &mut workspace);
+        let contact = press_with_contacts(&patch, &objects, &[pose], &mut workspace)
+            .unwrap()
+            .unwrap_or_default();
         let parts: Vec<usize> = workspace.contacts().iter().map(|c| c.part).collect();
         let is_grazing = workspace.contacts().iter().any(|c| c.cosine < 0.1);
         if contact.n_touched < 2 || contact.n_saturated > 0 || is_grazing {
@@ -436,7 +439,8 @@ fn force_and_torque_are_minus_the_gradient_of_the_energy() {
         // The slope of the energy has kinks between triangles.
         let mut is_smooth = true;
         let mut energy = |motion: Pose| {
-            press_with_contacts(&patch, &objects, &[motion.compose(&pose)], &mut workspace);
+            press_with_contacts(&patch, &objects, &[motion.compose(&pose)], &mut workspace)
+                .unwrap();
             let by = workspace.contacts().iter().map(|contact| contact.part);
             is_smooth &= by.eq(parts.iter().copied());
             let springs = workspace.deflections().iter();
@@ -475,10 +479,15 @@ type Repeated = fn(&Patch, &[Model], &[Pose], &mut Workspace) -> usize;
 
 const ON_ANY_LAYOUT: [(&str, Repeated); 2] = [
     ("at a pose", |patch, objects, poses, workspace| {
-        press_at_pose(patch, objects, poses, workspace).n_touched
+        press_at_pose(patch, objects, poses, workspace)
+            .unwrap()
+            .unwrap_or_default()
+            .n_touched
     }),
     ("with contacts", |patch, objects, poses, workspace| {
-        let contact = press_with_contacts(patch, objects, poses, workspace);
+        let contact = press_with_contacts(patch, objects, poses, workspace)
+            .unwrap()
+            .unwrap_or_default();
         assert!(
             spring_load(patch, workspace.contacts())
                 .spring_force
@@ -490,10 +499,13 @@ const ON_ANY_LAYOUT: [(&str, Repeated); 2] = [
 
 const ON_FLAT_GRIDS: [(&str, Repeated); 3] = [
     ("to a travel", |patch, objects, poses, workspace| {
-        press_to_travel(patch, objects, poses, 0.0, workspace).n_touched
+        press_to_travel(patch, objects, poses, 0.0, workspace)
+            .unwrap()
+            .unwrap_or_default()
+            .n_touched
     }),
     ("to a depth", |patch, objects, poses, workspace| {
-        let contact = press_to_depth(patch, objects, poses, 1e-3, workspace);
+        let contact = press_to_depth(patch, objects, poses, 1e-3, workspace).unwrap();
         contact.unwrap().n_touched
     }),
     ("to a force", |patch, objects, poses, workspace| {

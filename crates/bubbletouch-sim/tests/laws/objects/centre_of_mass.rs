@@ -2,7 +2,7 @@
 
 use crate::random_scenes::{direction, rng};
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::mesh::TriangleMesh;
+use bubbletouch_sim::mesh::{LengthUnit, TriangleMesh};
 use bubbletouch_sim::objects::{Catalogue, Part, Shape, Solid, Sphere, SphereUnion};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
@@ -26,13 +26,19 @@ fn joined(meshes: &[TriangleMesh]) -> TriangleMesh {
                 .map(|t| t.map(|corner| corner + first)),
         );
     }
-    TriangleMesh::new("parts", vertices, triangles).unwrap()
+    TriangleMesh::in_unit("parts", LengthUnit::Metre, vertices, triangles).unwrap()
 }
 
 /// Returns the mesh with all faces turned.
 fn turned(mesh: &TriangleMesh) -> TriangleMesh {
     let triangles = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]);
-    TriangleMesh::new("turned", mesh.vertices().to_vec(), triangles.collect()).unwrap()
+    TriangleMesh::in_unit(
+        "turned",
+        LengthUnit::Metre,
+        mesh.vertices().to_vec(),
+        triangles.collect(),
+    )
+    .unwrap()
 }
 
 /// Returns volume and centroid of the union of boxes whose corners have integer coordinates from 0 to 8.

@@ -1,6 +1,6 @@
 //! Meshes and spheres from files: the contents that are read, and the messages of invalid files.
 
-use bubbletouch_sim::mesh::read_ply;
+use bubbletouch_sim::mesh::{LengthUnit, SizeLimits, read_ply};
 use bubbletouch_sim::objects::{read_spheres, vertex_spheres, write_spheres};
 use glam::DVec3;
 use std::fmt::Write as _;
@@ -179,18 +179,23 @@ fn a_binary_nan_is_named_by_its_vertex() {
 #[test]
 fn spheres_survive_csv_to_the_last_bit() {
     let text = "0.1,0.2,-0.3,0.004\n1e-300,12345.678901234567,-0,0.3333333333333333\n";
-    let union = read_spheres("s.csv", text.as_bytes()).unwrap();
+    let metres = Some(LengthUnit::Metre);
+    let read = |text: &[u8]| read_spheres("s.csv", metres, &SizeLimits::ANY, text).unwrap();
+    let union = read(text.as_bytes());
     let mut written = Vec::new();
     write_spheres(&union, &mut written).unwrap();
     assert!(written.starts_with(b"x,y,z,r\n1.0000000000000001e-1,"));
-    assert_eq!(read_spheres("s.csv", &written[..]).unwrap(), union);
+    assert_eq!(read(&written), union);
 }
 
 #[test]
 fn a_header_may_order_the_columns() {
-    let plain = read_spheres("a", "1,2,3,4\n".as_bytes()).unwrap();
+    let plain = read_spheres("a", None, &SizeLimits::ANY, "1,2,3,4\n".as_bytes()).unwrap();
     let named = "\u{feff}name, R ,z,Y,X\nfirst,4,3, 2,1\n";
-    assert_eq!(read_spheres("b", named.as_bytes()).unwrap(), plain);
+    assert_eq!(
+        read_spheres("b", None, &SizeLimits::ANY, named.as_bytes()).unwrap(),
+        plain
+    );
 }
 
 #[test]
@@ -216,14 +221,20 @@ fn spheres_that_cannot_be_used_say_why() {
         ("0,0,,1\n", "s.csv, line 1, column z: ``"),
     ];
     for (text, expected) in cases {
-        let error = read_spheres("s.csv", text.as_bytes()).unwrap_err();
+        let error = read_spheres("s.csv", None, &SizeLimits::ANY, text.as_bytes()).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         assert!(
             error.to_string().starts_with(expected),
             "expected `{expected}` in: {error}"
         );
     }
-    let latin = read_spheres("s.csv", &b"x,y,z,r\n0,0,0,\xb5\n"[..]).unwrap_err();
+    let latin = read_spheres(
+        "s.csv",
+        None,
+        &SizeLimits::ANY,
+        &b"x,y,z,r\n0,0,0,\xb5\n"[..],
+    )
+    .unwrap_err();
     assert_eq!(latin.exit_code(), 2, "{latin}");
 }
 

@@ -1,7 +1,8 @@
 //! Meshes from files of three formats in four units, and the messages of their readers.
 
 use bubbletouch_sim::mesh::{
-    LengthUnit, MeshFormat, MeshReport, Surface, TriangleMesh, read_obj, read_ply, read_stl,
+    LengthUnit, MeshFormat, MeshReport, SizeLimits, Surface, TriangleMesh, read_obj, read_ply,
+    read_stl,
 };
 use glam::DVec3;
 use std::fmt::Write;
@@ -206,7 +207,7 @@ fn cut_or_garbled_files_never_panic() {
 
 /// Returns the mesh of a valid file.
 fn read(format: MeshFormat, bytes: &[u8]) -> TriangleMesh {
-    let file = format.read("m", None, bytes);
+    let file = format.read("m", None, &SizeLimits::ANY, bytes);
     file.unwrap().into_mesh("m").unwrap()
 }
 
@@ -335,7 +336,7 @@ fn a_unit_is_what_it_says_and_a_name_says_the_format() {
     for (name, metres) in [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254)] {
         let unit: LengthUnit = name.parse().unwrap();
         let file = MeshFormat::Obj
-            .read("box", Some(unit), text.as_bytes())
+            .read("box", Some(unit), &SizeLimits::ANY, text.as_bytes())
             .unwrap();
         let bounds = file.into_mesh("box").unwrap().bounds();
         assert_eq!(bounds.max, DVec3::splat(metres));

@@ -1,7 +1,7 @@
 //! Meshes from Collada and glTF files: units, transforms of nodes, instances, mirrored nodes, and wrong files.
 
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::mesh::{LengthUnit, MeshFormat, TriangleMesh};
+use bubbletouch_sim::mesh::{LengthUnit, MeshFormat, SizeLimits, TriangleMesh};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -11,7 +11,9 @@ use crate::mesh_shapes::cuboid;
 const SIDES: DVec3 = DVec3::new(0.25, 0.5, 1.0);
 
 fn read(format: MeshFormat, bytes: &[u8]) -> bubbletouch_sim::Result<TriangleMesh> {
-    format.read("m", None, bytes)?.into_mesh("m")
+    format
+        .read("m", None, &SizeLimits::ANY, bytes)?
+        .into_mesh("m")
 }
 
 /// Returns the corners of all triangles in order.
@@ -81,7 +83,12 @@ fn collada_files_have_their_unit_and_keep_their_axes() {
             &expected,
         );
         // A unit from the user replaces the unit of the file.
-        let file = MeshFormat::Collada.read("m", Some(LengthUnit::Millimetre), text.as_bytes());
+        let file = MeshFormat::Collada.read(
+            "m",
+            Some(LengthUnit::Millimetre),
+            &SizeLimits::ANY,
+            text.as_bytes(),
+        );
         let expected: Vec<DVec3> = cube.iter().map(|corner| *corner * 1e-3).collect();
         assert_same(&file.unwrap().into_mesh("m").unwrap(), &expected);
     }
@@ -349,11 +356,21 @@ fn gltf_files_are_read_with_buffers_inside_beside_and_in_the_address() {
     let mut beside = description.clone();
     beside["buffers"][0]["uri"] = "my%20data.bin".into();
     let place = folder.path().join("m.gltf").display().to_string();
-    let file = MeshFormat::Gltf.read(&place, None, beside.to_string().as_bytes());
+    let file = MeshFormat::Gltf.read(
+        &place,
+        None,
+        &SizeLimits::ANY,
+        beside.to_string().as_bytes(),
+    );
     check_placed(&file.unwrap().into_mesh("m").unwrap());
     beside["buffers"][0]["uri"] = "none.bin".into();
     let missing = MeshFormat::Gltf
-        .read(&place, None, beside.to_string().as_bytes())
+        .read(
+            &place,
+            None,
+            &SizeLimits::ANY,
+            beside.to_string().as_bytes(),
+        )
         .unwrap_err();
     assert!(
         missing.to_string().contains("buffer 0: ") && missing.exit_code() == 2,

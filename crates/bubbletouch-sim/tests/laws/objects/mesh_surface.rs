@@ -1,7 +1,7 @@
 //! Nearest points, signed distances and winding numbers of meshes: comparison with closed forms and with exhaustive search.
 
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::mesh::{Bvh, Feature, Surface, Triangle, TriangleMesh};
+use bubbletouch_sim::mesh::{Bvh, Feature, LengthUnit, Surface, Triangle, TriangleMesh};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
@@ -28,7 +28,7 @@ fn soup(rng: &mut impl Rng, n: usize) -> TriangleMesh {
         .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
         .collect();
     triangles.extend((0..n / 10).map(|_| [0; 3].map(|_: u32| rng.gen_range(0..count))));
-    TriangleMesh::new("soup", vertices, triangles).unwrap()
+    TriangleMesh::in_unit("soup", LengthUnit::Metre, vertices, triangles).unwrap()
 }
 
 /// Returns the distance from a point to a triangle by nested ternary search over barycentric coordinates; the distance is convex in each.

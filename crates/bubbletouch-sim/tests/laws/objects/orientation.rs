@@ -1,14 +1,20 @@
 //! Orientation of meshes: closed parts are turned outwards, cavities stay, and rays decide about open parts.
 
 use crate::mesh_shapes::{cuboid, icosphere};
-use bubbletouch_sim::mesh::{Orientation, Surface, TriangleMesh};
+use bubbletouch_sim::mesh::{LengthUnit, Orientation, Surface, TriangleMesh};
 use bubbletouch_sim::packing::{Body, pack_mesh};
 use glam::DVec3;
 
 /// Turns all triangles of a mesh.
 fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
     let turned = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]);
-    TriangleMesh::new("turned", mesh.vertices().to_vec(), turned.collect()).unwrap()
+    TriangleMesh::in_unit(
+        "turned",
+        LengthUnit::Metre,
+        mesh.vertices().to_vec(),
+        turned.collect(),
+    )
+    .unwrap()
 }
 
 /// Joins several meshes, each moved by a vector.
@@ -19,7 +25,7 @@ fn joined(parts: &[(TriangleMesh, DVec3)]) -> TriangleMesh {
         vertices.extend(part.vertices().iter().map(|&v| v + *shift));
         triangles.extend(part.triangles().iter().map(|t| t.map(|v| v + first)));
     }
-    TriangleMesh::new("joined", vertices, triangles).unwrap()
+    TriangleMesh::in_unit("joined", LengthUnit::Metre, vertices, triangles).unwrap()
 }
 
 fn cube(half: f64) -> TriangleMesh {

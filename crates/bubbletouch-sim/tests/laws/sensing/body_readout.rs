@@ -47,7 +47,7 @@ fn body(damping: f64) -> WholeBody {
 fn pressed(body: &WholeBody) -> BodyState {
     let mut state = BodyState::at_rest(body);
     let away = [0.0, 1.0, 2.0].map(|x| Pose::from_translation(x * DVec3::X));
-    state.place(body, &away);
+    state.place(body, &away).unwrap();
     let ball = |x: f64, rest: f64| Sphere {
         center: DVec3::new(x, 0.0, rest + 0.2 - 1e-3),
         radius: 0.2,
@@ -60,7 +60,7 @@ fn pressed(body: &WholeBody) -> BodyState {
     let object = [SphereClusters::new(&SphereUnion::new(spheres).unwrap())];
     for deeper in [0.0, 0.5e-3, 0.3e-3] {
         let pose = [Pose::from_translation(-deeper * DVec3::Z)];
-        state.press(body, &object, &pose, 1e-3);
+        state.press(body, &object, &pose, 1e-3).unwrap();
     }
     state
 }
@@ -77,12 +77,12 @@ fn noise(std: f64) -> SignalStep {
 /// Returns all signal steps that act on each taxel independently.
 fn steps() -> Vec<SignalStep> {
     vec![
-        SensorError::Gain.step(&[0.1], skin()),
+        SensorError::Gain.step(&[0.1], skin()).unwrap(),
         noise(0.01),
-        SensorError::Drift.step(&[0.05], skin()),
+        SensorError::Drift.step(&[0.05], skin()).unwrap(),
         noise(0.02),
-        SensorError::Faults.step(&[0.1, 0.05], skin()),
-        SensorError::Quantisation.step(&[12.0], skin()),
+        SensorError::Faults.step(&[0.1, 0.05], skin()).unwrap(),
+        SensorError::Quantisation.step(&[12.0], skin()).unwrap(),
     ]
 }
 
@@ -269,7 +269,7 @@ fn one_taxel_has_noise_that_is_normal_from_frame_to_frame() {
 #[test]
 fn zeros_drift_as_a_random_walk_does() {
     const N: usize = 200_000;
-    let drift = SensorError::Drift.step(&[0.1], skin());
+    let drift = SensorError::Drift.step(&[0.1], skin()).unwrap();
     let zeros = |time| -> Vec<f64> {
         let zeros = read(N, &[drift], at(0, time), 0.0);
         zeros.iter().map(|zero| zero / 0.1).collect()
@@ -299,7 +299,7 @@ fn zeros_drift_as_a_random_walk_does() {
 fn faults_are_as_frequent_as_asked_stay_and_grow() {
     const N: usize = 100_000;
     let faults = |dead, stuck, frame| {
-        let faults = SensorError::Faults.step(&[dead, stuck], skin());
+        let faults = SensorError::Faults.step(&[dead, stuck], skin()).unwrap();
         read(N, &[faults], at(frame, 0.0), 0.5)
     };
     let values = faults(0.1, 0.2, 1);
@@ -383,7 +383,7 @@ fn steps_are_in_the_unit_of_what_is_read_and_of_their_patch() {
     let ratio = std(&metres[first_of_sleeve..body.firsts()[2]]) / std(&metres[..first_of_sleeve]);
     assert!((ratio - 2.0).abs() < 0.1, "{ratio}");
     assert!(
-        zeros(&[noise(0.0), SensorError::Drift.step(&[0.0], skin())])
+        zeros(&[noise(0.0), SensorError::Drift.step(&[0.0], skin()).unwrap()])
             .1
             .iter()
             .all(|&value| value == 0.0)
@@ -399,11 +399,11 @@ fn what_no_taxel_reads_by_itself_is_refused() {
     });
     let cases = [
         (
-            vec![SensorError::Crosstalk.step(&[0.1], skin())],
+            vec![SensorError::Crosstalk.step(&[0.1], skin()).unwrap()],
             "crosstalk, which needs other taxels",
         ),
         (
-            vec![SensorError::Hysteresis.step(&[0.1], skin())],
+            vec![SensorError::Hysteresis.step(&[0.1], skin()).unwrap()],
             "hysteresis, which needs",
         ),
         (
@@ -421,19 +421,19 @@ fn what_no_taxel_reads_by_itself_is_refused() {
         (vec![newtons], "still deflections"),
         (vec![noise(f64::NAN)], "noise std"),
         (
-            vec![SensorError::Drift.step(&[-0.1], skin())],
+            vec![SensorError::Drift.step(&[-0.1], skin()).unwrap()],
             "drift_std_full_scale",
         ),
         (
-            vec![SensorError::Faults.step(&[0.7, 0.6], skin())],
+            vec![SensorError::Faults.step(&[0.7, 0.6], skin()).unwrap()],
             "dead and stuck fractions",
         ),
         (
-            vec![SensorError::Faults.step(&[1.7, 0.0], skin())],
+            vec![SensorError::Faults.step(&[1.7, 0.0], skin()).unwrap()],
             "dead_fraction",
         ),
         (
-            vec![SensorError::Quantisation.step(&[99.0], skin())],
+            vec![SensorError::Quantisation.step(&[99.0], skin()).unwrap()],
             "adc_bits",
         ),
     ];

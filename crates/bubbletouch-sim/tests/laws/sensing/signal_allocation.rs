@@ -28,15 +28,15 @@ fn touches_after_the_first_allocate_nothing() {
     let smoothing = SignalStep::Smoothing { width: 4e-3 };
     let skin = Seed::new(1);
     let steps = [
-        SensorError::Hysteresis.step(&[0.1], skin),
-        SensorError::Crosstalk.step(&[0.1], skin),
-        SensorError::Scan.step(&[1e3 * 0.1], skin),
+        SensorError::Hysteresis.step(&[0.1], skin).unwrap(),
+        SensorError::Crosstalk.step(&[0.1], skin).unwrap(),
+        SensorError::Scan.step(&[1e3 * 0.1], skin).unwrap(),
         SignalStep::Force,
-        SensorError::Gain.step(&[0.1], skin),
-        SensorError::Drift.step(&[0.1], skin),
+        SensorError::Gain.step(&[0.1], skin).unwrap(),
+        SensorError::Drift.step(&[0.1], skin).unwrap(),
         noise,
-        SensorError::Faults.step(&[0.1, 0.1], skin),
-        SensorError::Quantisation.step(&[8.0], skin),
+        SensorError::Faults.step(&[0.1, 0.1], skin).unwrap(),
+        SensorError::Quantisation.step(&[8.0], skin).unwrap(),
         smoothing,
     ];
     let chain = Chain::new(&steps, &Patch::grid(grid, taxel).unwrap()).unwrap();

@@ -39,14 +39,20 @@ fn is_error(step: &SignalStep, wanted: SensorError) -> bool {
 fn imperfections(times: f64) -> Vec<SignalStep> {
     let skin = skin();
     vec![
-        SensorError::Hysteresis.step(&[0.1 * times], skin),
-        SensorError::Crosstalk.step(&[0.2 * times], skin),
-        SensorError::Scan.step(&[1e3 * 0.05 * times], skin),
-        SensorError::Gain.step(&[0.3 * times], skin),
-        SensorError::Drift.step(&[0.1 * times], skin),
-        SensorError::Faults.step(&[0.1 * times, 0.1 * times], skin),
-        SensorError::Quantisation.step(&[(6.0 * times).floor()], skin),
-        SensorError::MatrixReadout.step(&[0.1 * times], skin),
+        SensorError::Hysteresis.step(&[0.1 * times], skin).unwrap(),
+        SensorError::Crosstalk.step(&[0.2 * times], skin).unwrap(),
+        SensorError::Scan.step(&[1e3 * 0.05 * times], skin).unwrap(),
+        SensorError::Gain.step(&[0.3 * times], skin).unwrap(),
+        SensorError::Drift.step(&[0.1 * times], skin).unwrap(),
+        SensorError::Faults
+            .step(&[0.1 * times, 0.1 * times], skin)
+            .unwrap(),
+        SensorError::Quantisation
+            .step(&[(6.0 * times).floor()], skin)
+            .unwrap(),
+        SensorError::MatrixReadout
+            .step(&[0.1 * times], skin)
+            .unwrap(),
     ]
 }
 
@@ -119,7 +125,12 @@ fn gains_and_faults_stay_with_the_skin_and_zeros_wander_from_touch_to_touch() {
     assert_eq!(zeros[..N], zeros[2 * N..]);
     let of = |skin| {
         let std = 0.3;
-        read(&[SensorError::Gain.step(&[std], skin)], &frames, 0, 4)
+        read(
+            &[SensorError::Gain.step(&[std], skin).unwrap()],
+            &frames,
+            0,
+            4,
+        )
     };
     assert_ne!(of(skin()), of(Seed::new(2).named("skin")));
 }
@@ -172,7 +183,7 @@ fn frames_of_a_chain_without_time_are_read_as_if_each_were_alone() {
 
 #[test]
 fn a_skin_that_was_pressed_deeper_and_let_go_reads_a_touch_differently_and_no_touch_as_one() {
-    let hysteresis = SensorError::Hysteresis.step(&[0.1], skin());
+    let hysteresis = SensorError::Hysteresis.step(&[0.1], skin()).unwrap();
     let chain = Chain::new(&[NOISE, hysteresis], &patch()).unwrap();
     assert!(chain.remembers());
     let deep = vec![4e-3; N];
@@ -210,32 +221,35 @@ fn a_strength_that_no_skin_has_is_refused_by_name() {
     let skin = skin();
     for (step, place) in [
         (
-            SensorError::Hysteresis.step(&[0.3], skin),
+            SensorError::Hysteresis.step(&[0.3], skin).unwrap(),
             "hysteresis width: 0.3;",
         ),
         (
-            SensorError::Crosstalk.step(&[-0.1], skin),
+            SensorError::Crosstalk.step(&[-0.1], skin).unwrap(),
             "crosstalk: -0.1;",
         ),
         (
-            SensorError::Scan.step(&[1e3 * f64::NAN], skin),
+            SensorError::Scan.step(&[1e3 * f64::NAN], skin).unwrap(),
             "scan time: NaN;",
         ),
-        (SensorError::Gain.step(&[-1.0], skin), "gain std: -1;"),
         (
-            SensorError::Drift.step(&[f64::INFINITY], skin),
+            SensorError::Gain.step(&[-1.0], skin).unwrap(),
+            "gain std: -1;",
+        ),
+        (
+            SensorError::Drift.step(&[f64::INFINITY], skin).unwrap(),
             "drift std: inf;",
         ),
         (
-            SensorError::Faults.step(&[0.7, 0.7], skin),
+            SensorError::Faults.step(&[0.7, 0.7], skin).unwrap(),
             "dead and stuck fractions: 0.7 and 0.7;",
         ),
         (
-            SensorError::Quantisation.step(&[25.0], skin),
+            SensorError::Quantisation.step(&[25.0], skin).unwrap(),
             "converter bits: 25;",
         ),
         (
-            SensorError::MatrixReadout.step(&[-0.1], skin),
+            SensorError::MatrixReadout.step(&[-0.1], skin).unwrap(),
             "line resistance: -0.1;",
         ),
     ] {

@@ -57,7 +57,7 @@ fn smoothing(width_pitches: f64) -> SignalStep {
 }
 
 fn crosstalk(leak: f64) -> SignalStep {
-    SensorError::Crosstalk.step(&[leak], Seed::new(1))
+    SensorError::Crosstalk.step(&[leak], Seed::new(1)).unwrap()
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn a_skin_that_is_a_grid_reads_the_bits_of_the_grid() {
         } else {
             0.1
         };
-        steps.push(error.step(&[strength], Seed::new(1)));
+        steps.push(error.step(&[strength], Seed::new(1)).unwrap());
     }
     let of_grid = read(&steps, &patch, &frame(63));
     assert_eq!(read(&steps, &patch.clone(), &frame(63)), of_grid);
@@ -167,7 +167,10 @@ fn steps_that_know_no_neighbours_read_a_dome_as_any_row_of_as_many_taxels() {
         } else {
             0.1
         };
-        let steps = [SignalStep::Force, error.step(&[strength], Seed::new(1))];
+        let steps = [
+            SignalStep::Force,
+            error.step(&[strength], Seed::new(1)).unwrap(),
+        ];
         let (found, expected) = (read(&steps, &cap, &frame(n)), read(&steps, &row, &frame(n)));
         assert_eq!(found, expected, "{error:?}");
     }
@@ -176,7 +179,9 @@ fn steps_that_know_no_neighbours_read_a_dome_as_any_row_of_as_many_taxels() {
 #[test]
 fn what_a_layout_or_unlike_taxels_cannot_read_is_refused() {
     let layout = || Layout::disc(6e-3, PITCH).unwrap();
-    let matrix = SensorError::MatrixReadout.step(&[0.1], Seed::new(1));
+    let matrix = SensorError::MatrixReadout
+        .step(&[0.1], Seed::new(1))
+        .unwrap();
     assert_eq!(
         refused(&[matrix], &skin(layout())),
         "matrix readout: a skin that is no grid; a grid: a matrix has rows and columns"

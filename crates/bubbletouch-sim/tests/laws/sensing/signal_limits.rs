@@ -77,7 +77,12 @@ fn noise_of_ten_times_the_full_scale_is_neither_clipped_nor_bounded() {
         );
         // A converter after the noise clips the values.
         let clipped = applied(
-            &[noise, SensorError::Quantisation.step(&[8.0], Seed::new(1))],
+            &[
+                noise,
+                SensorError::Quantisation
+                    .step(&[8.0], Seed::new(1))
+                    .unwrap(),
+            ],
             &patch,
             &noisy,
         );

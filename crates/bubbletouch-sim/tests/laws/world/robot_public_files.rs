@@ -1,7 +1,7 @@
 //! Public URDF files that a strict reader rejects. Each file is read, omitted parts have a note, and the poses of links equal the poses in the file.
 
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::mesh::MeshFormat;
+use bubbletouch_sim::mesh::{MeshFormat, SizeLimits};
 use bubbletouch_sim::world::{JointKind, LinkGeometry, MeshFolders, Robot};
 use glam::DVec3;
 use std::path::Path;
@@ -310,7 +310,9 @@ fn a_pointer_of_git_lfs_is_named_as_such() {
             MeshFormat::from_path(Path::new(&format!("a.{ending}"))).unwrap(),
         )
     }) {
-        let error = format.read("r.urdf", None, pointer.as_bytes()).unwrap_err();
+        let error = format
+            .read("r.urdf", None, &SizeLimits::ANY, pointer.as_bytes())
+            .unwrap_err();
         assert_eq!(error.to_string(), expected, "{format:?}");
     }
 }

@@ -111,7 +111,9 @@ impl Touch {
             .map(|pose| patch_from_world.compose(pose))
             .collect();
         let mut workspace = Workspace::new();
-        let contact = press_with_contacts(skin, &models, &poses, &mut workspace);
+        let contact = press_with_contacts(skin, &models, &poses, &mut workspace)
+            .unwrap()
+            .unwrap_or_default();
         (workspace.deflections().to_vec(), contact.n_saturated)
     }
 }
@@ -127,8 +129,10 @@ fn deflections_are_those_of_the_kernel_for_any_skin() {
         // The second and third touch begin with a body that is still deflected.
         for _ in 0..3 {
             let touch = Touch::random(&mut rng, &body);
-            state.place(&body, &touch.patches);
-            let contact = state.press(&body, &touch.clusters(), &touch.objects, DT);
+            state.place(&body, &touch.patches).unwrap();
+            let contact = state
+                .press(&body, &touch.clusters(), &touch.objects, DT)
+                .unwrap();
             let (mut expected_touched, mut expected_saturated) = (0, 0);
             for (patch, skin) in skins.iter().enumerate() {
                 let (expected, saturated) = touch.slowly(patch, skin);
@@ -174,8 +178,10 @@ fn the_list_of_touched_taxels_is_what_the_deflections_say() {
         let mut state = BodyState::at_rest(&body);
         for _ in 0..3 {
             let touch = Touch::random(&mut rng, &body);
-            state.place(&body, &touch.patches);
-            let contact = state.press(&body, &touch.clusters(), &touch.objects, DT);
+            state.place(&body, &touch.patches).unwrap();
+            let contact = state
+                .press(&body, &touch.clusters(), &touch.objects, DT)
+                .unwrap();
             let dense = (0..body.patches().len()).flat_map(|patch| state.deflections(patch));
             let dense: Vec<f64> = dense.copied().collect();
             let listed: Vec<(usize, f64)> = state.touched(&body).collect();
@@ -200,11 +206,14 @@ fn what_goes_away_leaves_nothing_behind() {
         let body = random_body(&mut rng, TAXEL);
         let mut state = BodyState::at_rest(&body);
         let touch = Touch::random(&mut rng, &body);
-        state.place(&body, &touch.patches);
+        state.place(&body, &touch.patches).unwrap();
         let clusters = touch.clusters();
-        n_touched += state.press(&body, &clusters, &touch.objects, DT).n_touched;
+        n_touched += state
+            .press(&body, &clusters, &touch.objects, DT)
+            .unwrap()
+            .n_touched;
         let away = vec![Pose::from_translation(DVec3::X); clusters.len()];
-        let contact = state.press(&body, &clusters, &away, DT);
+        let contact = state.press(&body, &clusters, &away, DT).unwrap();
         assert_eq!(contact, BodyContact::default());
         assert_eq!(state.touched(&body).count(), 0);
         let mut all = (0..body.patches().len()).flat_map(|patch| state.deflections(patch));
@@ -230,14 +239,14 @@ fn damped_taxels_relax_and_push_as_dampers_do_until_they_are_at_rest() {
             .map(|skin| DamperState::at_rest(skin.n_taxels()))
             .collect();
         let mut touch = Touch::random(&mut rng, &body);
-        state.place(&body, &touch.patches);
+        state.place(&body, &touch.patches).unwrap();
         let clusters = touch.clusters();
         for step in 0..40 {
             if step == 20 {
                 touch.objects.fill(Pose::from_translation(DVec3::X));
             }
             let dt = rng.gen_range(1e-3..0.05);
-            state.press(&body, &clusters, &touch.objects, dt);
+            state.press(&body, &clusters, &touch.objects, dt).unwrap();
             for (patch, (skin, slow)) in skins.iter().zip(&mut slow).enumerate() {
                 let (contact, _) = touch.slowly(patch, skin);
                 slow.step(skin.taxels(), dt, &contact);
@@ -263,7 +272,7 @@ fn damped_taxels_relax_and_push_as_dampers_do_until_they_are_at_rest() {
         }
         // The factor e^(−20 · 50 ms · k / c) is far below a nanometre relative to the stroke.
         for _ in 0..40 {
-            state.press(&body, &clusters, &touch.objects, 0.05);
+            state.press(&body, &clusters, &touch.objects, 0.05).unwrap();
         }
         assert_eq!(state.touched(&body).count(), 0, "case {case}");
     }
@@ -279,9 +288,10 @@ fn without_dampers_the_force_is_that_of_the_spring() {
         let mut state = BodyState::at_rest(&body);
         for _ in 0..2 {
             let touch = Touch::random(&mut rng, &body);
-            state.place(&body, &touch.patches);
+            state.place(&body, &touch.patches).unwrap();
             n_touched += state
                 .press(&body, &touch.clusters(), &touch.objects, DT)
+                .unwrap()
                 .n_touched;
             let springs = state
                 .touched(&body)
@@ -313,11 +323,11 @@ fn threads_change_no_bit() {
             .unwrap();
         pool.install(|| {
             let mut state = BodyState::at_rest(&body);
-            state.place(&body, &poses);
+            state.place(&body, &poses).unwrap();
             let mut bits = Vec::new();
             for step in 0..10 {
                 let pose = Pose::from_translation(1e-3 * f64::from(step) * DVec3::X);
-                let contact = state.press(&body, &objects, &[pose], DT);
+                let contact = state.press(&body, &objects, &[pose], DT).unwrap();
                 assert!(
                     contact.n_touched > 5000 && contact.n_patches > 2,
                     "{contact:?}"
@@ -343,8 +353,8 @@ fn a_step_allocates_nothing_once_the_touch_has_been_seen() {
     let touch = Touch::random(&mut rng, &body);
     let clusters = touch.clusters();
     let mut step = || {
-        state.place(&body, &touch.patches);
-        state.press(&body, &clusters, &touch.objects, DT);
+        state.place(&body, &touch.patches).unwrap();
+        state.press(&body, &clusters, &touch.objects, DT).unwrap();
     };
     step();
     assert_eq!(allocations(step), 0);
@@ -566,7 +576,7 @@ fn a_ball_on_a_box_and_on_a_flat_end_is_felt_as_by_any_skin() {
     let mut poses = Vec::new();
     covered.patch_poses(&[Pose::IDENTITY], &mut poses);
     let mut state = BodyState::at_rest(body);
-    state.place(body, &poses);
+    state.place(body, &poses).unwrap();
     let on_end = DVec3::new(0.021, 1e-3, 0.1295);
     let on_face = DVec3::new(0.0, -0.0245, 0.03);
     for place in [on_end, on_face] {
@@ -576,7 +586,9 @@ fn a_ball_on_a_box_and_on_a_flat_end_is_felt_as_by_any_skin() {
         }])
         .unwrap();
         let clusters = [SphereClusters::new(&ball)];
-        let contact = state.press(body, &clusters, &[Pose::from_translation(place)], DT);
+        let contact = state
+            .press(body, &clusters, &[Pose::from_translation(place)], DT)
+            .unwrap();
         assert!(contact.n_touched > 4, "{place}: {contact:?}");
         for (number, (patch, pose)) in body.patches().iter().zip(&poses).enumerate() {
             let layout = patch.layout();

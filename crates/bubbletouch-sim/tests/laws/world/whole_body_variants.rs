@@ -133,9 +133,9 @@ impl Scene {
         pool.install(|| {
             let mut state = BodyState::at_rest(&self.body);
             state.use_instructions(instructions);
-            state.place(&self.body, &self.patches);
+            state.place(&self.body, &self.patches).unwrap();
             let step = |poses: &Vec<Pose>| {
-                let contact = state.press(&self.body, &clusters, poses, DT);
+                let contact = state.press(&self.body, &clusters, poses, DT).unwrap();
                 let touched = state.touched(&self.body);
                 let all = (0..self.patches.len()).flat_map(|patch| state.deflections(patch));
                 Step {
@@ -262,7 +262,7 @@ fn a_small_touch_of_a_large_draped_patch_evaluates_few_spheres() {
     )];
     let mut state = BodyState::at_rest(&body);
     let pose = [Pose::from_translation(0.151 * DVec3::Z)];
-    let contact = state.press(&body, &object, &pose, DT);
+    let contact = state.press(&body, &object, &pose, DT).unwrap();
     assert!(contact.n_touched > 50, "{contact:?}");
     assert_eq!(contact.n_evaluated + contact.n_rejected, 2000);
     assert!(contact.n_evaluated < 200, "{contact:?}");
