@@ -6,6 +6,7 @@ use crate::inputs::range::Range;
 use crate::random::Seed;
 use crate::signal::{MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
 use crate::table::{Column, Role, Scale};
+use serde::{Serialize, Serializer};
 use std::sync::LazyLock;
 
 words! {
@@ -80,6 +81,16 @@ pub fn strength_columns() -> &'static [Column] {
 /// Strengths of all sensor errors in the units of their keys; `None` for strengths that a study does not set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strengths([Option<f64>; N_STRENGTHS]);
+
+/// Writes the strengths that are not zero, by their keys: a strength that a study does not set equals zero.
+impl Serialize for Strengths {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(
+            self.present()
+                .map(|(_, strength, value)| (strength.key, value)),
+        )
+    }
+}
 
 impl Strengths {
     /// Returns the strength that the study sets with this key; `None` if the study does not set it.

@@ -13,6 +13,7 @@ use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, group_keys, note_spellings, read_class_values, read_group_values,
     read_rows,
 };
+use crate::inputs::content_hash::identity;
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
 use crate::random::Seed;
@@ -217,8 +218,10 @@ impl RecordedSpec {
             }
         });
         read.into_values().collect::<Result<Vec<_>>>()?;
-        let identity = format!("{spec:?}");
-        Ok(RecordedContent { hashes, identity })
+        Ok(RecordedContent {
+            hashes,
+            identity: identity(&spec),
+        })
     }
 
     /// Returns the class labels of all touches; the separate test set comes last.

@@ -10,6 +10,7 @@ use crate::inputs::units::{MAX_SIDE, millimetres};
 use crate::world::{Grid, Layout, Neighbours, Patch, nearest_distances};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
+use serde::{Serialize, Serializer};
 use std::ops::Range;
 
 /// Largest relative difference between the pitch of a sensor and the distance of taxels in a grid. With a larger value, the results of the grid would differ
@@ -299,11 +300,13 @@ impl ListedTaxels {
             }
         }
     }
+}
 
-    /// Returns a text that identifies the positions and axes of the taxels.
-    pub fn identity(&self) -> String {
+/// Writes what determines frames: the numbers of taxels, the pitches of the sensors, and the positions and axes of the taxels.
+impl Serialize for ListedTaxels {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let pitches = self.sensors.iter().map(|s| (s.taxels.len(), s.pitch));
-        format!("{:?} {:?}", pitches.collect::<Vec<_>>(), self.content)
+        (pitches.collect::<Vec<_>>(), &self.content).serialize(serializer)
     }
 }
 

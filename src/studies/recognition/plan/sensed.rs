@@ -2,9 +2,10 @@
 
 use crate::random::Seed;
 use crate::world::Shear;
+use serde::Serialize;
 
 /// Quantity that a taxel reads.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub enum Sensed {
     /// Deflection, metres; a step of the signal chain may convert it to a force.
     #[default]

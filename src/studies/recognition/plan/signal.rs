@@ -10,9 +10,10 @@ use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec};
+use serde::Serialize;
 
 /// Signal condition: one strength of noise, smoothing and each sensor error, that is, one value for each axis of `[signal]`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Condition {
     /// Noise standard deviation of a reading, in the noise unit of the plan.
     pub noise: f64,

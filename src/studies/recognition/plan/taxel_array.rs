@@ -11,14 +11,14 @@ use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
 use ndarray::Array2;
-use std::fmt;
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// Number of picture cells per taxel pitch, for layouts other than the grid. With a smaller value, the offset of staggered rows is not visible.
 const PICTURE_CELLS: f64 = 3.0;
 
 /// Array of taxels: its layout, the quantity that its taxels read, and its slide along the object. Every layout has the density and size of a square grid.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct TaxelArray {
     grid: Grid,
     taxel: Taxel,
@@ -389,34 +389,14 @@ impl TaxelArray {
 }
 
 /// Writes all inputs that determine the frames of the array; of the patch, which is derived from them, only the absent taxels.
-impl fmt::Debug for TaxelArray {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self {
-            grid,
-            taxel,
-            layout,
-            radius,
-            sensed,
-            slide,
-            is_placed,
-            listed,
-            patch,
-        } = self;
-        let places = match listed {
-            Some(listed) => format!(" {}", listed.identity()),
-            None if *is_placed => String::new(),
-            None => " without places".to_owned(),
-        };
-        write!(
-            f,
-            "{grid:?} {taxel:?} {layout:?} {radius} {sensed:?} {slide}{places}"
-        )?;
-        let absent = patch.absent().iter().enumerate().filter(|(_, is)| **is);
-        let absent: Vec<usize> = absent.map(|(taxel, _)| taxel).collect();
-        match &absent[..] {
-            [] => Ok(()),
-            absent => write!(f, " without {absent:?}"),
-        }
+impl Serialize for TaxelArray {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let absent = self.patch.absent().iter().enumerate();
+        let absent = absent.filter_map(|(taxel, is_absent)| is_absent.then_some(taxel));
+        let absent: Vec<usize> = absent.collect();
+        let of_layout = (&self.grid, &self.taxel, &self.layout, self.radius);
+        let of_places = (self.is_placed, self.listed.as_deref(), absent);
+        (of_layout, &self.sensed, self.slide.to_array(), of_places).serialize(serializer)
     }
 }
 

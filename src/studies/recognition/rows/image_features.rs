@@ -1,9 +1,10 @@
 //! Image features of configurations.
 
 use bubbletouch_sim::features::Join;
+use serde::Serialize;
 
 /// Image features that the configurations of a group need.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FeaturesOfImages {
     /// Kinds of image features whose values are concatenated into one feature vector.
     pub join: Join,

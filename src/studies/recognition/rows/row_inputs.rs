@@ -2,10 +2,12 @@
 
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::studies::recognition::rows::image_features::{FeaturesOfImages, join_values};
+use crate::studies::recognition::spec::foreign::with_version;
 use bubbletouch_sim::features::Features;
+use serde::Serialize;
 
 /// Inputs that determine how features are computed from the measurements of a touch.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RowInputs {
     /// Numbers of rows and columns of the images that represent frames, one for each sensor.
     pub image_shapes: Vec<(usize, usize)>,
@@ -16,6 +18,7 @@ pub struct RowInputs {
     /// Method that combines the frames of a touch into features; `None` if the frames are concatenated.
     pub temporal_features: Option<TemporalFeatures>,
     /// Features that are computed from the measurements of a frame.
+    #[serde(serialize_with = "with_version")]
     pub features: Features,
     /// Depth window of image features, as a fraction of the full scale; `None` for no window. Image features use only deflections that are within the window
     /// below the largest deflection of a frame.

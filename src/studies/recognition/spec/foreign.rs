@@ -4,8 +4,8 @@ use crate::error::{Error, Result};
 use crate::files::FilePath;
 use crate::inputs::content_hash::short_hash;
 use crate::inputs::params::{Described, named, params};
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::foreign::Foreign;
+use crate::learning::classifiers::{ClassifierKind, classifier};
 use bubbletouch_sim::features::{Features, ImageFeature, foreign};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{self, MapAccess, Visitor};
@@ -130,8 +130,7 @@ impl ClassifierChoice {
 impl Serialize for ClassifierChoice {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         match self {
-            Self::Kind(ClassifierKind::Foreign(foreign)) => serializer.collect_str(foreign),
-            Self::Kind(kind) => kind.serialize(serializer),
+            Self::Kind(kind) => classifier::with_version(kind, serializer),
             Self::Command(command) => command.keys.serialize(serializer),
         }
     }
@@ -185,8 +184,19 @@ pub struct FeatureChoice(pub Features);
 
 impl Serialize for FeatureChoice {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        serializer.serialize_str(&self.0.text())
+        with_version(&self.0, serializer)
     }
+}
+
+/// Writes features as in a study file: their name, with the version of features from outside of this program.
+///
+/// # Errors
+/// If the serialiser fails.
+pub fn with_version<S: Serializer>(
+    features: &Features,
+    serializer: S,
+) -> std::result::Result<S::Ok, S::Error> {
+    serializer.serialize_str(&features.text())
 }
 
 impl<'de> Deserialize<'de> for FeatureChoice {

@@ -2,6 +2,7 @@
 
 use crate::engine::work_items::{PendingItems, Scale, WorkItem};
 use crate::error::{Error, Result};
+use crate::inputs::content_hash::identity;
 use crate::inputs::keys::KeyAbout;
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::snapshots;
@@ -15,7 +16,7 @@ use crate::studies::recognition::study::load::load_study;
 use crate::studies::recognition::study::recognition_study::{Family, RecognitionStudy, distinct};
 use crate::studies::recognition::study::rows::RecognitionRows;
 use crate::studies::recognition::sweep::configurations::StudyPart;
-use crate::studies::recognition::training::evaluation_inputs::{FamilyInputs, family_name};
+use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::source::Source;
 use crate::studies::study::{About, Facts, Study, TableFiles, settings_words};
 use crate::table::{ChartSpec, Table};
@@ -112,38 +113,33 @@ impl Study for RecognitionStudy {
             let (part, configurations) = self.family(family);
             let number = self.families[family].group;
             let placed = &self.groups[number];
-            let content = |touches: usize| &self.touch_sets[touches].content[..];
-            let touches = match placed.touches == placed.tested {
-                true => content(placed.touches).to_owned(),
-                false => format!("{} {}", content(placed.touches), content(placed.tested)),
-            };
-            let of = (self.group(number).1, &touches[..]);
+            let touches = [placed.touches, placed.tested];
+            let touches = touches.map(|touches| &self.touch_sets[touches].content);
+            // The measurements are those that the family alone needs.
+            let alone = self.group(number).1.with_cells(configurations);
             let inputs = FamilyInputs::new(&part.plan, &part.sweep, configurations);
-            family_name(&part.plan, of, &inputs, configurations)
+            identity(&(touches, alone.inputs(&part.plan), inputs))
         };
         let families: Vec<String> = families.map(of_family).collect();
         let mut items = Vec::with_capacity(self.n_trials() * families.len());
         for trial in 0..self.n_trials() {
             let of_part = |StudyPart { plan, sweep, .. }: &StudyPart| {
-                let inputs = sweep.trial(plan, trial);
-                inputs.expect("a trial of the study").name()
+                identity(&sweep.trial(plan, trial).expect("a trial of the study"))
             };
             let trials: Vec<String> = self.parts().iter().map(of_part).collect();
-            for (family, name) in self.families.iter().zip(&families) {
+            for (family, inputs) in self.families.iter().zip(&families) {
                 let group = trial * self.groups.len() + family.group;
-                let trial = &trials[self.groups[family.group].part];
-                items.push(WorkItem::new(format!("{name}, {trial}"), group));
+                let inputs = (inputs, &trials[self.groups[family.group].part]);
+                items.push(WorkItem::of(format!("trial {trial}"), group, &inputs));
             }
         }
         for (number, touches) in self.touch_sets.iter().enumerate() {
             let (_, array, n_frames) = self.on(number);
             let ((ny, nx), pitch) = (array.shape(), array.pitch());
-            let content = &touches.content;
-            let name =
-                format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m, {content}");
+            let name = format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m");
             items.push(WorkItem {
                 is_result: false,
-                ..WorkItem::new(name, touches.group)
+                ..WorkItem::of(name, touches.group, &touches.content)
             });
         }
         items

@@ -3,6 +3,7 @@
 use crate::engine::axes::AxisValues;
 use crate::error::{Error, Result};
 use crate::files::with_folder;
+use crate::inputs::content_hash::identity;
 use crate::inputs::memory::check_memory;
 use crate::inputs::object_files::load_objects;
 use crate::learning::classifiers::foreign::Foreign;
@@ -85,19 +86,19 @@ impl RecognitionStudy {
         let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
         let mut draw = |plan: &Plan| -> Result<Arc<dyn TouchSet + Send>> {
             let inputs = TouchInputs::new(plan);
-            let (content, seed) = (inputs.key(), Seed::new(inputs.seed));
+            let (content, seed) = (identity(&inputs), Seed::new(inputs.seed));
             let touched: Arc<dyn TouchSet + Send> = if let Some(known) = drawn.get(&content) {
                 known.clone()
             } else if let Some(human) = inputs.human_touch {
                 check_touches(plan, human.kinds.len(), ceiling)?;
                 Arc::new(HumanTouches::draw(human, &seed)?)
-            } else if let Some(recorded) = inputs.recorded {
+            } else if let Some((recorded, _)) = inputs.recorded {
                 Arc::new(RecordedFrames::read(recorded, ceiling)?)
             } else {
-                let known = objects.entry(format!("{:?}", inputs.objects));
+                let known = objects.entry(identity(&inputs.objects));
                 let objects = match known {
                     Entry::Occupied(known) => known.into_mut(),
-                    Entry::Vacant(new) => new.insert(load_objects(inputs.objects, packings)?),
+                    Entry::Vacant(new) => new.insert(load_objects(inputs.objects.keys, packings)?),
                 };
                 if !has_noted {
                     has_noted = note_shear_ripple(plan, objects)?;
@@ -139,7 +140,7 @@ fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
 
 /// Returns a text that identifies the touches of a plan, independently of the array and the object files.
 pub fn touch_content(plan: &Plan) -> String {
-    TouchInputs::new(plan).key()
+    identity(&TouchInputs::new(plan))
 }
 
 /// Memory that a touch occupies, bytes: its pose, its label and its reading parameters.

@@ -5,7 +5,7 @@ use crate::engine::progress::Progress;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
 use crate::error::{Error, Result};
-use crate::inputs::content_hash::short_hash;
+use crate::inputs::content_hash::identity;
 use crate::inputs::object_files::objects_content;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::millimetres;
@@ -158,8 +158,7 @@ impl RecognitionStudy {
                 let mut place_touches = |of: usize| {
                     let (plan, touched) = &touched[of];
                     let array = &plan.arrays[group.array];
-                    let content = format!("{touched} {array:?} {}", group.frames);
-                    let content = short_hash(content, DIGITS);
+                    let content = identity(&(touched, array, group.frames));
                     *known_touches.entry(content.clone()).or_insert_with(|| {
                         self.touch_sets.push(Touches {
                             group: number,
@@ -174,7 +173,7 @@ impl RecognitionStudy {
                 let trials = (0..plan.spec.trials).map(|trial| inputs.trial(sweep, trial));
                 let splits = trials.map_while(|trial| Some((trial.split?, trial.group_keys)));
                 let splits: Vec<_> = splits.collect();
-                let content = format!("{touches} {tested} {} {splits:?}", inputs.key());
+                let content = identity(&(touches, tested, &inputs, splits));
                 self.groups.push(PlacedGroup {
                     part,
                     place,
@@ -255,10 +254,7 @@ impl RecognitionStudy {
     /// Returns the number of different arrays on which touches are simulated.
     pub fn n_arrays(&self) -> usize {
         let made = (0..self.touch_sets.len()).map(|touches| self.made_on(touches));
-        let arrays = made.map(|(part, array, _)| {
-            let array = &self.parts[part].plan.arrays[array];
-            format!("{array:?}")
-        });
+        let arrays = made.map(|(part, array, _)| identity(&self.parts[part].plan.arrays[array]));
         arrays.collect::<HashSet<_>>().len()
     }
 
@@ -401,9 +397,6 @@ fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<(
         allowed,
     ))
 }
-
-/// Number of hexadecimal digits of the hash that identifies a set of touches. With fewer digits, two sets may get the same hash.
-const DIGITS: usize = 24;
 
 impl RecognitionStudy {
     /// Runs the whole study without a journal; the first failed work item ends the run.

@@ -7,9 +7,10 @@ use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::training::evaluation_inputs::TrialInputs;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
+use serde::Serialize;
 
 /// Settings that reduce or relabel the training touches of a split.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct TrainingRows {
     /// Maximum number of training touches per object; `None` for all training touches of the split.
     pub train_touches: Option<usize>,

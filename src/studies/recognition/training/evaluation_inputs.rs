@@ -1,10 +1,10 @@
 //! Inputs that determine the evaluation of a family of configurations in a trial, without the measurements.
 //!
-//! The method `Trial::evaluate` receives these inputs and no plan, so it cannot depend on any other value of a study. The name of a work item is a hash of the
-//! `Debug` form of these inputs and of the inputs of its measurements. A new field therefore changes the name.
+//! The method `Trial::evaluate` receives these inputs and no plan, so it cannot depend on any other value of a study. The identity of a work item consists of
+//! the canonical bytes of these inputs and of the inputs of its measurements.
 
 use crate::error::{Error, Result};
-use crate::inputs::content_hash::{Hashed, short_hash};
+use crate::inputs::content_hash::{Hashed, identity};
 use crate::inputs::memory::GIB;
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
@@ -20,13 +20,11 @@ use crate::studies::recognition::sweep::training_rows::TrainingRows;
 use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
+use serde::Serialize;
 use std::collections::HashSet;
 
-/// Number of hexadecimal digits of the hash that a work item's name contains. With fewer digits, the names of two work items may collide.
-const DIGITS: usize = 24;
-
 /// Inputs of a trial that all families of configurations share.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct TrialInputs<'a> {
     /// Seed from which all random numbers of the study are derived.
     pub seed: u64,
@@ -47,7 +45,7 @@ pub struct TrialInputs<'a> {
 }
 
 /// Inputs of a family of configurations that are equal in all its trials.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct FamilyInputs<'a> {
     /// Inputs that determine how feature rows are computed from measurements.
     pub rows: RowInputs,
@@ -66,7 +64,7 @@ pub struct FamilyInputs<'a> {
 }
 
 /// Inputs that determine how a classifier is trained. Parameters that the classifier does not use have their default values.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct TrainingInputs {
     /// Classifier and its parameters; the penalty C is set by each [`Decision`].
     pub classifier: Classifier,
@@ -81,7 +79,7 @@ pub struct TrainingInputs {
 }
 
 /// Settings in which the configurations of a family differ.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Decision {
     /// Penalty C of the classifier; `None` if C is chosen by cross-validation or the classifier has no C.
     pub c: Option<f64>,
@@ -92,12 +90,6 @@ pub struct Decision {
 }
 
 impl TrialInputs<'_> {
-    /// Returns the name of the trial, which contains a hash of all its inputs. Different inputs give different names.
-    pub fn name(&self) -> String {
-        let Self { number, .. } = self;
-        format!("trial {number} {}", short_hash(format!("{self:?}"), DIGITS))
-    }
-
     /// Returns the seed of the trial's random numbers that are used for the purpose `name`.
     pub fn stream(&self, name: &str) -> Seed {
         let seed = Seed::new(self.seed).named(name);
@@ -229,19 +221,6 @@ impl TrainingInputs {
     }
 }
 
-/// Returns the name of a family of configurations; the name contains a hash of the family's inputs. The measurements in the hash are those that the family
-/// alone would need.
-pub fn family_name(
-    plan: &Plan,
-    (group, touches): (&MeasurementGroup, &str),
-    inputs: &FamilyInputs,
-    family: &[Configuration],
-) -> String {
-    let alone = group.with_cells(family);
-    let measured = alone.inputs(plan);
-    short_hash(format!("{touches} {measured:?} {inputs:?}"), DIGITS)
-}
-
 impl Sweep {
     /// Checks that every family of configurations can be trained in every trial.
     ///
@@ -253,12 +232,8 @@ impl Sweep {
         for (group, family) in self.groups.iter().flat_map(families) {
             let inputs = FamilyInputs::new(plan, self, family);
             let n_per_touch = group.n_readings(plan) + inputs.rows.n_copies;
-            let FamilyInputs {
-                training_rows,
-                training,
-                ..
-            } = &inputs;
-            if checked.insert(format!("{n_per_touch} {training_rows:?} {training:?}")) {
+            let needed = (n_per_touch, &inputs.training_rows, &inputs.training);
+            if checked.insert(identity(&needed)) {
                 for number in 0..self.splits.len() {
                     self.trial(plan, number)?.check(&inputs, n_per_touch)?;
                 }
