@@ -13,7 +13,7 @@ pub(crate) use crate::row;
 pub(crate) use crate::studies::recognition::plan::taxel_array::TaxelArray;
 pub(crate) use crate::studies::recognition::spec::scene::{SkinSpec, TouchesSpec};
 pub(crate) use crate::studies::recognition::sweep::configurations::nested;
-pub(crate) use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
+pub(crate) use crate::studies::recognition::touches::{TouchedObject, draw_touches};
 pub(crate) use crate::studies::source::Source;
 pub(crate) use crate::studies::study::{
     About, AnyFile, Facts, Study, TableFiles, shared_inputs, work_items_of,

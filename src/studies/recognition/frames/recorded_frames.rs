@@ -6,31 +6,24 @@
 use crate::contact::saturation_limit;
 use crate::engine::progress::Progress;
 use crate::error::{Error, Result};
-use crate::inputs::arrays::TableContent;
 use crate::inputs::arrays::file_array::FileArray;
-use crate::inputs::arrays::is_member;
 use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, group_keys, note_spellings, read_class_values, read_group_values,
     read_rows,
 };
+use crate::inputs::arrays::{TableContent, is_member};
 use crate::inputs::content_hash::identity;
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
 use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
-use crate::studies::recognition::frames::frame_store::Frames;
-use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
-use crate::studies::recognition::frames::samples::spread_samples;
-use crate::studies::recognition::frames::sensor_frames::{
-    SensorFrames, SensorScale, check_alike, joined_readings,
+use crate::studies::recognition::frames::{
+    Frames, RecordedContent, Samples, SensorFrames, SensorScale, TouchSet, TouchToRead,
+    check_alike, joined_readings, one_each, spread_samples, touches_to_read,
 };
-use crate::studies::recognition::frames::touch_lengths::one_each;
-use crate::studies::recognition::frames::touch_set::{RecordedContent, Samples, TouchSet};
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec};
+use crate::studies::recognition::plan::{MeasurementGroup, Plan, TaxelArray};
+use crate::studies::recognition::spec::{PreviousTouch, RecordedSpec};
 use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2};
 use rand::Rng;
 use std::collections::{BTreeMap, HashSet};

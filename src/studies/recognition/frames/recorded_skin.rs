@@ -4,7 +4,7 @@ use crate::calibration::RecordedSkin;
 use crate::error::{Error, Result};
 use crate::inputs::arrays::TableContent;
 use crate::inputs::arrays::file_array::{ElementKind, FileArray};
-use crate::studies::recognition::spec::recorded::RecordedSpec;
+use crate::studies::recognition::spec::RecordedSpec;
 use bubbletouch_sim::statistics::quantile::quantile;
 use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;

@@ -9,10 +9,8 @@ use crate::inputs::units::MM;
 use crate::mesh::TriangleMesh;
 use crate::note::note;
 use crate::objects::{MeshModel, Model, Object, Part, Shape, Solid};
-use crate::studies::recognition::frames::array_press::ArrayWorkspace;
-use crate::studies::recognition::plan::sensed::Sensed;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::frames::ArrayWorkspace;
+use crate::studies::recognition::plan::{Plan, Sensed, TaxelArray};
 use crate::world::Spread;
 use glam::DVec3;
 

@@ -5,7 +5,7 @@ use crate::inputs::arrays::axis_order::FrameShape;
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::{TableContent, is_member};
 use crate::signal::{resample, resampled_instant};
-use crate::studies::recognition::spec::recorded::RecordedSpec;
+use crate::studies::recognition::spec::RecordedSpec;
 use ndarray::{Array2, s};
 use std::path::Path;
 

@@ -2,10 +2,8 @@
 
 use crate::inputs::sensor_errors::TestSensor;
 use crate::sensing::{Ensemble, Selection};
-use crate::studies::recognition::plan::signal::Condition;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::image_features::FeaturesOfImages;
+use crate::studies::recognition::plan::{Condition, Plan};
+use crate::studies::recognition::rows::{Configuration, FeaturesOfImages};
 
 /// Group of configurations whose results are computed from the same measurements of touches.
 #[derive(Clone, Debug)]

@@ -4,10 +4,8 @@ use crate::error::Result;
 use crate::inputs::check::Check;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::{MAX_FRAMES, MM, millimetres};
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::human::HumanTouchSpec;
-use crate::studies::recognition::spec::scene::TouchesSpec;
-use crate::studies::recognition::spec::study::StudySpec;
+use crate::studies::recognition::plan::TaxelArray;
+use crate::studies::recognition::spec::{HumanTouchSpec, StudySpec, TouchesSpec};
 use crate::world::{Layout, Patch, Taxels};
 
 impl HumanTouchSpec {

@@ -6,17 +6,15 @@ use crate::inputs::check::Check;
 use crate::inputs::memory::GIB;
 use crate::inputs::toml_value::has_only;
 use crate::inputs::units::MM;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::classifiers::parameters;
+use crate::learning::classifiers::{ClassifierKind, parameters};
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::{Ensemble, Selection};
-use crate::studies::recognition::plan::pose_groups::KeepTogether;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::classifier_parameters::ClassifierParameters;
-use crate::studies::recognition::spec::pose_split::PoseSplit;
-use crate::studies::recognition::spec::study::{RecognitionSpec, SensingSpec, StudySpec};
+use crate::studies::recognition::plan::{KeepTogether, TaxelArray};
+use crate::studies::recognition::spec::{
+    ClassifierParameters, PoseSplit, RecognitionSpec, SensingSpec, StudySpec,
+};
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;
 use bubbletouch_svm::DEFAULT_MEMORY_BYTES;

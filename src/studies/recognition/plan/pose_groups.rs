@@ -8,7 +8,7 @@
 //! never neighbours, because their labels differ.
 
 use crate::error::{Error, Result};
-use crate::studies::recognition::spec::pose_split::GroupSpec;
+use crate::studies::recognition::spec::GroupSpec;
 use crate::world::{Touch, TouchAxis};
 use ndarray::Array1;
 use std::collections::BTreeMap;

@@ -6,13 +6,10 @@ use crate::inputs::check::Check;
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::MM;
-use crate::studies::recognition::plan::listed_taxels::PlacedSensor;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::recorded::RecordedSpec;
-use crate::studies::recognition::spec::scene::{SensedSpec, SkinSpec, TouchesSpec};
-use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::spec::study::StudySpec;
-use crate::studies::recognition::spec::zero::ZeroSpec;
+use crate::studies::recognition::plan::{PlacedSensor, TaxelArray};
+use crate::studies::recognition::spec::{
+    RecordedSpec, SensedSpec, SkinSpec, StepSpec, StudySpec, TouchesSpec, ZeroSpec,
+};
 use crate::world::{ArrayLayout, Grid};
 use glam::DVec2;
 

@@ -6,11 +6,10 @@ use crate::inputs::check::{Check, MAX_VALUES};
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::{MAX_SIDE, MM};
 use crate::mesh::SizeLimits;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::scene::{
-    RangeSpec, SensedSpec, SkinSpec, SpreadSpec, TouchesSpec,
+use crate::studies::recognition::plan::TaxelArray;
+use crate::studies::recognition::spec::{
+    RangeSpec, SensedSpec, SkinSpec, SpreadSpec, StudySpec, TouchesSpec,
 };
-use crate::studies::recognition::spec::study::StudySpec;
 use crate::world::{ArrayLayout, Grid, Placement, Spread, Taxel, TouchAxis};
 
 /// Returns the smallest pitch of all arrays, metres.

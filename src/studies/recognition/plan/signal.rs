@@ -7,9 +7,10 @@ use crate::inputs::check::Check;
 use crate::inputs::sensor_errors::{NOISES, Strengths, TestSensor};
 use crate::inputs::units::MM;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
-use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec};
+use crate::studies::recognition::plan::Plan;
+use crate::studies::recognition::spec::{
+    SensedSpec, SignalAxis, SignalSpec, StepSpec, TouchesSpec,
+};
 use serde::Serialize;
 
 /// Signal condition: one strength of noise, smoothing and each sensor error, that is, one value for each axis of `[signal]`.

@@ -5,8 +5,9 @@ use crate::inputs::units::millimetres;
 use crate::random::Seed;
 use crate::sensing::Ensemble;
 use crate::signal::{Chain, SignalStep};
-use crate::studies::recognition::plan::listed_taxels::{ListedTaxels, PlacedSensor, SensorImage};
-use crate::studies::recognition::plan::sensed::{Sensed, of_channel};
+use crate::studies::recognition::plan::{
+    ListedTaxels, PlacedSensor, Sensed, SensorImage, of_channel,
+};
 use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};

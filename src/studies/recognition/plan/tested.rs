@@ -14,10 +14,8 @@ use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
 use crate::inputs::check::Check;
 use crate::inputs::sensor_errors::NOISES;
-use crate::studies::recognition::plan::signal::Condition;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::signal::SignalAxis;
-use crate::studies::recognition::spec::study::StudySpec;
+use crate::studies::recognition::plan::{Condition, Plan};
+use crate::studies::recognition::spec::{SignalAxis, StudySpec};
 use std::sync::Arc;
 use toml::{Table, Value};
 

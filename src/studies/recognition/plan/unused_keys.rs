@@ -5,11 +5,10 @@ use crate::engine::axis::Axis;
 use crate::error::Result;
 use crate::inputs::check::Check;
 use crate::inputs::toml_value::{is_at, value_at};
-use crate::studies::recognition::plan::learning::DEFAULT_TILT_DEG;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::scene::{STIFFNESS, SensedSpec, SkinSpec, TouchesSpec};
-use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::spec::study::StudySpec;
+use crate::studies::recognition::plan::{DEFAULT_TILT_DEG, Plan};
+use crate::studies::recognition::spec::{
+    STIFFNESS, SensedSpec, SkinSpec, StepSpec, StudySpec, TouchesSpec,
+};
 use crate::world::{Spread, TouchAxis};
 
 /// A key whose values have an effect only together with other keys.

@@ -6,7 +6,7 @@ use crate::inputs::keys::{AxisPlace, KeyAbout, find};
 use crate::inputs::params::keys_of;
 use crate::inputs::range::Range::{self, Between};
 use crate::inputs::toml_value::is_at;
-use crate::studies::recognition::spec::study::StudySpec;
+use crate::studies::recognition::spec::StudySpec;
 use serde::Serialize;
 
 /// Maximum number of trials of a study, because the splits of all trials are kept in memory.

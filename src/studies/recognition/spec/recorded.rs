@@ -8,11 +8,9 @@ use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::inputs::params::{is_default, words};
 use crate::inputs::range::Range::{Any, Count, NotNegative, Positive, Unchecked};
 use crate::inputs::units::MAX_FRAMES;
-use crate::studies::recognition::spec::recorded_sensor::{
-    RecordedSensorSpec, SensorPlace, sensor_spec, sensor_table,
+use crate::studies::recognition::spec::{
+    RecordedSensorSpec, SensorChoice, SensorPlace, ZeroSpec, sensor_spec, sensor_table,
 };
-use crate::studies::recognition::spec::used_sensors::SensorChoice;
-use crate::studies::recognition::spec::zero::ZeroSpec;
 use std::path::{Path, PathBuf};
 
 sensor_spec! {

@@ -1,13 +1,13 @@
-//! Specification of the touched scene: the tables `[objects]`, `[skin]` and `[touches]`.
+//! Specification of the touched scene: the tables `[objects]`, `[skin]` and `[touches]`, and `[human_touch]`, which replaces `[objects]` and `[touches]`.
 
 use crate::engine::axis::Axis;
 use crate::inputs::params::{empty_table, named, params, variants, words};
 use crate::inputs::range::Range::{Any, Count, Finite, NotNegative, Positive};
 use crate::inputs::range::{SIDE, TOUCHES};
 use crate::inputs::units::MAX_FRAMES;
-use crate::studies::recognition::spec::keys::SLIDE;
+use crate::studies::recognition::spec::SLIDE;
 use crate::table::Scale::{Linear, Log};
-use crate::world::{ArrayLayout, RestPoses};
+use crate::world::{ArrayLayout, RestPoses, TouchKind};
 
 named!(ArrayLayout, RestPoses);
 
@@ -140,5 +140,23 @@ variants! {
         Uniform = "uniform"((f64, f64)),
         /// Values drawn uniformly between −w and w, for a given half width w ≥ 0.
         Within = "within"(f64),
+    }
+}
+
+named!(TouchKind);
+
+params! {
+    /// Keys of `[human_touch]`: recognition of kinds of human touch on a forearm. The columns of the array are bent around the arm; its rows run along the arm.
+    pub struct HumanTouchSpec {
+        /// Kinds of human touch that the classifier distinguishes. Default: all six.
+        kinds: Vec<TouchKind> = crate::world::TOUCH_KINDS.to_vec() => Any, Condition, Axes;
+        /// Number of human touches of each kind, at least 1.
+        per_kind: usize => TOUCHES, Choice, Axes;
+        /// Distance from the axis of the arm to the outside of its skin, mm, positive. Default: 43.
+        arm_radius_mm: f64 = 43.0 => Positive, Choice, Axes;
+        /// Frame rate of the skin, Hz, positive.
+        frames_hz: f64 => Positive, Choice, Axes;
+        /// Duration of the recording of each touch, s. The touch begins at a random time such that it ends within the recording.
+        duration_s: f64 => Positive, Choice, Axes;
     }
 }

@@ -10,29 +10,24 @@ use crate::error::Result;
 use crate::inputs::keys::AxisPlace;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::params::{Described, ORDER, is_default, named, params, words};
-use crate::inputs::range::COUNT;
-use crate::inputs::range::MAX_COUNTED;
 use crate::inputs::range::Range::{Any, AtLeastOne, Count, Fraction, Part, Positive, Unchecked};
+use crate::inputs::range::{COUNT, MAX_COUNTED};
 use crate::inputs::toml_value::value_at;
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::{Ensemble, Selection};
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::table_rows::TrialScore;
-use crate::studies::recognition::spec::classifier_parameters::ClassifierParameters;
+use crate::studies::recognition::rows::{Configuration, TrialScore};
 pub use crate::studies::recognition::spec::foreign::*;
-pub use crate::studies::recognition::spec::human::*;
-use crate::studies::recognition::spec::keys::{
-    CHOSEN, GAMMA, MAX_COPIES, MAX_READINGS, MAX_TRIALS, OVER_TIME, PENALTY, TILT, recognition_keys,
-};
-use crate::studies::recognition::spec::pose_split::GroupSpec;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;
 pub use crate::studies::recognition::spec::recorded::*;
-pub use crate::studies::recognition::spec::recorded_sensor::RecordedSensorSpec;
+pub use crate::studies::recognition::spec::recorded_sensor::{RecordedSensorSpec, ZeroSpec};
 pub use crate::studies::recognition::spec::scene::*;
 pub use crate::studies::recognition::spec::signal::*;
-pub use crate::studies::recognition::spec::zero::ZeroSpec;
+use crate::studies::recognition::spec::{
+    CHOSEN, ClassifierParameters, GAMMA, GroupSpec, MAX_COPIES, MAX_READINGS, MAX_TRIALS,
+    OVER_TIME, PENALTY, TILT, recognition_keys,
+};
 use crate::table::Scale::{Linear, Log, Share, Words};
 use crate::table::{Column, Columns};
 use bubbletouch_sim::features::Features;

@@ -8,15 +8,13 @@ use crate::report::page::Section;
 use crate::report::pictures::snapshots::snapshots;
 use crate::report::study_content::{Beyond, NamedPicture};
 use crate::studies::recognition::charts;
-use crate::studies::recognition::frames::touch_set::Samples;
-use crate::studies::recognition::spec::keys::recognition_keys;
-use crate::studies::recognition::spec::pose_split::{GroupSpec, PoseSplit};
-use crate::studies::recognition::spec::study::StudySpec;
-use crate::studies::recognition::study::load::load_study;
-use crate::studies::recognition::study::recognition_study::{Family, RecognitionStudy, distinct};
-use crate::studies::recognition::study::rows::RecognitionRows;
-use crate::studies::recognition::sweep::configurations::StudyPart;
-use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
+use crate::studies::recognition::frames::Samples;
+use crate::studies::recognition::spec::{GroupSpec, PoseSplit, StudySpec, recognition_keys};
+use crate::studies::recognition::study::{
+    Family, RecognitionRows, RecognitionStudy, distinct, load_study,
+};
+use crate::studies::recognition::sweep::StudyPart;
+use crate::studies::recognition::training::FamilyInputs;
 use crate::studies::source::Source;
 use crate::studies::study::{About, Facts, Study, TableFiles, settings_words};
 use crate::table::{ChartSpec, Table};

@@ -6,20 +6,21 @@ use crate::files::with_folder;
 use crate::inputs::content_hash::identity;
 use crate::inputs::memory::check_memory;
 use crate::inputs::object_files::load_objects;
+use crate::inputs::objects_spec::ObjectsSpec;
 use crate::learning::classifiers::foreign::Foreign;
+use crate::mesh::SizeLimits;
 use crate::note::note;
 use crate::random::Seed;
-use crate::studies::recognition::frames::human_touches::HumanTouches;
-use crate::studies::recognition::frames::recorded_frames::RecordedFrames;
-use crate::studies::recognition::frames::shear_ripple::note_shear_ripple;
-use crate::studies::recognition::frames::touch_set::TouchSet;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::study::StudySpec;
-use crate::studies::recognition::study::recognition_study::RecognitionStudy;
-use crate::studies::recognition::study::scale::recognition_scale;
-use crate::studies::recognition::study::touch_inputs::TouchInputs;
-use crate::studies::recognition::touches::drawn_touches::draw_touches;
+use crate::studies::recognition::frames::{
+    HumanTouches, RecordedFrames, TouchSet, note_shear_ripple,
+};
+use crate::studies::recognition::plan::Plan;
+use crate::studies::recognition::spec::{HumanTouchSpec, RecordedSpec, StudySpec};
+use crate::studies::recognition::study::{RecognitionStudy, recognition_scale};
+use crate::studies::recognition::touches::draw_touches;
 use crate::studies::source::Source;
+use crate::world::Placement;
+use serde::Serialize;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;
@@ -163,6 +164,62 @@ fn check_touches(plan: &Plan, n_classes: usize, ceiling: Option<u64>) -> Result<
     let what = format!("{n_touches} touches and their splits");
     check_memory(bytes, ceiling, &what)
         .map_err(|allowed| Error::input(format!("key {key}"), n_each, allowed))
+}
+
+/// Inputs that determine the touches of a plan, without the array and the object files. Plans with equal inputs share their touches.
+#[derive(Serialize)]
+pub(crate) struct TouchInputs<'a> {
+    pub(crate) objects: ObjectInputs<'a>,
+    pub(crate) placement: &'a Placement,
+    pub(crate) human_touch: Option<&'a HumanTouchSpec>,
+    /// Keys of the recording, and the number of values per taxel in its frames.
+    pub(crate) recorded: Option<(&'a RecordedSpec, usize)>,
+    pub(crate) seed: u64,
+}
+
+/// Inputs that determine the objects of a plan, without their files. The pitch and the sizes of the arrays only affect which objects are rejected or noted.
+#[derive(Clone, Copy, Serialize)]
+pub(crate) struct ObjectInputs<'a> {
+    pub(crate) keys: &'a ObjectsSpec,
+    pitch: Option<f64>,
+    sizes: Option<SizeLimits>,
+}
+
+impl<'a> TouchInputs<'a> {
+    /// Returns the inputs that determine the touches of a plan.
+    pub fn new(plan: &'a Plan) -> Self {
+        let spec = &plan.spec;
+        let recorded = spec.recorded.as_ref();
+        Self {
+            objects: ObjectInputs {
+                keys: &spec.objects,
+                pitch: spec.objects.pitch,
+                sizes: spec.objects.sizes,
+            },
+            placement: &plan.placement,
+            human_touch: spec.human_touch.as_ref(),
+            recorded: recorded.map(|recorded| (recorded, recorded.n_values)),
+            seed: spec.seed,
+        }
+    }
+
+    /// Returns the identity of the set of touches. It does not depend on the pitch and the sizes of the arrays, so that an axis of arrays may be extended. Files
+    /// of a recording are identified by their contents.
+    pub fn content(&self, touched: &dyn TouchSet) -> String {
+        let content = touched.recorded_content();
+        let objects = ObjectInputs {
+            pitch: None,
+            sizes: None,
+            ..self.objects
+        };
+        let recorded = self.recorded.filter(|_| content.is_none());
+        let touches = TouchInputs {
+            objects,
+            recorded,
+            ..*self
+        };
+        identity(&(touches, content.map(|content| &content.identity)))
+    }
 }
 
 #[cfg(test)]

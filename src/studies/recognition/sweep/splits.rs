@@ -6,8 +6,8 @@ use crate::learning::data::split::{
     Side, given_hold_out, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
 };
 use crate::random::Seed;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::pose_split::PoseSplit;
+use crate::studies::recognition::plan::Plan;
+use crate::studies::recognition::spec::PoseSplit;
 use crate::world::Touch;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
