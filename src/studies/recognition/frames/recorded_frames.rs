@@ -6,7 +6,6 @@
 use crate::contact::saturation_limit;
 use crate::engine::progress::Progress;
 use crate::error::{Error, Result};
-use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, group_keys, note_spellings, read_class_values, read_group_values,
     read_rows,
@@ -20,7 +19,7 @@ use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
 use crate::studies::recognition::frames::{
     Frames, RecordedContent, Samples, SensorFrames, SensorScale, TouchSet, TouchToRead,
-    check_alike, joined_readings, one_each, spread_samples, touches_to_read,
+    check_alike, joined_readings, numbers_of, one_each, spread_samples, touch_of, touches_to_read,
 };
 use crate::studies::recognition::plan::{MeasurementGroup, Plan, TaxelArray};
 use crate::studies::recognition::spec::{PreviousTouch, RecordedSpec};
@@ -225,7 +224,7 @@ impl RecordedSpec {
                 continue;
             };
             let own = read_class_values(path, name, n)?;
-            one_each((path, name), (own.len(), n), self.first_frames())?;
+            one_each((path, name), (own.len(), n), touch_of(self.first_frames()))?;
             if let (Some(first), Some(other)) = (own.first(), values.first())
                 && first.is_text() != other.is_text()
             {
@@ -311,7 +310,11 @@ impl RecordedSpec {
                 None => Ok(None),
                 Some(path) => {
                     let groups = read_group_values(path, name, n)?;
-                    one_each((path, name), (groups.len(), n), self.first_frames())?;
+                    one_each(
+                        (path, name),
+                        (groups.len(), n),
+                        touch_of(self.first_frames()),
+                    )?;
                     Ok(Some(groups))
                 }
             }
@@ -430,23 +433,17 @@ impl RecordedSpec {
     }
 
     fn read_depths(&self, n: usize) -> Result<Option<Vec<f64>>> {
-        let Some(path) = &self.depths else {
-            return Ok(None);
+        let read = |path: &PathBuf| {
+            let each = (n, touch_of(self.first_frames()));
+            let is_depth = |depth: f64| depth.is_finite() && depth > 0.0;
+            numbers_of(
+                (path, "depths"),
+                each,
+                is_depth,
+                "a positive number of metres",
+            )
         };
-        let depths =
-            FileArray::read_content(path, "depths", TableContent::Rows(n))?.into_numbers()?;
-        one_each((path, "depths"), (depths.len(), n), self.first_frames())?;
-        match depths
-            .iter()
-            .position(|depth| !(depth.is_finite() && *depth > 0.0))
-        {
-            None => Ok(Some(depths.into_iter().collect())),
-            Some(touch) => {
-                let place = format!("{}, position {touch}", path.display());
-                let given = depths.iter().nth(touch).copied().unwrap_or(f64::NAN);
-                Err(Error::input(place, given, "a positive number of metres"))
-            }
-        }
+        self.depths.as_ref().map(read).transpose()
     }
 }
 

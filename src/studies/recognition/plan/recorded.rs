@@ -57,10 +57,9 @@ impl Check<'_> {
             let allowed = "it alone: it is what the skin has read";
             return Err(self.error("recorded", given, allowed));
         }
-        if spec.recognition.group_by.is_some() {
-            let allowed = "no such key: recorded.groups says what stays together";
-            return Err(self.error("recognition.group_by", "given", allowed));
-        }
+        let learned = ("recognition", &spec.recognition);
+        let allowed = "no such key: recorded.groups says what stays together";
+        self.absent(learned, &["group_by"], allowed)?;
         self.table("recorded", recorded)?;
         // Zeros from a file are compared with the full scale when the frames are read.
         if let (Some(full_scale), ZeroSpec::One(zero)) = (recorded.full_scale, &recorded.zero)
@@ -72,30 +71,13 @@ impl Check<'_> {
         self.of_time(recorded, spec)?;
         let place = |error: Error| error.under(format!("{}, ", self.place));
         recorded.check_files().map_err(place)?;
-        let given_split = match recorded.has_test_set() {
-            true => Some("recorded.frames_test is the test set"),
-            false => recorded
-                .splits
-                .as_ref()
-                .map(|_| "recorded.splits has the split of each trial"),
-        };
-        if let Some(given_split) = given_split {
-            let recognition = &spec.recognition;
-            let given = [
-                ("recognition.folds", recognition.folds.is_some()),
-                (
-                    "recognition.test_fraction",
-                    recognition.test_fraction.is_some(),
-                ),
-                (
-                    "recorded.splits",
-                    recorded.has_test_set() && recorded.splits.is_some(),
-                ),
-            ];
-            if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-                let allowed = format!("no such key: {given_split}");
-                return Err(self.error(key, "given", allowed));
-            }
+        if recorded.has_test_set() {
+            let allowed = "no such key: recorded.frames_test is the test set";
+            self.absent(learned, &["folds", "test_fraction"], allowed)?;
+            self.absent(("recorded", recorded), &["splits"], allowed)?;
+        } else if recorded.splits.is_some() {
+            let allowed = "no such key: recorded.splits has the split of each trial";
+            self.absent(learned, &["folds", "test_fraction"], allowed)?;
         }
         let array = self.array_of(recorded, &spec.skin)?;
         if !array.is_placed() {
@@ -162,14 +144,8 @@ impl Check<'_> {
         if skin.layout.unwrap_or_default() != ArrayLayout::Grid {
             return self.array_of_layout(&sensors, skin);
         }
-        let given = [
-            ("skin.taxels", skin.taxels.is_some()),
-            ("skin.size_mm", skin.size_mm.is_some()),
-        ];
-        if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-            let allowed = "no such key: rows and columns are those of the recorded frames";
-            return Err(self.error(key, "given", allowed));
-        }
+        let allowed = "no such key: rows and columns are those of the recorded frames";
+        self.absent(("skin", skin), &["taxels", "size_mm"], allowed)?;
         let pitches = skin.pitch_mm.values();
         let [pitch_mm] = pitches[..] else {
             let given = format!("{} pitches", pitches.len());

@@ -56,15 +56,6 @@ impl Check<'_> {
         self.of_sensed(spec)?;
         let touches = &spec.touches;
         let slides = touches.slide_mm.is_some_and(|slide| slide > 0.0);
-        if let Some(degrees) = touches.slide_deg
-            && degrees != 0.0
-            && !slides
-            && !spec.axes.has("touches.slide_mm")
-        {
-            let given = format!("{degrees}, but touches do not slide");
-            let allowed = "touches.slide_mm above 0 beside it, or no such key";
-            return Err(self.error("touches.slide_deg", given, allowed));
-        }
         let reads_shear = spec.skin.sensed == Some(SensedSpec::Shear);
         if touches.speed_mm_per_s > 0.0 && (slides || reads_shear) {
             let allowed = "0 where skin.sensed is shear, and where touches slide";
@@ -79,18 +70,6 @@ impl Check<'_> {
         if spec.human_touch.is_some() && sensed != SensedSpec::Deflection {
             let allowed = "no such key in a study of human touches";
             return Err(self.error("skin.sensed", "given", allowed));
-        }
-        let of_shear = [
-            ("skin.friction", skin.friction),
-            ("skin.shear_stiffness_n_per_m", skin.shear_stiffness_n_per_m),
-        ];
-        let may_read_shear = sensed == SensedSpec::Shear || spec.axes.has("skin.sensed");
-        for (key, value) in of_shear {
-            if let (Some(value), false) = (value, may_read_shear) {
-                let given = format!("{value}, but the skin reads no shear");
-                let allowed = "skin.sensed = \"shear\" beside it, or no such key";
-                return Err(self.error(key, given, allowed));
-            }
         }
         if sensed != SensedSpec::Deflection && spec.signal.steps.contains(&StepSpec::Force) {
             let allowed = "no such step where skin.sensed is a force from the first step on";

@@ -6,6 +6,7 @@ use crate::inputs::keys::{AxisPlace, KeyAbout, find};
 use crate::inputs::params::keys_of;
 use crate::inputs::range::Range::{self, Between};
 use crate::inputs::toml_value::is_at;
+use crate::studies::recognition::plan::ONE_OF;
 use crate::studies::recognition::spec::StudySpec;
 use serde::Serialize;
 
@@ -65,7 +66,34 @@ pub(crate) fn key(path: &str) -> &'static KeyAbout {
 impl Check<'_> {
     /// Checks the keys of a table of a recognition study; returns the keys that the table contains.
     pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
-        self.keys(name, table, recognition_keys())
+        let given = self.keys(name, table, recognition_keys())?;
+        let inner = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
+        for [first, second] in ONE_OF {
+            if let (Some(first), Some(second)) = (inner(first), inner(second))
+                && given.contains_key(first)
+                && given.contains_key(second)
+            {
+                let both = format!("both {first} and {second}");
+                return Err(self.error(name, both, "one of them"));
+            }
+        }
+        Ok(given)
+    }
+
+    /// Checks that none of the named keys of a table is given, unless its value has the effect of the absent key.
+    pub fn absent(
+        &self,
+        (name, table): (&str, &impl Serialize),
+        keys: &[&str],
+        allowed: &str,
+    ) -> Result<()> {
+        let table = toml::Table::try_from(table).expect("every field of a study has a TOML form");
+        let given = keys.iter().find_map(|own| {
+            let path = format!("{name}.{own}");
+            let value = table.get(*own)?;
+            (!key(&path).is_usual(value)).then_some(path)
+        });
+        given.map_or(Ok(()), |path| Err(self.error(&path, "given", allowed)))
     }
 
     /// Checks and returns the value of a numeric key of recognition studies.

@@ -4,9 +4,6 @@ use crate::error::{Error, Result};
 use crate::files::file_path;
 use crate::inputs::params::variants;
 use crate::studies::recognition::spec::RecordedSpec;
-use serde::de::{IntoDeserializer, Visitor};
-use serde::{Deserialize, Deserializer};
-use std::fmt;
 use std::path::PathBuf;
 
 /// Defines the specification of a sensor: the given keys, followed by the keys that `[recorded]` and `[[recorded.sensors]]` share. The method
@@ -301,10 +298,12 @@ impl RecordedSpec {
 
 variants! {
     /// Readings of untouched taxels, written as `zero = 100.0` or `zero = "zero.npy"`.
-    pub untagged enum ZeroSpec {
+    #[serde(expecting = "a number, or the path of a file with a number for each taxel")]
+    pub untagged enum ZeroSpec, Deserialize {
         /// Common reading of all untouched taxels.
         One(f64),
         /// File with one reading for each taxel: an array with the taxel axes of `frames`, or a list in row-major order.
+        #[serde(deserialize_with = "file_path")]
         Each(PathBuf),
     }
 }
@@ -330,48 +329,5 @@ impl ZeroSpec {
 impl Default for ZeroSpec {
     fn default() -> Self {
         Self::One(0.0)
-    }
-}
-
-impl<'de> Deserialize<'de> for ZeroSpec {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        /// Visitor that deserialises a `zero` key: either a number or a path.
-        struct NumberOrPath;
-        impl Visitor<'_> for NumberOrPath {
-            type Value = ZeroSpec;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                formatter.write_str("a number, or the path of a file with a number for each taxel")
-            }
-
-            fn visit_f64<E: serde::de::Error>(
-                self,
-                number: f64,
-            ) -> std::result::Result<ZeroSpec, E> {
-                Ok(ZeroSpec::One(number))
-            }
-
-            fn visit_i64<E: serde::de::Error>(
-                self,
-                number: i64,
-            ) -> std::result::Result<ZeroSpec, E> {
-                Ok(ZeroSpec::One(number as f64))
-            }
-
-            fn visit_u64<E: serde::de::Error>(
-                self,
-                number: u64,
-            ) -> std::result::Result<ZeroSpec, E> {
-                Ok(ZeroSpec::One(number as f64))
-            }
-
-            fn visit_str<E: serde::de::Error>(
-                self,
-                path: &str,
-            ) -> std::result::Result<ZeroSpec, E> {
-                file_path(path.into_deserializer()).map(ZeroSpec::Each)
-            }
-        }
-        deserializer.deserialize_any(NumberOrPath)
     }
 }

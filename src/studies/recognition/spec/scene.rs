@@ -26,11 +26,11 @@ params! {
         taxels: Option<Axis<usize>> => SIDE, Choice, Table, scale: Linear;
         /// Layout of the taxels: `grid` (default), `foveated` (closer in the middle, farther apart at the edge), `hexagonal`, `disc`, `cylinder` or `cap`. All
         /// layouts have the same area and about the same number of taxels.
-        layout: Option<ArrayLayout> => Any, Choice, Axes;
+        layout: Option<ArrayLayout> => Any, Choice, Axes, usual: || "grid".into();
         /// Radius of curvature of the layouts `cylinder` and `cap`, from the axis or centre to the rest centres of the taxels, mm, positive.
         curvature_radius_mm: Option<f64> => Positive, Choice, Axes;
         /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and two forces across it).
-        sensed: Option<SensedSpec> => Any, Choice, Axes, title: "sensed quantity";
+        sensed: Option<SensedSpec> => Any, Choice, Axes, title: "sensed quantity", usual: || "deflection".into();
         /// Friction coefficient μ ≥ 0 between taxels and object, with `sensed = "shear"`. Friction acts only if taxels move along the object, in a slide or on a
         /// curved layout. The taxels of a flat array that is pressed straight on do not slip. Default: 0.
         friction: Option<f64> => NotNegative, Condition, Axes;
@@ -67,9 +67,9 @@ params! {
         /// Travel of the patch past first contact, mm, positive. Beyond the stroke, taxels stay saturated.
         depth_mm: SpreadSpec = SpreadSpec::List(Vec::new()) => Positive, Choice, Axes;
         /// Distance that the pressed patch slides along the object, mm, at least 0. Default: no slide.
-        slide_mm: Option<f64> => SLIDE, Choice, Axes;
+        slide_mm: Option<f64> => SLIDE, Choice, Axes, usual: || 0.0.into();
         /// Direction of the slide, degrees from the patch's x axis towards its y axis; used with `slide_mm`. Default: 0.
-        slide_deg: Option<f64> => Finite, Choice, Axes;
+        slide_deg: Option<f64> => Finite, Choice, Axes, usual: || 0.0.into();
         /// Axis: number F of frames per touch, at least 1. Default: 1. The frames are read at the depths d/F, 2d/F, …, d, where d is the depth of the touch; each
         /// has its own noise. The measurements of all frames are the features of the touch.
         frames: Axis<usize> = Axis::One(1) => Count(1, MAX_FRAMES), Choice, Table, title: "frames a touch", scale: Log, gives_way: 11;

@@ -104,7 +104,7 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
         at_most("touches_per_decision", k as f64, fewest_tested, what)?;
     }
     let least = train_touches.iter().min().copied().unwrap_or(0);
-    let chooses = recognition.c_grid.is_some() || recognition.gamma_grid.is_some();
+    let chooses = recognition.is_open();
     if chooses || recognition.is_informed() {
         let cv_touches = recognition.cv_touches.filter(|_| chooses);
         let of_folds = least.min(cv_touches.unwrap_or(least));
