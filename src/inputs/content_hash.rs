@@ -46,17 +46,23 @@ impl<T> Serialize for Hashed<T> {
 
 /// Returns the SHA-256 hash of bytes or a text, as 64 hexadecimal digits.
 pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
-    let digits = Sha256::digest(bytes);
-    digits.iter().map(|byte| format!("{byte:02x}")).collect()
+    let digits = Sha256::digest(bytes).into_iter();
+    let digits = digits.flat_map(|byte| [byte >> 4, byte & 0xf]);
+    let digits = digits.map(|digit| char::from_digit(digit.into(), 16));
+    digits.map(|digit| digit.expect("a half of a byte")).collect()
 }
 
 /// Number of hexadecimal digits of an identity. With fewer digits, two inputs may get equal identities.
 const IDENTITY_DIGITS: usize = 24;
 
-/// Returns the identity of inputs: the hash of their canonical bytes (JSON). Equal inputs have equal identities, and different inputs have different ones.
+/// Returns the canonical bytes (JSON) of inputs, which are equal exactly if the inputs are equal.
+pub(crate) fn canonical(inputs: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec(inputs).expect("inputs are plain values")
+}
+
+/// Returns the identity of inputs: the hash of their canonical bytes. Equal inputs have equal identities, and different inputs have different ones.
 pub fn identity(inputs: &impl Serialize) -> String {
-    let bytes = serde_json::to_vec(inputs).expect("inputs are plain values");
-    short_hash(bytes, IDENTITY_DIGITS)
+    short_hash(canonical(inputs), IDENTITY_DIGITS)
 }
 
 /// Returns the first `n_digits` hexadecimal digits of the SHA-256 hash of a text. If `n_digits` is small, two texts may have equal hashes.

@@ -16,24 +16,17 @@
 //! ([`ReadFrames`]) include all of these steps. These frames are in metres or, with the step `force`, in newtons; only `frames.npy` differs. With `skin.sensed
 //! = "shear"` a configuration reads three forces: `frames.npy` then has 3 × ny × nx newtons per frame, and there is no `shear.npy`.
 
-use crate::engine::axis::Axis;
-use crate::engine::progress::Progress;
-use crate::error::Result;
 use crate::files::{CsvFile, write_bytes};
 use crate::inputs::npy::{NpyFile, write_integers};
-use crate::inputs::units::millimetres;
 use crate::objects::Object;
-use crate::random::Seed;
-use crate::sensing::Ensemble;
+use crate::studies::prelude::*;
 use crate::studies::recognition::exports::find;
 use crate::studies::recognition::frames::{ArrayPress, ArrayWorkspace, HumanTouches, TouchSet};
-use crate::studies::recognition::plan::{MeasurementGroup, Plan, Sensed, TaxelArray, as_written};
-use crate::studies::recognition::spec::{
-    HumanTouchSpec, PreviousTouch, RecordedSpec, SkinSpec, StepSpec,
-};
+use crate::studies::recognition::plan::{MeasurementGroup, Sensed, as_written};
+use crate::studies::recognition::spec::{HumanTouchSpec, PreviousTouch};
 use crate::studies::recognition::sweep::{StudyPart, TrainingRows};
 use crate::studies::recognition::touches::touch_stream;
-use crate::world::{ArrayLayout, RestPose, Touch, TouchSource};
+use crate::world::{ArrayLayout, RestPose, TouchSource};
 use ndarray::Array2;
 use rayon::prelude::*;
 use serde::Serialize;

@@ -3,17 +3,14 @@
 use crate::contact::{
     Approach, Contact, FrictionState, Workspace, press_to_depth, saturation_limit,
 };
-use crate::engine::progress::{Progress, Silent};
-use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::random::Seed;
+use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     Frames, Samples, TouchSet, TouchToRead, sample_frames, touches_to_read,
 };
-use crate::studies::recognition::plan::{KeepTogether, MeasurementGroup, Plan, Sensed, TaxelArray};
-use crate::studies::recognition::touches::TouchedObject;
-use crate::world::{Shears, Touch};
+use crate::studies::recognition::plan::{KeepTogether, MeasurementGroup, Sensed};
+use crate::world::Shears;
 use bubbletouch_sim::frame_coding::round_to_single;
 use glam::{DVec2, DVec3};
 use ndarray::{Array1, ArrayViewMut2};

@@ -4,25 +4,22 @@
 //! so they have the same effect as on a simulated skin. A full scale below the zero belongs to readings that fall under pressure. Readings of tangential forces are in newtons. The readings of several sensors are joined to one frame.
 
 use crate::contact::saturation_limit;
-use crate::engine::progress::Progress;
-use crate::error::{Error, Result};
+use crate::inputs::arrays::is_member;
 use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, group_keys, note_spellings, read_class_values, read_group_values,
     read_rows,
 };
-use crate::inputs::arrays::{TableContent, is_member};
-use crate::inputs::content_hash::identity;
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
-use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
+use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     Frames, RecordedContent, Samples, SensorFrames, SensorScale, TouchSet, TouchToRead,
     check_alike, joined_readings, numbers_of, one_each, spread_samples, touch_of, touches_to_read,
 };
-use crate::studies::recognition::plan::{MeasurementGroup, Plan, TaxelArray};
-use crate::studies::recognition::spec::{PreviousTouch, RecordedSpec};
+use crate::studies::recognition::plan::MeasurementGroup;
+use crate::studies::recognition::spec::PreviousTouch;
 use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2};
 use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
@@ -368,17 +365,18 @@ impl RecordedSpec {
             let found: HashSet<usize> = order.iter().zip(sides).filter_map(is_on).collect();
             (0..names.len()).find(|label| !found.contains(label))
         };
-        if let Some(label) = without(Side::Train) {
-            let given = format!("{}, of which no touch trains", names[label]);
-            let allowed = "classes of recorded.labels";
-            return Err(Error::input("key recorded.labels_test", given, allowed));
-        }
-        if let Some(label) = without(Side::Test) {
-            let given = format!("no touch of {}", names[label]);
-            let allowed = "touches of each class among those that train and in the test set";
-            return Err(Error::input("key recorded.labels_test", given, allowed));
-        }
-        Ok(())
+        let (given, allowed) = match (without(Side::Train), without(Side::Test)) {
+            (Some(label), _) => (
+                format!("{}, of which no touch trains", names[label]),
+                "classes of recorded.labels",
+            ),
+            (None, Some(label)) => (
+                format!("no touch of {}", names[label]),
+                "touches of each class among those that train and in the test set",
+            ),
+            (None, None) => return Ok(()),
+        };
+        Err(Error::input("key recorded.labels_test", given, allowed))
     }
 
     /// Returns the side of each touch in each split of the file `splits`; the touches are in the order `order`. The list is empty without the file.

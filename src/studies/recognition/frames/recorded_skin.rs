@@ -1,9 +1,8 @@
 //! Recorded frames of a skin, with the additional data that calibration needs.
 
 use crate::calibration::RecordedSkin;
-use crate::error::{Error, Result};
+use crate::studies::prelude::*;
 use crate::studies::recognition::frames::numbers_of;
-use crate::studies::recognition::spec::RecordedSpec;
 use bubbletouch_sim::statistics::quantile::quantile;
 use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;

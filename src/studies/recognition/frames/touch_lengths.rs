@@ -1,11 +1,10 @@
 //! Recorded touches of unequal length: their numbers of frames, and resampling to the number of frames of the study.
 
-use crate::error::{Error, Result};
 use crate::inputs::arrays::axis_order::FrameShape;
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::{TableContent, is_member};
 use crate::signal::{resample, resampled_instant};
-use crate::studies::recognition::spec::RecordedSpec;
+use crate::studies::prelude::*;
 use ndarray::{Array2, s};
 use std::path::Path;
 

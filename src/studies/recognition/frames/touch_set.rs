@@ -1,14 +1,11 @@
 //! Common interface of sets of touches: pressed objects, human touches, or recorded frames.
 
-use crate::engine::progress::Progress;
-use crate::error::Result;
 use crate::learning::data::split::Side;
-use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
+use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{Frames, TouchToRead};
-use crate::studies::recognition::plan::{KeepTogether, MeasurementGroup, Plan, TaxelArray};
+use crate::studies::recognition::plan::{KeepTogether, MeasurementGroup};
 use crate::studies::recognition::touches::touch_labels;
-use crate::world::Touch;
 use bubbletouch_sim::frame_coding::most_bytes;
 use ndarray::Array1;
 use std::collections::BTreeMap;

@@ -1,10 +1,9 @@
 //! Image features: features of frame images that are estimated from measurements, also of tilted copies of training touches.
 
-use crate::error::Result;
-use crate::random::Seed;
-use crate::sensing::{Ensemble, ImageEstimate, ImagePrior, Projection, Readings};
+use crate::sensing::{ImageEstimate, ImagePrior, Projection, Readings};
+use crate::studies::prelude::*;
 use crate::studies::recognition::measurements::CopyInputs;
-use crate::studies::recognition::plan::{SensorImage, TaxelArray};
+use crate::studies::recognition::plan::SensorImage;
 use crate::studies::recognition::rows::{FeaturesOfImages, join_values};
 use crate::studies::recognition::sweep::{LEARNED_FRAMES, WITH_COPIES};
 use bubbletouch_sim::features::{Cut, ImageFeatures, Workspace, tilt_frame};

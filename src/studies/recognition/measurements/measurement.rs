@@ -1,10 +1,8 @@
 //! Measurement of frames after the signal chain, for one signal condition, ensemble and trial.
 
-use crate::error::Result;
-use crate::inputs::sensor_errors::TestSensor;
-use crate::random::Seed;
-use crate::sensing::{Ensemble, Projection, Readings, TrainingFrames};
+use crate::sensing::{Projection, Readings, TrainingFrames};
 use crate::signal::SignalWorkspace;
+use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     Frames, ReadSkin, Reading, TouchSet, TouchToRead, measure,
 };

@@ -4,13 +4,10 @@
 //! bytes share their measurements.
 
 use crate::inputs::content_hash::Hashed;
-use crate::inputs::sensor_errors::TestSensor;
-use crate::random::Seed;
-use crate::sensing::{Ensemble, Selection};
 use crate::signal::{Noise, NoiseUnit, SignalStep};
-use crate::studies::recognition::plan::{Condition, MeasurementGroup, Plan, TaxelArray};
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::{Condition, MeasurementGroup};
 use crate::studies::recognition::rows::{Configuration, FeaturesOfImages};
-use crate::studies::recognition::spec::StepSpec;
 use crate::studies::recognition::sweep::{Sweep, TrainingRows};
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;

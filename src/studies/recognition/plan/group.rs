@@ -1,8 +1,7 @@
 //! Groups of configurations that share their measurements, and families of configurations that share their features.
 
-use crate::inputs::sensor_errors::TestSensor;
-use crate::sensing::{Ensemble, Selection};
-use crate::studies::recognition::plan::{Condition, Plan};
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::Condition;
 use crate::studies::recognition::rows::{Configuration, FeaturesOfImages};
 
 /// Group of configurations whose results are computed from the same measurements of touches.

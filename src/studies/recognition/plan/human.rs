@@ -1,11 +1,8 @@
 //! Checks of `[human_touch]`, and conversion of its keys to SI units.
 
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::units::{MAX_FRAMES, MM, millimetres};
-use crate::studies::recognition::plan::TaxelArray;
-use crate::studies::recognition::spec::{HumanTouchSpec, StudySpec, TouchesSpec};
+use crate::inputs::units::MAX_FRAMES;
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::HumanTouchSpec;
 use crate::world::{Layout, Patch, Taxels};
 
 impl HumanTouchSpec {

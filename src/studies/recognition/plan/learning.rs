@@ -1,18 +1,14 @@
 //! Checks of `[sensing]` and `[recognition]`: compression, features, classifiers and splits.
 
-use crate::engine::axis::Axis;
-use crate::error::{Error, Result};
-use crate::inputs::check::Check;
-use crate::inputs::units::MM;
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::classifiers::{ClassifierKind, parameters};
+use crate::learning::classifiers::parameters;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
-use crate::sensing::{Ensemble, Selection};
-use crate::studies::recognition::plan::{KeepTogether, TaxelArray};
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::KeepTogether;
 use crate::studies::recognition::spec::{
     DEFAULT_C, DEFAULT_CV_FOLDS, DEFAULT_TEST_FRACTION, DEFAULT_TILT_DEG, PoseSplit,
-    RecognitionSpec, SensingSpec, StudySpec, key,
+    RecognitionSpec, SensingSpec, key,
 };
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;

@@ -3,10 +3,10 @@
 //! Sensors that are read together are separate skins. In the patch, they are so far apart that no taxel is a neighbour of a taxel of another sensor. In
 //! pictures, they are side by side.
 
-use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::inputs::content_hash::Hashed;
-use crate::inputs::units::{MAX_SIDE, millimetres};
+use crate::inputs::units::MAX_SIDE;
+use crate::studies::prelude::*;
 use crate::world::{Grid, Layout, Neighbours, Patch, nearest_distances};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
@@ -271,17 +271,12 @@ impl ListedTaxels {
     /// Returns the image of each sensor.
     pub fn images(&self) -> Vec<SensorImage> {
         let image = |sensor: &ListedSensor| {
-            let ListedSensor {
-                places,
-                shape,
-                pitch,
-                ..
-            } = sensor;
+            let (shape, pitch) = (sensor.shape, sensor.pitch);
             let widest = (sensor.widest / pitch).max(1.0);
-            let chart = || Chart::with_gaps(places, (*pitch, widest), (*shape, *pitch));
+            let chart = || Chart::with_gaps(&sensor.places, (pitch, widest), (shape, pitch));
             SensorImage {
                 taxels: sensor.taxels.clone(),
-                shape: *shape,
+                shape,
                 chart: (!sensor.is_grid).then(chart),
             }
         };

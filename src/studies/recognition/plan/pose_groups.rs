@@ -7,9 +7,8 @@
 //! neighbours (single linkage). Touches of different groups are therefore at least the stated distance apart on some axis. Touches of different objects are
 //! never neighbours, because their labels differ.
 
-use crate::error::{Error, Result};
+use crate::studies::prelude::*;
 use crate::studies::recognition::spec::GroupSpec;
-use crate::world::{Touch, TouchAxis};
 use ndarray::Array1;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

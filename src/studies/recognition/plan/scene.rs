@@ -1,16 +1,11 @@
 //! Checks of `[objects]`, `[skin]` and `[touches]`.
 
-use crate::engine::axis::Axis;
-use crate::error::Result;
-use crate::inputs::check::{Check, MAX_VALUES};
-use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::units::{MAX_SIDE, MM};
+use crate::inputs::check::MAX_VALUES;
+use crate::inputs::units::MAX_SIDE;
 use crate::mesh::SizeLimits;
-use crate::studies::recognition::plan::TaxelArray;
-use crate::studies::recognition::spec::{
-    RangeSpec, SensedSpec, SkinSpec, SpreadSpec, StudySpec, TouchesSpec,
-};
-use crate::world::{ArrayLayout, Grid, Placement, Spread, Taxel, TouchAxis};
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::{RangeSpec, SpreadSpec};
+use crate::world::{Grid, Placement, Spread, Taxel};
 
 /// Returns the smallest pitch of all arrays, metres.
 fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
@@ -75,12 +70,8 @@ impl Check<'_> {
 
     /// Checks that a layout of taxels has all required keys and no unsupported keys.
     pub fn layout(&self, spec: &StudySpec) -> Result<()> {
-        let SkinSpec {
-            layout,
-            curvature_radius_mm: radius,
-            ..
-        } = spec.skin;
-        let layout = layout.unwrap_or_default();
+        let radius = spec.skin.curvature_radius_mm;
+        let layout = spec.skin.layout.unwrap_or_default();
         let (key, given, allowed) = match radius {
             None if layout.is_curved() => (
                 "skin.layout",

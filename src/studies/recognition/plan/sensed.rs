@@ -1,11 +1,6 @@
 //! Quantities that the taxels of an array measure: `skin.sensed` and `touches.slide_mm`, and the arrays with these settings.
 
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::units::MM;
-use crate::random::Seed;
-use crate::studies::recognition::plan::TaxelArray;
-use crate::studies::recognition::spec::{SensedSpec, SkinSpec, StepSpec, StudySpec, TouchesSpec};
+use crate::studies::prelude::*;
 use crate::world::Shear;
 use glam::DVec2;
 use serde::Serialize;

@@ -1,16 +1,10 @@
 //! Checks of `[signal]`, and the signal conditions that result from its axes.
 
 use crate::engine::axes::CombineSpec;
-use crate::engine::axis::Axis;
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::sensor_errors::{NOISES, Strengths, TestSensor};
-use crate::inputs::units::MM;
+use crate::inputs::sensor_errors::{NOISES, Strengths};
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
-use crate::studies::recognition::plan::Plan;
-use crate::studies::recognition::spec::{
-    SensedSpec, SignalAxis, SignalSpec, StepSpec, TouchesSpec,
-};
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::{SignalAxis, SignalSpec};
 use serde::Serialize;
 
 /// Signal condition: one strength of noise, smoothing and each sensor error, that is, one value for each axis of `[signal]`.

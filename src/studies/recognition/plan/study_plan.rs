@@ -1,16 +1,12 @@
 //! Plan of a recognition study: the keys of its [`StudySpec`], checked and converted to SI units.
 //!
-//! The checks are in `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. The checks also convert
+//! The checks are in `scene.rs` (arrays, taxels, placement), `sensed.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. The checks also convert
 //! millimetres, degrees and fractions into metres, radians and absolute values. Later stages use SI units only.
 
-use crate::engine::axes::AxisValues;
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::units::MM;
-use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
-use crate::studies::recognition::plan::{KeepTogether, TaxelArray};
-use crate::studies::recognition::spec::{RecordedSpec, SpreadSpec, StudySpec, TouchesSpec};
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::KeepTogether;
+use crate::studies::recognition::spec::SpreadSpec;
 use crate::world::Placement;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -166,8 +162,7 @@ impl Plan {
     /// Returns an upper bound of the number of configurations. The actual number is smaller if values of m are equal, or if several values of C are given for a
     /// classifier without C.
     pub fn n_configurations(&self) -> f64 {
-        let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
-        self.spec.signal.n_conditions() * lengths.product::<f64>()
+        self.spec.signal.n_conditions() * self.spec.n_combinations()
     }
 
     /// Returns the numbers m of measurements for an array and an ensemble. On a small array, different ratios may give equal m.

@@ -1,10 +1,7 @@
 //! Arrays of taxels that a study presses on objects.
 
-use crate::error::Result;
-use crate::inputs::units::millimetres;
-use crate::random::Seed;
-use crate::sensing::Ensemble;
 use crate::signal::{Chain, SignalStep};
+use crate::studies::prelude::*;
 use crate::studies::recognition::plan::{
     ListedTaxels, PlacedSensor, Sensed, SensorImage, of_channel,
 };
@@ -48,17 +45,8 @@ impl TaxelArray {
                 Patch::new(layout.words(), places, Taxels::Equal(taxel))?
             }
         };
-        Ok(Self {
-            grid,
-            taxel,
-            layout,
-            radius: if layout.is_curved() { radius } else { 0.0 },
-            sensed: Sensed::Deflection,
-            slide: DVec2::ZERO,
-            is_placed: true,
-            listed: None,
-            patch: Arc::new(patch),
-        })
+        let radius = if layout.is_curved() { radius } else { 0.0 };
+        Ok(Self::of_patch((layout, radius), (grid, taxel), patch))
     }
 
     /// Creates the array of sensors whose taxels have listed positions. `pitch` is the side of the square area per taxel, metres.
@@ -68,22 +56,32 @@ impl TaxelArray {
     pub fn listed(sensors: &[PlacedSensor], taxel: Taxel, pitch: f64) -> Result<Self> {
         let (listed, layout) = ListedTaxels::new(sensors)?;
         let side = (layout.n_taxels() as f64).sqrt().round() as usize;
-        let grid = Grid {
-            nx: side,
-            ny: side,
-            pitch,
-        };
+        let (nx, ny) = (side, side);
+        let patch = Patch::new("recorded", layout, Taxels::Equal(taxel))?;
+        let of_grid = (Grid { nx, ny, pitch }, taxel);
         Ok(Self {
+            listed: Some(Arc::new(listed)),
+            ..Self::of_patch((ArrayLayout::Grid, 0.0), of_grid, patch)
+        })
+    }
+
+    /// Returns the array of a patch that reads deflections and does not slide.
+    fn of_patch(
+        (layout, radius): (ArrayLayout, f64),
+        (grid, taxel): (Grid, Taxel),
+        patch: Patch,
+    ) -> Self {
+        Self {
             grid,
             taxel,
-            layout: ArrayLayout::Grid,
-            radius: 0.0,
+            layout,
+            radius,
             sensed: Sensed::Deflection,
             slide: DVec2::ZERO,
             is_placed: true,
-            patch: Arc::new(Patch::new("recorded", layout, Taxels::Equal(taxel))?),
-            listed: Some(Arc::new(listed)),
-        })
+            listed: None,
+            patch: Arc::new(patch),
+        }
     }
 
     /// Sets the quantity that the taxels read, and the distances that the pressed array slides along its x and y axes, metres.

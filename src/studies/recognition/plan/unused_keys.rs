@@ -1,16 +1,11 @@
 //! Keys without effect: each key that acts only together with other keys, and the checks that a given value acts.
 
 use crate::engine::axes::StudyAxes;
-use crate::engine::axis::Axis;
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::toml_value::{is_at, number, value_at};
+use crate::inputs::toml_value::{is_at, number, table_of, value_at};
 use crate::learning::data::temporal_features::TemporalFeatures;
-use crate::studies::recognition::plan::Plan;
-use crate::studies::recognition::spec::{
-    STIFFNESS, SensedSpec, SkinSpec, StepSpec, StudySpec, TouchesSpec, key,
-};
-use crate::world::{Spread, TouchAxis};
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::{STIFFNESS, key};
+use crate::world::Spread;
 use toml::Table;
 
 /// Keys whose values have an effect only together with other keys.
@@ -30,6 +25,13 @@ const DRAWN: &str = "no such key, or { uniform = [low, high] } of such a key of 
 
 /// Keys that may have no effect.
 const USES: [KeyUse; 19] = [
+    KeyUse {
+        keys: &["touches.slide_deg"],
+        has_effect: |plan| slides(&plan.spec),
+        beside: &["touches.slide_mm"],
+        reason: "touches do not slide",
+        allowed: "touches.slide_mm above 0 beside it, or no such key",
+    },
     KeyUse {
         keys: &["skin.curvature_radius_mm"],
         has_effect: |plan| plan.spec.skin.layout.unwrap_or_default().is_curved(),
@@ -71,13 +73,6 @@ const USES: [KeyUse; 19] = [
         beside: &["skin.sensed", "signal.steps"],
         reason: "no force is read",
         allowed: OF_FORCE,
-    },
-    KeyUse {
-        keys: &["touches.slide_deg"],
-        has_effect: |plan| slides(&plan.spec),
-        beside: &["touches.slide_mm"],
-        reason: "touches do not slide",
-        allowed: "touches.slide_mm above 0 beside it, or no such key",
     },
     KeyUse {
         keys: &["touches.speed_mm_per_s"],
@@ -258,11 +253,9 @@ impl Check<'_> {
     /// one in either. A key of `[test]` must have an effect in test touches.
     pub fn unused_keys(&self, plan: &Plan) -> Result<()> {
         self.sticking_shear(plan)?;
-        let table = |plan: &Plan| -> Table {
-            Table::try_from(&plan.spec).expect("every field of a study has a TOML form")
-        };
-        let (own, axes) = (table(plan), &plan.spec.axes);
-        let tested = plan.tested.as_deref().map(|tested| (tested, table(tested)));
+        let (own, axes) = (table_of(&plan.spec), &plan.spec.axes);
+        let tested = plan.tested.as_deref();
+        let tested = tested.map(|tested| (tested, table_of(&tested.spec)));
         let each = USES
             .iter()
             .flat_map(|key_use| key_use.keys.iter().map(move |key| (key_use, *key)));

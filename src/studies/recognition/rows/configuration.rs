@@ -142,6 +142,14 @@ impl Configuration {
         }
     }
 
+    /// Returns an error if the running program does not provide the features of the configuration.
+    pub(crate) fn check_features(&self) -> crate::error::Result<()> {
+        match self.features.foreign() {
+            Some(foreign) => foreign.n_values(self.measurements).map(drop),
+            None => Ok(()),
+        }
+    }
+
     /// Returns the image features of the configuration; `None` if its features are not computed from images.
     pub(crate) fn of_images(&self) -> Option<FeaturesOfImages> {
         self.rows().of_images()

@@ -1,13 +1,12 @@
 //! Classifiers and features in a study file: those of this program, and those from outside.
 
-use crate::engine::axis::Axis;
-use crate::error::{Error, Result};
 use crate::files::FilePath;
 use crate::inputs::content_hash::short_hash;
-use crate::inputs::params::{Described, named, params};
+use crate::inputs::params::{Described, named};
+use crate::learning::classifiers::classifier;
 use crate::learning::classifiers::foreign::Foreign;
-use crate::learning::classifiers::{ClassifierKind, classifier};
 use crate::learning::command_classifier::CommandClassifier;
+use crate::studies::prelude::*;
 use crate::studies::recognition::spec::RecognitionSpec;
 use bubbletouch_sim::features::{Features, ImageFeature, foreign};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};

@@ -1,13 +1,10 @@
 //! Descriptions of the keys of recognition studies; other kinds of studies use some of these keys.
 
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::keys::{AxisPlace, KeyAbout, find};
-use crate::inputs::params::keys_of;
+use crate::inputs::keys::{AxisPlace, find};
 use crate::inputs::range::Range::{self, Between};
-use crate::inputs::toml_value::is_at;
+use crate::inputs::toml_value::{is_at, table_of};
+use crate::studies::prelude::*;
 use crate::studies::recognition::plan::ONE_OF;
-use crate::studies::recognition::spec::StudySpec;
 use serde::Serialize;
 
 /// Maximum number of trials of a study, because the splits of all trials are kept in memory.
@@ -87,7 +84,7 @@ impl Check<'_> {
         keys: &[&str],
         allowed: &str,
     ) -> Result<()> {
-        let table = toml::Table::try_from(table).expect("every field of a study has a TOML form");
+        let table = table_of(table);
         let given = keys.iter().find_map(|own| {
             let path = format!("{name}.{own}");
             let value = table.get(*own)?;

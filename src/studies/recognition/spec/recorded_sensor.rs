@@ -1,9 +1,8 @@
 //! Sensors of a recording: the keys of one sensor, which are those of `[recorded]` and of each of `[[recorded.sensors]]`, and the sensors that a study uses.
 
-use crate::error::{Error, Result};
 use crate::files::file_path;
 use crate::inputs::params::variants;
-use crate::studies::recognition::spec::RecordedSpec;
+use crate::studies::prelude::*;
 use std::path::PathBuf;
 
 /// Defines the specification of a sensor: the given keys, followed by the keys that `[recorded]` and `[[recorded.sensors]]` share. The method
@@ -230,22 +229,6 @@ impl RecordedSpec {
                 }
                 None => Ok(()),
             };
-        }
-        let of_each = [
-            ("frames", !self.frames.as_os_str().is_empty()),
-            ("frames_test", self.frames_test.is_some()),
-            ("order", self.order.is_some()),
-            ("grid", self.grid.is_some()),
-            ("columns", self.columns.is_some()),
-            ("layout", self.layout.is_some()),
-            ("lengths", self.lengths.is_some()),
-            ("lengths_test", self.lengths_test.is_some()),
-            ("zero", self.zero != ZeroSpec::default()),
-            ("full_scale", self.full_scale.is_some()),
-        ];
-        if let Some((key, _)) = of_each.into_iter().find(|(_, is_given)| *is_given) {
-            let allowed = "this key in each of [[recorded.sensors]]";
-            return refuse(key, "given beside recorded.sensors".to_owned(), allowed);
         }
         if self.shear.is_some() || self.shear_test.is_some() || self.n_values > 1 {
             let allowed = "one value for each taxel: no shear and no skin.sensed = \"shear\"";

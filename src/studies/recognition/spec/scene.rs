@@ -1,10 +1,11 @@
 //! Specification of the touched scene: the tables `[objects]`, `[skin]` and `[touches]`, and `[human_touch]`, which replaces `[objects]` and `[touches]`.
 
-use crate::engine::axis::Axis;
-use crate::inputs::params::{empty_table, named, params, variants, words};
+use crate::inputs::params::{empty_table, named, variants};
 use crate::inputs::range::Range::{Any, Count, Finite, NotNegative, Positive};
 use crate::inputs::range::{SIDE, TOUCHES};
+use crate::inputs::toml_value::table_of;
 use crate::inputs::units::MAX_FRAMES;
+use crate::studies::prelude::*;
 use crate::studies::recognition::spec::SLIDE;
 use crate::table::Scale::{Linear, Log};
 use crate::world::{ArrayLayout, RestPoses, TouchKind};
@@ -82,7 +83,7 @@ impl TouchesSpec {
     /// Returns a text that names the keys of `[touches]` with several values, which users may mistake for an axis of the study. Returns `None` if there is no
     /// such key.
     pub fn mixed_values(&self) -> Option<String> {
-        let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
+        let table = table_of(self);
         let lists = table.iter().filter_map(|(key, spread)| {
             let is_list = spread.as_array().is_some_and(|values| values.len() > 1);
             (is_list && key != "frames").then(|| format!("{key} = {spread}"))

@@ -5,19 +5,15 @@
 
 use crate::engine::axes;
 use crate::engine::axes::StudyAxes;
-use crate::engine::axis::Axis;
-use crate::error::Result;
 use crate::inputs::keys::AxisPlace;
 use crate::inputs::memory::GIB;
-use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::params::{Described, ORDER, is_default, named, params, words};
+use crate::inputs::params::{Described, ORDER, is_default, named};
 use crate::inputs::range::Range::{Any, AtLeastOne, Count, Fraction, Part, Positive, Unchecked};
 use crate::inputs::range::{COUNT, MAX_COUNTED};
-use crate::inputs::toml_value::value_at;
-use crate::learning::classifiers::ClassifierKind;
+use crate::inputs::toml_value::{table_of, value_at};
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
-use crate::sensing::{Ensemble, Selection};
+use crate::studies::prelude::*;
 use crate::studies::recognition::rows::{Configuration, TrialScore};
 pub use crate::studies::recognition::spec::foreign::*;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;
@@ -329,17 +325,14 @@ impl StudySpec {
         self.human_touch.is_none() && self.recorded.is_none()
     }
 
-    /// Returns the number of values of each key that is an axis. Keys of the signal are excluded, because they may be combined differently.
-    pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
-        let keys = recognition_keys().iter();
-        let keys = keys.filter(|key| key.axis == AxisPlace::Table);
+    /// Returns the product of the numbers of values of all keys that are axes. Keys of the signal are excluded, because they may be combined differently.
+    pub(crate) fn n_combinations(&self) -> f64 {
+        let table = table_of(self);
         let is_condition = |path: &str| path.starts_with("signal.") && path != "signal.test_sensor";
-        let keys = keys.filter(move |key| !is_condition(key.path));
-        keys.map(move |key| {
-            let values = value_at(&table, key.path).and_then(toml::Value::as_array);
-            (key.path, values.map_or(1, Vec::len))
-        })
+        let keys = recognition_keys().iter();
+        let keys = keys.filter(|key| key.axis == AxisPlace::Table && !is_condition(key.path));
+        let lists = keys.filter_map(|key| value_at(&table, key.path)?.as_array());
+        lists.map(|values| values.len() as f64).product()
     }
 
     /// Returns a result-table column for each axis in `[axes]` that does not have a column yet.

@@ -1,23 +1,16 @@
 //! Recognition study as a kind of study.
 
-use crate::engine::work_items::{PendingItems, Scale, WorkItem};
-use crate::error::{Error, Result};
-use crate::inputs::content_hash::identity;
-use crate::inputs::keys::KeyAbout;
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::snapshots;
 use crate::report::study_content::{Beyond, NamedPicture};
+use crate::studies::prelude::*;
 use crate::studies::recognition::charts;
 use crate::studies::recognition::frames::Samples;
-use crate::studies::recognition::spec::{GroupSpec, PoseSplit, StudySpec, recognition_keys};
-use crate::studies::recognition::study::{
-    Family, RecognitionRows, RecognitionStudy, distinct, load_study,
-};
+use crate::studies::recognition::spec::{GroupSpec, PoseSplit, recognition_keys};
+use crate::studies::recognition::study::{RecognitionRows, RecognitionStudy, distinct, load_study};
 use crate::studies::recognition::sweep::StudyPart;
 use crate::studies::recognition::training::FamilyInputs;
-use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Study, TableFiles, settings_words};
-use crate::table::{ChartSpec, Table};
+use crate::studies::study::settings_words;
 use std::collections::HashSet;
 
 /// Names of the tables and columns that contain the intervals of accuracies.
@@ -127,8 +120,13 @@ impl Study for RecognitionStudy {
             let trials: Vec<String> = self.parts().iter().map(of_part).collect();
             for (family, inputs) in self.families.iter().zip(&families) {
                 let group = trial * self.groups.len() + family.group;
-                let inputs = (inputs, &trials[self.groups[family.group].part]);
-                items.push(WorkItem::of(format!("trial {trial}"), group, &inputs));
+                let of_trial = &trials[self.groups[family.group].part];
+                items.push(WorkItem {
+                    name: format!("trial {trial}"),
+                    inputs: format!("{inputs} {of_trial}"),
+                    group,
+                    is_result: true,
+                });
             }
         }
         for (number, touches) in self.touch_sets.iter().enumerate() {
@@ -155,15 +153,11 @@ impl Study for RecognitionStudy {
         let touches = match number.checked_sub(self.touches_item(0)) {
             Some(touches) => touches,
             None => {
-                let Family {
-                    group,
-                    configurations,
-                    ..
-                } = &self.families[number % self.families.len()];
-                for (row, configuration) in rows.iter_mut().zip(configurations.clone()) {
-                    row.at = (*group, configuration);
+                let family = &self.families[number % self.families.len()];
+                for (row, configuration) in rows.iter_mut().zip(family.configurations.clone()) {
+                    row.at = (family.group, configuration);
                 }
-                self.groups[*group].touches
+                self.groups[family.group].touches
             }
         };
         for row in touch_rows {

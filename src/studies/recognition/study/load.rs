@@ -1,24 +1,16 @@
 //! Loading of a recognition study: its plans, objects and touches. All combinations of axis values that share objects or touches use one copy of them.
 
-use crate::engine::axes::AxisValues;
-use crate::error::{Error, Result};
 use crate::files::with_folder;
-use crate::inputs::content_hash::identity;
 use crate::inputs::memory::check_memory;
-use crate::inputs::object_files::load_objects;
-use crate::inputs::objects_spec::ObjectsSpec;
 use crate::learning::classifiers::foreign::Foreign;
 use crate::mesh::SizeLimits;
 use crate::note::note;
-use crate::random::Seed;
+use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     HumanTouches, RecordedFrames, TouchSet, note_shear_ripple,
 };
-use crate::studies::recognition::plan::Plan;
-use crate::studies::recognition::spec::{HumanTouchSpec, RecordedSpec, StudySpec};
+use crate::studies::recognition::spec::HumanTouchSpec;
 use crate::studies::recognition::study::{RecognitionStudy, recognition_scale};
-use crate::studies::recognition::touches::draw_touches;
-use crate::studies::source::Source;
 use crate::world::Placement;
 use serde::Serialize;
 use std::collections::HashMap;

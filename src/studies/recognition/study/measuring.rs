@@ -1,10 +1,8 @@
 //! Work items and their results: touches are simulated once per array, each group is measured once per trial, and each pending family is evaluated.
 
 use crate::engine::at_once::run_at_once;
-use crate::engine::progress::{Progress, Silent};
 use crate::engine::work_items::pending::PendingItems;
-use crate::error::{Error, Result};
-use crate::learning::classifiers::ClassifierKind;
+use crate::studies::prelude::*;
 use crate::studies::recognition::frames::Frames;
 use crate::studies::recognition::measurements::Measurements;
 use crate::studies::recognition::rows::Configuration;
@@ -362,17 +360,16 @@ impl Job<'_> {
 
 /// Returns the number and the names of a configuration whose classifier or features come from outside of this program; `None` for other configurations.
 fn of_foreign(configuration: &Configuration) -> Option<String> {
-    let Configuration {
-        configuration: number,
-        classifier,
-        features,
-        ..
-    } = configuration;
-    let kind = classifier.about().words;
-    let is_foreign =
-        matches!(classifier, ClassifierKind::Foreign(_)) || features.foreign().is_some();
-    let features = String::from(*features);
-    is_foreign.then(|| format!("configuration {number} ({kind}, {features})"))
+    let (classifier, features) = (configuration.classifier, configuration.features);
+    let is_foreign = matches!(classifier, ClassifierKind::Foreign(_));
+    let (number, kind) = (configuration.configuration, classifier.about().words);
+    let words = || {
+        format!(
+            "configuration {number} ({kind}, {})",
+            String::from(features)
+        )
+    };
+    (is_foreign || features.foreign().is_some()).then(words)
 }
 
 /// Returns an error if a configuration needs a classifier or features that the running program does not provide.
@@ -380,8 +377,5 @@ fn check_provided(configuration: &Configuration) -> Result<()> {
     if let ClassifierKind::Foreign(foreign) = configuration.classifier {
         foreign.check_provided()?;
     }
-    match configuration.features.foreign() {
-        Some(foreign) => Ok(foreign.n_values(configuration.measurements).map(drop)?),
-        None => Ok(()),
-    }
+    configuration.check_features()
 }

@@ -1,16 +1,10 @@
 //! Recognition study with its work items and result tables.
 
-use crate::engine::axes::AxisValues;
-use crate::engine::progress::Progress;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
-use crate::error::{Error, Result};
-use crate::inputs::content_hash::identity;
-use crate::inputs::object_files::objects_content;
-use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::units::millimetres;
+use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{Samples, TouchSet};
-use crate::studies::recognition::plan::{MeasurementGroup, Plan, TaxelArray};
+use crate::studies::recognition::plan::MeasurementGroup;
 use crate::studies::recognition::rows::{
     Configuration, Prediction, Predictions, StageTime, Tables,
 };
@@ -301,13 +295,9 @@ impl RecognitionStudy {
 
     /// Returns the configurations of a family, and the part of the study that contains them.
     pub(crate) fn family(&self, family: usize) -> (&StudyPart, &[Configuration]) {
-        let Family {
-            group,
-            configurations,
-            ..
-        } = &self.families[family];
-        let (part, group) = self.group(*group);
-        (part, &group.configurations[configurations.clone()])
+        let family = &self.families[family];
+        let (part, group) = self.group(family.group);
+        (part, &group.configurations[family.configurations.clone()])
     }
 
     /// Returns the number of the work item that computes a family of configurations in a trial.
@@ -329,11 +319,9 @@ impl RecognitionStudy {
 
     /// Returns the set of touches with this index, its array, and its number of frames per touch.
     pub(crate) fn on(&self, touches: usize) -> (&dyn TouchSet, &TaxelArray, usize) {
-        let Touches {
-            group, is_tested, ..
-        } = self.touch_sets[touches];
-        let (part, group) = self.group(group);
-        let (plan, touched) = match (&part.plan.tested, is_tested) {
+        let set = &self.touch_sets[touches];
+        let (part, group) = self.group(set.group);
+        let (plan, touched) = match (&part.plan.tested, set.is_tested) {
             (Some(tested), true) => (tested.as_ref(), part.tested.as_ref()),
             _ => (&part.plan, part.touched.as_ref()),
         };

@@ -8,17 +8,11 @@
 //!                  └─ fused touches × choice of the next touch (a configuration) ── decide
 //! ```
 
-use crate::engine::axes::AxisValues;
-use crate::engine::axis::Axis;
-use crate::error::{Error, Result};
 use crate::inputs::content_hash::{Hashed, bytes_of_counts, bytes_of_numbers};
-use crate::inputs::units::millimetres;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::evaluation::next_touch::Poses;
-use crate::random::Seed;
-use crate::sensing::Selection;
+use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{TouchSet, named_samples};
-use crate::studies::recognition::plan::{MeasurementGroup, Plan, skin};
+use crate::studies::recognition::plan::{MeasurementGroup, skin};
 use crate::studies::recognition::rows::Configuration;
 use crate::studies::recognition::sweep::{
     TrainingRows, draw_split, first_equal, learned_touches, train_touches,

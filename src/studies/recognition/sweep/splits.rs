@@ -1,14 +1,10 @@
 //! Splits into training and test touches for each trial, with checks that both sets have enough touches.
 
-use crate::engine::axis::Axis;
-use crate::error::{Error, Result};
 use crate::learning::data::split::{
     Side, given_hold_out, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
 };
-use crate::random::Seed;
-use crate::studies::recognition::plan::Plan;
+use crate::studies::prelude::*;
 use crate::studies::recognition::spec::PoseSplit;
-use crate::world::Touch;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::collections::{HashMap, HashSet};

@@ -3,14 +3,12 @@
 //! The method `Trial::evaluate` receives these inputs and no plan, so it cannot depend on any other value of a study. The identity of a work item consists of
 //! the canonical bytes of these inputs and of the inputs of its measurements.
 
-use crate::error::{Error, Result};
-use crate::inputs::content_hash::{Hashed, identity};
+use crate::inputs::content_hash::{Hashed, canonical};
 use crate::inputs::memory::GIB;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::evaluation::next_touch::{NextTouch, Poses};
-use crate::random::Seed;
-use crate::studies::recognition::plan::{MeasurementGroup, Plan};
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::MeasurementGroup;
 use crate::studies::recognition::rows::{Configuration, RowInputs};
 use crate::studies::recognition::spec::{Metric, RecognitionSpec};
 use crate::studies::recognition::sweep::{Sweep, TrainingRows};
@@ -230,7 +228,7 @@ impl Sweep {
             let inputs = FamilyInputs::new(plan, self, family);
             let n_per_touch = group.n_readings(plan) + inputs.rows.n_copies;
             let needed = (n_per_touch, &inputs.training_rows, &inputs.training);
-            if checked.insert(identity(&needed)) {
+            if checked.insert(canonical(&needed)) {
                 for number in 0..self.splits.len() {
                     self.trial(plan, number)?.check(&inputs, n_per_touch)?;
                 }
@@ -269,4 +267,36 @@ impl Sweep {
 /// Returns the maximum memory for the kernel values of a solver, bytes; the default of `gib` is 2 GiB.
 pub fn solver_memory(gib: Option<f64>) -> usize {
     gib.map_or(DEFAULT_MEMORY_BYTES, |gib| (gib * GIB) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inputs::sensor_errors::Strengths;
+    use crate::learning::classifiers::foreign::Foreign;
+    use bubbletouch_sim::features::{Features, foreign};
+
+    #[test]
+    fn another_version_is_another_input_and_a_strength_of_zero_is_none() {
+        let own = |version| ClassifierKind::Foreign(Foreign::new("own_kind", version).unwrap());
+        let classifier = |version| identity(&Classifier::new(own(version)));
+        assert_eq!(classifier("1"), classifier("1"));
+        assert_ne!(classifier("1"), classifier("2"));
+        let rows = |version| {
+            let own = foreign::Foreign::new("own_features", version).unwrap();
+            identity(&RowInputs {
+                image_shapes: vec![(4, 4)],
+                measurements: 4,
+                frames: 1,
+                temporal_features: None,
+                features: Features::Foreign(own),
+                depth_window_full_scale: None,
+                n_copies: 0,
+            })
+        };
+        assert_ne!(rows("1"), rows("2"));
+        let strength = |value| identity(&Strengths::default().with("gain_std", value));
+        assert_eq!(strength(Some(0.0)), strength(None));
+        assert_ne!(strength(Some(0.1)), strength(None));
+    }
 }
