@@ -23,16 +23,16 @@ pub use crate::studies::recognition::exports::feature_files::{
 pub use crate::studies::recognition::exports::touch_files::{
     ReadFrames, TOUCH_FILES, touch_units, write_human_touches, write_touches,
 };
-pub use crate::studies::recognition::frames::array_press::{ArrayPress, ArrayWorkspace};
 pub use crate::studies::recognition::frames::frame_store::{FrameFacts, Frames};
 pub use crate::studies::recognition::frames::human_touches::{
     HumanTouches, RecordedTouch, record_touch,
 };
+pub use crate::studies::recognition::frames::pressed_objects::simulate_array;
+pub use crate::studies::recognition::frames::pressed_objects::{ArrayPress, ArrayWorkspace};
 pub use crate::studies::recognition::frames::recorded_frames::RecordedFrames;
 pub use crate::studies::recognition::frames::recorded_skin::{RecordedSkinFiles, UntouchedFrames};
 pub use crate::studies::recognition::frames::samples::sample_frames;
 pub use crate::studies::recognition::frames::shear_ripple::ShearRipple;
-pub use crate::studies::recognition::frames::simulation::simulate_array;
 pub use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 pub use crate::studies::recognition::plan::group::MeasurementGroup;
 pub use crate::studies::recognition::plan::pose_groups::KeepTogether;
@@ -45,7 +45,7 @@ pub use crate::studies::recognition::spec::recorded::RecordedSpec;
 pub use crate::studies::recognition::spec::signal::*;
 pub use crate::studies::recognition::spec::study::*;
 pub use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
-pub use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
+pub use crate::studies::recognition::touches::{TouchedObject, draw_touches};
 
 /// Row types of the result tables of recognition studies.
 pub mod table {

@@ -6,8 +6,9 @@ use crate::inputs::arrays::axis_order::FrameShape;
 use crate::inputs::arrays::{
     ClassLabels, KeyValue, group_keys, is_member, read_class_values, read_group_values,
 };
-use crate::studies::recognition::frames::recorded_skin::numbers_of;
-use crate::studies::recognition::frames::touch_lengths::{lengths_of_file, one_each};
+use crate::studies::recognition::frames::touch_lengths::{
+    lengths_of_file, numbers_of, one_each, touch_of,
+};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use ndarray::{Array2, Axis, concatenate, s};
 use serde::Deserialize;
@@ -202,7 +203,11 @@ impl AuditFiles {
                 }
                 if let Some(path) = path {
                     let values = read(path, &key(name), own.n_touches)?;
-                    one_each((path, &key(name)), (values.len(), own.n_touches), place)?;
+                    one_each(
+                        (path, &key(name)),
+                        (values.len(), own.n_touches),
+                        touch_of(place),
+                    )?;
                     list.get_or_insert_with(Vec::new).extend(values);
                 }
             }
@@ -215,13 +220,20 @@ impl AuditFiles {
         };
         if let Some(path) = beside(&self.sessions, "sessions") {
             let sessions = read_group_values(&path, "sessions", n)?;
-            one_each((&path, "sessions"), (sessions.len(), n), &spec.frames)?;
+            one_each(
+                (&path, "sessions"),
+                (sessions.len(), n),
+                touch_of(&spec.frames),
+            )?;
             lists[2] = Some(sessions);
         }
         let times = beside(&self.times, "times");
-        let times = times.map(|path| numbers_of(&path, "times", (n, "touch")));
+        let times = times.map(|path| {
+            let each = (n, "touch".to_owned());
+            numbers_of((&path, "times"), each, f64::is_finite, "finite numbers")
+        });
         Ok(Part {
-            times: times.transpose()?.map(|times| times.to_vec()),
+            times: times.transpose()?,
             spec,
             shape,
             frames,

@@ -3,6 +3,7 @@
 use crate::command::options::study_args::StudyArgs;
 use crate::command::terminal::output::output_folder;
 use bubbletouch::files::DataFolder;
+use bubbletouch::inputs::content_hash::identity;
 use bubbletouch::kinds::recognition::{load_study, read_plans, touch_content};
 use bubbletouch::report::progress;
 use bubbletouch::study::axes::AxisValues;
@@ -136,7 +137,7 @@ fn data_sets<'a>(plans: &'a [(AxisValues, Plan)], read: Option<&ReadFrames>) -> 
                 Some(_) => vec![1],
             };
             for n_frames in counts {
-                if known.insert((touch_content(plan), format!("{array:?}"), n_frames)) {
+                if known.insert((touch_content(plan), identity(array), n_frames)) {
                     let folder = String::new();
                     sets.push(DataSet {
                         plan,

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::memory::{check_memory, machine_memory};
 use crate::inputs::range::Range;
-use crate::inputs::toml_value::{number, value_at};
+use crate::inputs::toml_value::{number, table_of, value_at};
 use crate::inputs::units::{MM, millimetres};
 use bubbletouch_sim::text::numbers::short_number;
 use serde::Serialize;
@@ -35,7 +35,7 @@ impl Check<'_> {
         table: &impl Serialize,
         keys: &[KeyAbout],
     ) -> Result<toml::Table> {
-        let table = toml::Table::try_from(table).expect("every field of a study has a TOML form");
+        let table = table_of(table);
         let path = name.split('[').next().unwrap_or(name);
         for about in keys {
             let key = about.path.strip_prefix(path);

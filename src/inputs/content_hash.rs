@@ -1,13 +1,13 @@
 //! SHA-256 hashes that identify data by their content.
 
 use crate::mesh::TriangleMesh;
+use serde::{Serialize, Serializer};
 use sha2::{Digest, Sha256};
-use std::fmt;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
-/// Value with its hash; the hash replaces the value in cache keys. Its `Debug` form is the SHA-256 hash of its bytes, computed at first use.
-#[derive(Clone)]
+/// Value with its hash; the hash replaces the value in identities. Its serialised form is the SHA-256 hash of its bytes, computed at first use.
+#[derive(Clone, Debug)]
 pub struct Hashed<T> {
     value: T,
     bytes: fn(&T) -> Vec<u8>,
@@ -37,17 +37,34 @@ impl<T: PartialEq> PartialEq for Hashed<T> {
     }
 }
 
-impl<T> fmt::Debug for Hashed<T> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+impl<T> Serialize for Hashed<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let hash = || sha256((self.bytes)(&self.value));
-        f.write_str(self.hash.get_or_init(hash))
+        serializer.serialize_str(self.hash.get_or_init(hash))
     }
 }
 
 /// Returns the SHA-256 hash of bytes or a text, as 64 hexadecimal digits.
 pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
-    let digits = Sha256::digest(bytes);
-    digits.iter().map(|byte| format!("{byte:02x}")).collect()
+    let digits = Sha256::digest(bytes).into_iter();
+    let digits = digits.flat_map(|byte| [byte >> 4, byte & 0xf]);
+    let digits = digits.map(|digit| char::from_digit(digit.into(), 16));
+    digits
+        .map(|digit| digit.expect("a half of a byte"))
+        .collect()
+}
+
+/// Number of hexadecimal digits of an identity. With fewer digits, two inputs may get equal identities.
+const IDENTITY_DIGITS: usize = 24;
+
+/// Returns the canonical bytes (JSON) of inputs, which are equal exactly if the inputs are equal.
+pub(crate) fn canonical(inputs: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec(inputs).expect("inputs are plain values")
+}
+
+/// Returns the identity of inputs: the hash of their canonical bytes. Equal inputs have equal identities, and different inputs have different ones.
+pub fn identity(inputs: &impl Serialize) -> String {
+    short_hash(canonical(inputs), IDENTITY_DIGITS)
 }
 
 /// Returns the first `n_digits` hexadecimal digits of the SHA-256 hash of a text. If `n_digits` is small, two texts may have equal hashes.

@@ -1,7 +1,7 @@
 //! Descriptions of the keys of study files: range, axis, role, title, unit and scale of each key, from its declaration (the macro `params!`).
 
 use crate::inputs::range::Range;
-use crate::inputs::toml_value::is_at;
+use crate::inputs::toml_value::{has_only, is_at};
 use crate::table::{Column, Role, Scale};
 
 /// Description of a key of study files, which also defines the key's table column and axis.
@@ -15,6 +15,8 @@ pub struct KeyAbout {
     pub role: Role,
     /// Numbers that the key allows.
     pub range: Range,
+    /// Value that has the effect of the absent key; `None` if there is none, or if the range of a classifier's parameter states it.
+    pub usual: Option<fn() -> toml::Value>,
     /// Title of the key's column; `None` if it equals the name of the key.
     pub title: Option<&'static str>,
     /// Unit of the key's numbers; `None` if the name of the key ends with the unit.
@@ -75,6 +77,7 @@ impl KeyAbout {
             axis,
             role,
             range,
+            usual: None,
             title: None,
             unit: None,
             scale: None,
@@ -86,6 +89,24 @@ impl KeyAbout {
     /// Returns the name of the key: the last part of its path.
     pub fn name(&self) -> &'static str {
         self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+
+    /// Returns the value that has the effect of the absent key; `None` if there is none.
+    pub fn usual_value(&self) -> Option<toml::Value> {
+        match (self.usual, self.range) {
+            (Some(usual), _) => Some(usual()),
+            (None, Range::Declared(parameter)) if parameter.is_integer => {
+                Some((parameter.default_number()? as i64).into())
+            }
+            (None, Range::Declared(parameter)) => Some(parameter.default_number()?.into()),
+            _ => None,
+        }
+    }
+
+    /// Returns whether a value, or each value of a list, has the effect of the absent key.
+    pub(crate) fn is_usual(&self, value: &toml::Value) -> bool {
+        let usual = self.usual_value();
+        usual.is_some_and(|usual| has_only(value, &usual))
     }
 
     /// Returns the name of the key without its unit suffix, and the unit.

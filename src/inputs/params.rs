@@ -164,7 +164,7 @@ macro_rules! params {
 
             fn describe_keys(path: &str, keys: &mut Vec<$crate::inputs::keys::KeyAbout>) {
                 let _ = (path, &keys);
-                $($crate::params!(@about $type, path, stringify!($key), keys $(, $range $(, $role, $place $(, $field: $value)*)?)?);)*
+                $($crate::params!(@about $type, path, stringify!($key), keys, [$($default)?] $(, $range $(, $role, $place $(, $field: $value)*)?)?);)*
             }
         }
     };
@@ -172,12 +172,13 @@ macro_rules! params {
     (@default $type:ty, $default:expr) => { Some::<$type>($default) };
     (@range) => { None };
     (@range $range:expr) => { Some($range) };
-    (@about $type:ty, $path:ident, $name:expr, $keys:ident) => {
+    (@about $type:ty, $path:ident, $name:expr, $keys:ident, [$($default:expr)?]) => {
         <$type as $crate::inputs::params::Described>::describe_keys(&$crate::inputs::params::joined($path, $name), $keys);
     };
-    (@about $type:ty, $path:ident, $name:expr, $keys:ident, $range:expr) => {};
-    (@about $type:ty, $path:ident, $name:expr, $keys:ident, $range:expr, $role:ident, $place:ident $(, $field:ident: $value:expr)*) => {
+    (@about $type:ty, $path:ident, $name:expr, $keys:ident, [$($default:expr)?], $range:expr) => {};
+    (@about $type:ty, $path:ident, $name:expr, $keys:ident, [$($default:expr)?], $range:expr, $role:ident, $place:ident $(, $field:ident: $value:expr)*) => {
         $keys.push($crate::inputs::keys::KeyAbout {
+            $(usual: Some(|| toml::Value::try_from::<$type>($default).expect("a default has a TOML form")),)?
             $($field: Some($value),)*
             ..$crate::inputs::keys::KeyAbout::new(
                 $crate::inputs::params::joined($path, $name).leak(),
@@ -267,14 +268,14 @@ macro_rules! variants {
         $(#[doc = $about:literal])+
         $(#[serde(expecting = $expecting:literal)])?
         pub untagged enum $name:ident $(titled $title:literal)? $(, $derive:ident)* {
-            $($(#[doc = $doc:literal])+ $variant:ident($type:ty)),* $(,)?
+            $($(#[doc = $doc:literal])+ $(#[serde($($serde:tt)*)])? $variant:ident($type:ty)),* $(,)?
         }
     ) => {
         $(#[doc = $about])+
         #[derive(Clone, Debug, PartialEq, $crate::serde::Serialize $(, $crate::serde::$derive)*)]
         #[serde(untagged $(, expecting = $expecting)?)]
         pub enum $name {
-            $($(#[doc = $doc])+ $variant($type),)*
+            $($(#[doc = $doc])+ $(#[serde($($serde)*)])? $variant($type),)*
         }
 
         impl $crate::inputs::params::Described for $name {

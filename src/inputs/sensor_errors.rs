@@ -5,10 +5,10 @@ use crate::inputs::params::words;
 use crate::inputs::range::Range;
 use crate::random::Seed;
 use crate::signal::{
-    MAX_OWN_STRENGTHS, MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength,
+    MAX_OWN_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength,
 };
 use crate::table::{Column, Role, Scale};
-use std::fmt;
+use serde::{Serialize, Serializer};
 use std::sync::LazyLock;
 
 words! {
@@ -80,25 +80,20 @@ pub fn strength_columns() -> &'static [Column] {
 }
 
 /// Strengths of all sensor errors in the units of their keys; `None` for strengths that a study does not set.
-#[derive(Clone, Copy, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strengths {
     built_in: [Option<f64>; N_STRENGTHS],
     /// Strengths of the errors that the program has registered.
     own: [Option<f64>; MAX_OWN_STRENGTHS],
 }
 
-/// Writes the strengths of all built-in errors, and those of registered errors that are not zero. The names of work items contain this text, so an error that
-/// a study does not use changes no name.
-impl fmt::Debug for Strengths {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mut text = f.debug_tuple("Strengths");
-        text.field(&self.built_in);
-        for (error, strength, value) in self.present() {
-            if let SensorError::Own(own) = error {
-                text.field(&(own, strength.key, value));
-            }
-        }
-        text.finish()
+/// Writes the strengths that are not zero, by their keys: a strength that a study does not set equals zero.
+impl Serialize for Strengths {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(
+            self.present()
+                .map(|(_, strength, value)| (strength.key, value)),
+        )
     }
 }
 

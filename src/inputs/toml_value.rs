@@ -1,10 +1,20 @@
 //! Access to the values of a TOML table by key path.
 
+use serde::Serialize;
+
 /// Returns the TOML value at a dotted path of keys; `None` if the path does not exist.
 pub(crate) fn value_at<'t>(table: &'t toml::Table, path: &str) -> Option<&'t toml::Value> {
     let mut names = path.split('.');
     let first = table.get(names.next()?)?;
     names.try_fold(first, |value, name| value.get(name))
+}
+
+/// Returns the keys of a study or of one of its tables.
+///
+/// # Panics
+/// If a field has no TOML form.
+pub(crate) fn table_of(keys: &impl Serialize) -> toml::Table {
+    toml::Table::try_from(keys).expect("every field of a study has a TOML form")
 }
 
 /// Returns a TOML integer or float as a number; `None` for another value.

@@ -103,7 +103,7 @@ fn an_axis_with_more_values_leaves_the_names_of_what_was_done() {
         let pieces = laid_out(&with_axes(&axes)).work_items();
         pieces
             .into_iter()
-            .map(|piece| piece.name)
+            .map(|piece| (piece.name, piece.inputs))
             .collect::<Vec<_>>()
     };
     let (few, many) = (names("[1.0, 3.0]"), names("[0.5, 1.0, 3.0]"));

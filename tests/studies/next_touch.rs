@@ -165,7 +165,7 @@ fn a_choice_that_cannot_be_made_is_refused_by_its_key() {
     for (text, said) in [
         (
             with(ALL),
-            "key recognition.next_touch: \"farthest\" beside recognition.touches_per_decision = 1",
+            "key recognition.next_touch: \"farthest\", but one touch has no next",
         ),
         (
             with(&fused).replace("[touches]", "[touches]\nrest = \"stable\""),

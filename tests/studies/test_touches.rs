@@ -227,9 +227,10 @@ fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
 
 #[test]
 fn another_axis_or_value_leaves_the_names_of_what_was_done() {
-    let names = |axes: &str| -> Vec<String> {
+    let names = |axes: &str| -> Vec<(String, String)> {
         let pieces = study::laid_out(&base(axes)).unwrap().work_items();
-        pieces.into_iter().map(|piece| piece.name).collect()
+        let names = pieces.into_iter().map(|piece| (piece.name, piece.inputs));
+        names.collect()
     };
     let all = names(ONE_AT_A_TIME);
     let few = names(&ONE_AT_A_TIME.replace(", 40.0]", "]").replace(", 2.0]", "]"));

@@ -2,8 +2,10 @@
 
 use crate::command::says;
 use bubbletouch::Result;
+use bubbletouch::kinds::Study;
+use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::recognition::ClassifierKind;
-use bubbletouch::study::{Plan, RecognitionSpec, StudySpec};
+use bubbletouch::study::{Plan, StudySpec};
 use toml::{Table, Value};
 
 /// Returns a study with these lines of `[touches]`, `[signal]`, `[skin]`, `[recognition]`, and further tables.
@@ -33,7 +35,7 @@ fn other(key: &str, default: &Value) -> Value {
         ("multiclass", _) => "one_vs_rest".into(),
         ("solver", _) => "coordinate_descent".into(),
         ("scaling", _) => "none".into(),
-        ("features", _) => "centred".into(),
+        ("class_weight", _) => "balanced".into(),
         ("split", _) => "unseen_depth".into(),
         ("next_touch", _) => "farthest".into(),
         ("test_fraction" | "mislabelled_fraction", _) => 0.5.into(),
@@ -45,7 +47,13 @@ fn other(key: &str, default: &Value) -> Value {
 
 #[test]
 fn a_written_default_is_accepted_and_another_value_acts_or_is_refused_with_a_reason() {
-    let usual = RecognitionSpec::usual();
+    let keys = RecognitionStudy::keys().into_iter();
+    let keys = keys.filter(|key| !["features", "parameters"].contains(&key.name()));
+    let usual = keys.filter_map(|key| {
+        let name = key.path.strip_prefix("recognition.")?;
+        Some((name.to_owned(), key.usual_value()?))
+    });
+    let usual: Table = usual.collect();
     for key in [
         "c",
         "n_trees",

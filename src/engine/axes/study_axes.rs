@@ -3,6 +3,7 @@
 use super::study_axis::StudyAxis;
 use crate::error::{Error, Result};
 use crate::inputs::params::words;
+use crate::inputs::toml_value::table_of;
 use crate::table::Column;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -142,7 +143,7 @@ impl StudyAxes {
         place: &str,
         study: &S,
     ) -> Result<Vec<(Vec<Option<toml::Value>>, S)>> {
-        let base = toml::Table::try_from(study).expect("every field of a study has a TOML form");
+        let base = table_of(study);
         let all = self.combinations(&base).into_iter().map(|mut values| {
             let mut table = base.clone();
             for (axis, value) in self.axes.iter().zip(&mut values) {

@@ -96,7 +96,7 @@ mod tests {
         let path = folder.path().join(JOURNAL_FILE);
         let identity = Identity::new("a = 1".to_owned(), Default::default(), Default::default());
         let journal = Journal::open(&path, &identity).unwrap();
-        let item = |name: &str| WorkItem::new(name.to_owned(), 0);
+        let item = |name: &str| WorkItem::of(name.to_owned(), 0, &());
         let keep = |name: &str, result: ItemResult<Rows>| journal.keep(&item(name).key(), &result);
         keep("one", Ok(rows.clone())).unwrap();
         keep("two", Err("no\nroom".to_owned())).unwrap();

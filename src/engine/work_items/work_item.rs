@@ -1,18 +1,15 @@
 //! Work item: a named, independent part of the work of a study.
 
-use crate::inputs::content_hash::short_hash;
+use crate::inputs::content_hash::identity;
 use serde::Serialize;
-
-/// Number of hexadecimal digits of the hash in a work item's key. With a smaller value, two items with one name may get equal keys.
-const INPUT_DIGITS: usize = 16;
 
 /// Work item of a study: a named part that is computed, stored and repeated independently of others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkItem {
-    /// Name of the work item. Items with equal names have equal result rows.
+    /// Name of the work item, in words.
     pub name: String,
-    /// Identity of the inputs that the name does not contain: the hash of their canonical bytes (JSON); may be empty. The item's number is not an input,
-    /// because a later study may have more items.
+    /// Identity of the inputs of the work item: the hash of their canonical bytes (JSON). Items with equal names and equal inputs have equal result rows. The
+    /// item's number is not an input, because a later study may have more items.
     pub inputs: String,
     /// Number of the group to which the item belongs, from 0 without gaps. Items of a group share preparatory work, so one shard computes all of them if there
     /// are enough groups for every shard.
@@ -23,30 +20,18 @@ pub struct WorkItem {
 }
 
 impl WorkItem {
-    /// Creates a work item; its name must describe all inputs of its rows.
-    pub fn new(name: String, group: usize) -> Self {
+    /// Creates a work item whose rows depend on `inputs`; its name only needs to describe it in words. Items with equal names and equal inputs have equal rows.
+    pub fn of(name: String, group: usize, inputs: &impl Serialize) -> Self {
         Self {
             name,
-            inputs: String::new(),
+            inputs: identity(inputs),
             group,
             is_result: true,
         }
     }
 
-    /// Creates a work item whose rows depend on `inputs`; its name only needs to describe it in words. Items with equal names and equal inputs have equal rows.
-    pub fn of(name: String, group: usize, inputs: &impl Serialize) -> Self {
-        let bytes = serde_json::to_vec(inputs).expect("inputs are plain values");
-        Self {
-            inputs: short_hash(bytes, INPUT_DIGITS),
-            ..Self::new(name, group)
-        }
-    }
-
     /// Returns the key under which the journal stores the result of the work item.
     pub(crate) fn key(&self) -> String {
-        match self.inputs.is_empty() {
-            true => format!("piece {}", self.name),
-            false => format!("piece {} [{}]", self.name, self.inputs),
-        }
+        format!("piece {} [{}]", self.name, self.inputs)
     }
 }

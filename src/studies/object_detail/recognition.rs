@@ -13,7 +13,7 @@ use crate::studies::object_detail::measured::{Level, Measured, Variant, levels, 
 use crate::studies::object_detail::plan::{DetailRecognitionSpec, ObjectDetailPlan};
 use crate::studies::object_detail::rows::DetailRecognition;
 use crate::studies::prelude::*;
-use crate::studies::recognition::frames::simulation::simulate_array;
+use crate::studies::recognition::frames::pressed_objects::simulate_array;
 use crate::world::Placement;
 use ndarray::Array2;
 use std::ops::Range;

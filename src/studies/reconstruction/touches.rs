@@ -6,10 +6,10 @@ use crate::sensing::{Basis, Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::frame_store::Frames;
+use crate::studies::recognition::frames::pressed_objects::simulate_array;
 use crate::studies::recognition::frames::reading::{
     ReadSkin, Reading, TouchToRead, measure, touches_to_read,
 };
-use crate::studies::recognition::frames::simulation::simulate_array;
 use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::reconstruction::plan::ReconstructionPlan;
 use crate::studies::reconstruction::rows::{

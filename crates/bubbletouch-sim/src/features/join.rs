@@ -7,7 +7,8 @@ use crate::error::{Error, Result};
 use std::fmt::{self, Debug};
 
 /// Combination of image features, whose values follow one another in the order of the list of all features. Each bit marks one feature.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[serde(into = "String")]
 pub struct Join(u8);
 
 impl Join {
@@ -47,6 +48,12 @@ impl fmt::Display for Join {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let names: Vec<&str> = self.features().map(ImageFeature::name).collect();
         f.write_str(&names.join("+"))
+    }
+}
+
+impl From<Join> for String {
+    fn from(join: Join) -> Self {
+        join.to_string()
     }
 }
 

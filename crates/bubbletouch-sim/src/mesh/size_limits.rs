@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use glam::DVec3;
 
 /// Plausible range for the longest side of an object's bounding box, used if the unit of its file is not given; metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct SizeLimits {
     /// Lower limit of the longest side, metres.
     pub smallest: f64,

@@ -24,7 +24,7 @@ const FACING_DOWN: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
 const SAME_POSE: f64 = 1e-9;
 
 /// Values of one coordinate of a touch, in metres or radians: a list, or a uniform range.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Spread {
     /// List of at least one value, all different.
     Values(Vec<f64>),
@@ -136,7 +136,7 @@ impl TouchAxis {
 /// - A uniform spread: `per_object` touches, each drawn by its own number; resting poses are drawn by their probability.
 ///
 /// Drawn touches are nested: the touches for a smaller `per_object` are the first touches for a larger value.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Placement {
     /// Choice of the object's resting poses.
     pub rest: RestPoses,

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::text::in_range::{not_negative, positive};
 
 /// Shear spring and friction of a taxel, optional for a [`Patch`]; without shear springs, taxels move only along their axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Shear {
     /// Stiffness of the shear spring perpendicular to the taxel's axis, N/m, positive.
     pub stiffness: f64,

@@ -5,7 +5,7 @@ use crate::text::in_range::{not_negative, positive};
 use glam::DVec3;
 
 /// Sensing element: a sphere on a spring and damper that slides along one axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Taxel {
     /// Radius of the taxel's sphere, metres, positive.
     pub radius: f64,

@@ -10,7 +10,7 @@ use linfa::DatasetBase;
 use linfa::dataset::AsSingleTargets;
 use linfa::traits::{Fit, PredictInplace};
 use ndarray::{Array1, Array2, ArrayBase, Data, Ix2};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::class_model::ClassModel;
 use crate::class_weight::ClassWeight;
@@ -47,9 +47,10 @@ const FOLDS: usize = 5;
 
 /// Kind of classifier and its parameters. Fields that the kind does not use are ignored, for example the solver of a random forest. Only SVMs and logistic
 /// regression use C.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Classifier {
-    /// Kind of classifier, for example a linear SVM or a random forest.
+    /// Kind of classifier, for example a linear SVM or a random forest. A classifier from outside of this crate is written with its version.
+    #[serde(serialize_with = "with_version")]
     pub kind: ClassifierKind,
     /// Scaling of the features, fitted on the training rows.
     pub scaling: Scaling,
@@ -69,6 +70,20 @@ pub struct Classifier {
     pub memory_bytes: usize,
     /// Group of each training row, for a foreign classifier that uses groups; `None` without groups.
     pub groups: Option<Vec<usize>>,
+}
+
+/// Writes a kind of classifier as in a study file: its name, with the version of a classifier from outside of this crate.
+///
+/// # Errors
+/// If the serialiser fails.
+pub fn with_version<S: Serializer>(
+    kind: &ClassifierKind,
+    serializer: S,
+) -> std::result::Result<S::Ok, S::Error> {
+    match kind {
+        ClassifierKind::Foreign(foreign) => serializer.collect_str(foreign),
+        kind => kind.serialize(serializer),
+    }
 }
 
 impl Classifier {

@@ -145,7 +145,7 @@ fn short(number: f64) -> String {
 }
 
 /// Values of the parameters that a classifier declares.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Parameters(BTreeMap<&'static str, f64>);
 
 impl Parameters {

@@ -11,8 +11,6 @@
 //! | `configuration.toml` | the settings of the configuration and the trial |
 //! | `manifest.json` | the files of the folder; only files listed in it may be replaced |
 
-use crate::engine::progress::{Progress, Silent};
-use crate::error::{Error, Result};
 use crate::files::{CsvFile, DataFolder, write_bytes};
 use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, read_class_labels, read_group_keys, read_rows,
@@ -20,16 +18,14 @@ use crate::inputs::arrays::whole_numbers::{
 use crate::inputs::arrays::{ColumnNames, check_names, is_member, read_matrix};
 use crate::inputs::npy::{write_integers, write_npy};
 use crate::note::note;
-use crate::studies::recognition::frames::frame_store::Frames;
-use crate::studies::recognition::measurements::measurement::{Measurements, measure_group};
-use crate::studies::recognition::measurements::measurement_inputs::MeasuredTrial;
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::spec::study::RecognitionSpec;
-use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
-use crate::studies::recognition::sweep::training_rows::TrainingRows;
-use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
-use crate::studies::recognition::training::trial::learned_rows;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::Frames;
+use crate::studies::recognition::measurements::{MeasuredTrial, Measurements, measure_group};
+use crate::studies::recognition::plan::MeasurementGroup;
+use crate::studies::recognition::rows::Configuration;
+use crate::studies::recognition::spec::RecognitionSpec;
+use crate::studies::recognition::sweep::{StudyPart, Sweep, TrainingRows};
+use crate::studies::recognition::training::{FamilyInputs, learned_rows};
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Array2, Axis};
@@ -141,10 +137,7 @@ impl StudyPart {
     pub fn check_features(&self, (configuration, trial): (usize, usize)) -> Result<()> {
         let (_, configuration) = find(&self.sweep, configuration)?;
         self.sweep.trial(&self.plan, trial)?;
-        match configuration.features.foreign() {
-            Some(foreign) => Ok(foreign.n_values(configuration.measurements).map(drop)?),
-            None => Ok(()),
-        }
+        configuration.check_features()
     }
 
     /// Simulates the touches of a group of configurations, and computes their measurements in one trial.

@@ -2,3 +2,5 @@
 
 pub mod feature_files;
 pub mod touch_files;
+
+pub use self::{feature_files::*, touch_files::*};

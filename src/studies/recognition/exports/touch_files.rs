@@ -16,31 +16,17 @@
 //! ([`ReadFrames`]) include all of these steps. These frames are in metres or, with the step `force`, in newtons; only `frames.npy` differs. With `skin.sensed
 //! = "shear"` a configuration reads three forces: `frames.npy` then has 3 × ny × nx newtons per frame, and there is no `shear.npy`.
 
-use crate::engine::axis::Axis;
-use crate::engine::progress::Progress;
-use crate::error::Result;
 use crate::files::{CsvFile, write_bytes};
 use crate::inputs::npy::{NpyFile, write_integers};
-use crate::inputs::units::millimetres;
 use crate::objects::Object;
-use crate::random::Seed;
-use crate::sensing::Ensemble;
-use crate::studies::recognition::exports::feature_files::find;
-use crate::studies::recognition::frames::array_press::{ArrayPress, ArrayWorkspace};
-use crate::studies::recognition::frames::human_touches::HumanTouches;
-use crate::studies::recognition::frames::touch_set::TouchSet;
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::sensed::Sensed;
-use crate::studies::recognition::plan::study_plan::{Plan, as_written};
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::human::HumanTouchSpec;
-use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec};
-use crate::studies::recognition::spec::scene::SkinSpec;
-use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::sweep::configurations::StudyPart;
-use crate::studies::recognition::sweep::training_rows::TrainingRows;
-use crate::studies::recognition::touches::drawn_touches::touch_stream;
-use crate::world::{ArrayLayout, RestPose, Touch, TouchSource};
+use crate::studies::prelude::*;
+use crate::studies::recognition::exports::find;
+use crate::studies::recognition::frames::{ArrayPress, ArrayWorkspace, HumanTouches, TouchSet};
+use crate::studies::recognition::plan::{MeasurementGroup, Sensed, as_written};
+use crate::studies::recognition::spec::{HumanTouchSpec, PreviousTouch};
+use crate::studies::recognition::sweep::{StudyPart, TrainingRows};
+use crate::studies::recognition::touches::touch_stream;
+use crate::world::{ArrayLayout, RestPose, TouchSource};
 use ndarray::Array2;
 use rayon::prelude::*;
 use serde::Serialize;

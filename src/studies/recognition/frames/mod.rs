@@ -1,11 +1,7 @@
 //! Frames of all touches of an array: simulated once, used by all configurations, and stored in memory.
 
-pub mod array_press;
 pub(crate) mod frame_store;
-pub mod human_samples;
-pub(crate) mod human_touch_set;
 pub mod human_touches;
-pub(crate) mod parallel_simulation;
 pub(crate) mod pressed_objects;
 pub mod reading;
 pub mod recorded_frames;
@@ -13,8 +9,11 @@ pub mod recorded_skin;
 pub mod samples;
 pub(crate) mod sensor_frames;
 pub(crate) mod shear_ripple;
-pub mod simulation;
 pub(crate) mod touch_lengths;
 pub mod touch_set;
 
-pub use crate::studies::recognition::frames::frame_store::Frames;
+pub(crate) use self::touch_lengths::*;
+pub use self::{
+    frame_store::*, human_touches::*, pressed_objects::*, reading::*, recorded_frames::*,
+    recorded_skin::*, samples::*, sensor_frames::*, shear_ripple::*, touch_set::*,
+};

@@ -1,24 +1,155 @@
-//! Implementation of [`TouchSet`] for touches of pressed objects.
+//! Touches of pressed objects: an array is pressed on an object and slides along it. All configurations share the frames.
 
-use crate::contact::saturation_limit;
-use crate::engine::progress::{Progress, Silent};
-use crate::error::Result;
+use crate::contact::{
+    Approach, Contact, FrictionState, Workspace, press_to_depth, saturation_limit,
+};
+use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::random::Seed;
-use crate::studies::recognition::frames::frame_store::Frames;
-use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
-use crate::studies::recognition::frames::samples::sample_frames;
-use crate::studies::recognition::frames::simulation::press_objects;
-use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::pose_groups::KeepTogether;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::touches::drawn_touches::TouchedObject;
-use crate::world::Touch;
-use ndarray::Array1;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::{
+    Frames, Samples, TouchSet, TouchToRead, sample_frames, touches_to_read,
+};
+use crate::studies::recognition::plan::{KeepTogether, MeasurementGroup, Sensed};
+use crate::world::Shears;
+use bubbletouch_sim::frame_coding::round_to_single;
+use glam::{DVec2, DVec3};
+use ndarray::{Array1, ArrayViewMut2};
 use rand::Rng;
 use rayon::prelude::*;
+
+/// Memory that a thread reuses for every touch that it simulates.
+#[derive(Debug, Default)]
+pub struct ArrayWorkspace {
+    press: Workspace,
+    /// Friction state of the array's taxels; `None` if the array has no friction.
+    friction: Option<FrictionState>,
+}
+
+impl ArrayWorkspace {
+    /// Returns the force vector on each taxel in the last touch, newtons; empty if the array does not read shear forces.
+    pub fn shear_forces(&self) -> &[DVec3] {
+        let friction = self.friction.as_ref();
+        friction.map_or(&[], FrictionState::force3)
+    }
+}
+
+/// Array that is prepared for touches of one object.
+pub struct ArrayPress<'a> {
+    array: &'a TaxelArray,
+    object: [Model; 1],
+}
+
+impl TaxelArray {
+    /// Prepares the array for touches of one object.
+    pub fn press<'a>(&'a self, object: &Model) -> ArrayPress<'a> {
+        ArrayPress {
+            array: self,
+            object: [object.clone()],
+        }
+    }
+}
+
+/// Reason why a press of a study cannot fail.
+const CHECKED: &str = "the plan has checked poses and depths";
+
+impl ArrayPress<'_> {
+    /// Presses the array by a distance past first contact, metres, and then slides it along the object. Only the first part of this path is simulated; `part`
+    /// is its fraction of the whole path. Returns `None` if the path misses the object.
+    ///
+    /// # Panics
+    /// If a number of the pose or of the depth is not finite; the plan of a study has checked them.
+    pub fn touch(
+        &self,
+        pose: Pose,
+        (depth, part): (f64, f64),
+        workspace: &mut ArrayWorkspace,
+    ) -> Option<Contact> {
+        let (patch, slide) = (self.array.patch(), self.array.slide());
+        let way = part * (depth + slide.length());
+        let ArrayWorkspace { press, friction } = workspace;
+        if let Sensed::Shear(shear) = *self.array.sensed() {
+            let at_rest = || FrictionState::at_rest(patch, Shears::Equal(shear));
+            friction.get_or_insert_with(|| at_rest().expect("checked shear springs"));
+        } else if slide == DVec2::ZERO {
+            return press_to_depth(patch, &self.object, &[pose], way, press).expect(CHECKED);
+        }
+        let slid = (way - depth).max(0.0) * slide.normalize_or_zero();
+        let motion = (way.min(depth), slid.extend(0.0));
+        let approach = Approach::new(patch, DVec3::Z).expect("an axis has length one");
+        let pressed =
+            approach.press_and_slide(&self.object, &[pose], motion, friction.as_mut(), press);
+        pressed.expect(CHECKED)
+    }
+
+    /// Returns the pose of the object, in the patch frame, at the end of a touch that starts at `pose`.
+    pub fn end(&self, mut pose: Pose, contact: Option<Contact>) -> Pose {
+        if let Some(contact) = contact {
+            pose.translation -= self.array.slide().extend(contact.travel);
+        }
+        pose
+    }
+
+    /// Returns the number of values that are read per frame of a touch: deflections and shear forces of all taxels.
+    pub fn n_values(&self) -> usize {
+        self.array.n_values()
+    }
+
+    /// Writes the readings of the last touch in f32: [`n_values`](TaxelArray::n_values) deflections in metres, then the shear forces (if read) in newtons.
+    pub fn write_values(&self, workspace: &ArrayWorkspace, out: &mut [f32]) {
+        let (deflections, shear) = out.split_at_mut(self.array.patch().n_taxels());
+        round_to_single(workspace.press.deflections(), deflections);
+        if let Some(forces) = &workspace.friction {
+            forces.write_lateral(shear);
+        }
+    }
+}
+
+/// Simulates all touches on an array and stores their frames in memory.
+pub fn simulate_array(
+    touched: &dyn TouchSet,
+    array: &TaxelArray,
+    n_frames: usize,
+    progress: &dyn Progress,
+) -> Frames {
+    touched.simulate((array, n_frames), progress)
+}
+
+/// Presses one array on every object, touch by touch; the results do not depend on the number of threads.
+///
+/// A touch to depth d consists of F = `n_frames` frames, read at the depths d/F, 2d/F, …, d. If the array slides, the frames are read at F points of its path.
+/// Each frame is simulated as a separate touch, because a taxel at rest has no memory. At most `n_touches` touches of each object are simulated.
+pub(crate) fn press_objects(
+    touched: &[TouchedObject],
+    (array, n_frames): (&TaxelArray, usize),
+    n_touches: usize,
+    progress: &dyn Progress,
+) -> Frames {
+    let mut frames = Frames::new((array.n_values(), n_frames));
+    for TouchedObject {
+        object,
+        rests,
+        touches,
+    } in touched
+    {
+        let press = array.press(&object.model);
+        let press =
+            |touch: &&Touch, workspace: &mut ArrayWorkspace, mut rows: ArrayViewMut2<f32>| {
+                let pose = touch.patch_from_object(&rests[touch.rest]);
+                let mut last = None;
+                for (frame, row) in rows.outer_iter_mut().enumerate() {
+                    let part = (frame + 1) as f64 / n_frames as f64;
+                    last = press.touch(pose, (touch.depth, part), workspace);
+                    press.write_values(workspace, row.into_slice().expect("rows are whole"));
+                }
+                let reads_any = |count: fn(Contact) -> usize| last.is_some_and(|c| count(c) > 0);
+                (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
+            };
+        let step = touches.len().div_ceil(n_touches).max(1);
+        let touches: Vec<&Touch> = touches.iter().step_by(step).collect();
+        frames.make(&touches, ArrayWorkspace::default, press, progress);
+    }
+    frames
+}
 
 /// Maximum number of touches of each object, or of each kind of human touch, that are simulated to estimate the size of a frame. With a larger value, plans take
 /// longer; with a smaller value, the estimate of the memory is less accurate.

@@ -4,10 +4,6 @@
 //! so they have the same effect as on a simulated skin. A full scale below the zero belongs to readings that fall under pressure. Readings of tangential forces are in newtons. The readings of several sensors are joined to one frame.
 
 use crate::contact::saturation_limit;
-use crate::engine::progress::Progress;
-use crate::error::{Error, Result};
-use crate::inputs::arrays::TableContent;
-use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::is_member;
 use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, group_keys, note_spellings, read_class_values, read_group_values,
@@ -15,21 +11,15 @@ use crate::inputs::arrays::whole_numbers::{
 };
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
-use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
-use crate::studies::recognition::frames::frame_store::Frames;
-use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
-use crate::studies::recognition::frames::samples::spread_samples;
-use crate::studies::recognition::frames::sensor_frames::{
-    SensorFrames, SensorScale, check_alike, joined_readings,
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::{
+    Frames, RecordedContent, Samples, SensorFrames, SensorScale, TouchSet, TouchToRead,
+    check_alike, joined_readings, numbers_of, one_each, spread_samples, touch_of, touches_to_read,
 };
-use crate::studies::recognition::frames::touch_lengths::one_each;
-use crate::studies::recognition::frames::touch_set::{RecordedContent, Samples, TouchSet};
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec};
+use crate::studies::recognition::plan::MeasurementGroup;
+use crate::studies::recognition::spec::PreviousTouch;
 use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2};
 use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
@@ -217,8 +207,10 @@ impl RecordedSpec {
             }
         });
         read.into_values().collect::<Result<Vec<_>>>()?;
-        let identity = format!("{spec:?}");
-        Ok(RecordedContent { hashes, identity })
+        Ok(RecordedContent {
+            hashes,
+            identity: identity(&spec),
+        })
     }
 
     /// Returns the class labels of all touches; the separate test set comes last.
@@ -229,7 +221,7 @@ impl RecordedSpec {
                 continue;
             };
             let own = read_class_values(path, name, n)?;
-            one_each((path, name), (own.len(), n), self.first_frames())?;
+            one_each((path, name), (own.len(), n), touch_of(self.first_frames()))?;
             if let (Some(first), Some(other)) = (own.first(), values.first())
                 && first.is_text() != other.is_text()
             {
@@ -315,7 +307,11 @@ impl RecordedSpec {
                 None => Ok(None),
                 Some(path) => {
                     let groups = read_group_values(path, name, n)?;
-                    one_each((path, name), (groups.len(), n), self.first_frames())?;
+                    one_each(
+                        (path, name),
+                        (groups.len(), n),
+                        touch_of(self.first_frames()),
+                    )?;
                     Ok(Some(groups))
                 }
             }
@@ -369,17 +365,18 @@ impl RecordedSpec {
             let found: HashSet<usize> = order.iter().zip(sides).filter_map(is_on).collect();
             (0..names.len()).find(|label| !found.contains(label))
         };
-        if let Some(label) = without(Side::Train) {
-            let given = format!("{}, of which no touch trains", names[label]);
-            let allowed = "classes of recorded.labels";
-            return Err(Error::input("key recorded.labels_test", given, allowed));
-        }
-        if let Some(label) = without(Side::Test) {
-            let given = format!("no touch of {}", names[label]);
-            let allowed = "touches of each class among those that train and in the test set";
-            return Err(Error::input("key recorded.labels_test", given, allowed));
-        }
-        Ok(())
+        let (given, allowed) = match (without(Side::Train), without(Side::Test)) {
+            (Some(label), _) => (
+                format!("{}, of which no touch trains", names[label]),
+                "classes of recorded.labels",
+            ),
+            (None, Some(label)) => (
+                format!("no touch of {}", names[label]),
+                "touches of each class among those that train and in the test set",
+            ),
+            (None, None) => return Ok(()),
+        };
+        Err(Error::input("key recorded.labels_test", given, allowed))
     }
 
     /// Returns the side of each touch in each split of the file `splits`; the touches are in the order `order`. The list is empty without the file.
@@ -434,23 +431,17 @@ impl RecordedSpec {
     }
 
     fn read_depths(&self, n: usize) -> Result<Option<Vec<f64>>> {
-        let Some(path) = &self.depths else {
-            return Ok(None);
+        let read = |path: &PathBuf| {
+            let each = (n, touch_of(self.first_frames()));
+            let is_depth = |depth: f64| depth.is_finite() && depth > 0.0;
+            numbers_of(
+                (path, "depths"),
+                each,
+                is_depth,
+                "a positive number of metres",
+            )
         };
-        let depths =
-            FileArray::read_content(path, "depths", TableContent::Rows(n))?.into_numbers()?;
-        one_each((path, "depths"), (depths.len(), n), self.first_frames())?;
-        match depths
-            .iter()
-            .position(|depth| !(depth.is_finite() && *depth > 0.0))
-        {
-            None => Ok(Some(depths.into_iter().collect())),
-            Some(touch) => {
-                let place = format!("{}, position {touch}", path.display());
-                let given = depths.iter().nth(touch).copied().unwrap_or(f64::NAN);
-                Err(Error::input(place, given, "a positive number of metres"))
-            }
-        }
+        self.depths.as_ref().map(read).transpose()
     }
 }
 

@@ -1,10 +1,8 @@
 //! Recorded frames of a skin, with the additional data that calibration needs.
 
 use crate::calibration::RecordedSkin;
-use crate::error::{Error, Result};
-use crate::inputs::arrays::TableContent;
-use crate::inputs::arrays::file_array::{ElementKind, FileArray};
-use crate::studies::recognition::spec::recorded::RecordedSpec;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::numbers_of;
 use bubbletouch_sim::statistics::quantile::quantile;
 use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;
@@ -66,7 +64,10 @@ impl RecordedSkinFiles {
         let forces = self
             .forces
             .as_ref()
-            .map(|path| numbers_of(path, "forces", (n, "frame")))
+            .map(|path| {
+                let each = (n, "frame".to_owned());
+                numbers_of((path, "forces"), each, f64::is_finite, "finite numbers")
+            })
             .transpose()?;
         let all: Vec<usize> = (0..n).collect();
         let (untouched, untouched_times, touched) = match &self.untouched {
@@ -109,7 +110,7 @@ impl RecordedSkinFiles {
             touched_times: times.select(Axis(0), &touched),
             untouched: untouched.mapv(share),
             untouched_times,
-            forces: forces.map(|forces| forces.select(Axis(0), &touched)),
+            forces: forces.map(|forces| touched.iter().map(|&frame| forces[frame]).collect()),
             stroke: self.stroke_mm.map(|stroke| stroke * 1e-3),
         };
         Ok((skin, zero))
@@ -178,28 +179,4 @@ fn times_in(ranges: &[Range<f64>], n: usize) -> Result<Array1<f64>> {
         last
     };
     Ok((0..n).map(time).collect())
-}
-
-/// Reads one finite number for each of `n` frames or touches from the array `name` of a file. `each` is the word for one of them.
-///
-/// # Errors
-/// If the file cannot be read, or contains texts, other numbers, or another number of them.
-pub(crate) fn numbers_of(path: &Path, name: &str, (n, each): (usize, &str)) -> Result<Array1<f64>> {
-    let array = FileArray::read_content(path, name, TableContent::Rows(n))?;
-    if array.kind == ElementKind::Text {
-        return Err(Error::input(path.display(), "texts", "finite numbers"));
-    }
-    let numbers = array.into_numbers()?;
-    if numbers.len() != n {
-        let given = format!("{} numbers", numbers.len());
-        return Err(Error::input(
-            path.display(),
-            given,
-            format!("{n}, one for each {each}"),
-        ));
-    }
-    match numbers.iter().find(|number| !number.is_finite()) {
-        Some(number) => Err(Error::input(path.display(), number, "finite numbers")),
-        None => Ok(numbers.into_iter().collect()),
-    }
 }

@@ -1,21 +1,15 @@
 //! Sample pictures, which show noisy readings of an array for a few objects.
 
 use crate::engine::axes::CombineSpec;
-use crate::engine::progress::Silent;
-use crate::error::{Error, Result};
 use crate::inputs::sensor_errors::strength_columns;
-use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
-use crate::sensing::{Ensemble, Projection};
+use crate::sensing::Projection;
 use crate::signal::{Chain, SensorError, SignalStep, Strength};
-use crate::studies::recognition::frames::reading::{ReadSkin, Reading, measure, touches_to_read};
-use crate::studies::recognition::frames::simulation::simulate_array;
-use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::skin;
-use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::touches::drawn_touches::TouchedObject;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::{
+    ReadSkin, Reading, Samples, TouchSet, measure, simulate_array, touches_to_read,
+};
+use crate::studies::recognition::plan::{MeasurementGroup, skin};
 use ndarray::{Array2, ArrayView1};
 
 /// Default number of objects that a sample picture shows.

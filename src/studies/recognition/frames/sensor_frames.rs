@@ -1,12 +1,11 @@
 //! Frames of one sensor of a recording: its files, masked taxels, zeros and full scale.
 
 use crate::calibration::plateau;
-use crate::error::{Error, Result};
 use crate::inputs::arrays::axis_order::FrameShape;
 use crate::inputs::arrays::file_array::{ElementKind, FileArray};
 use crate::inputs::memory::check_memory;
-use crate::studies::recognition::spec::recorded::RecordedSpec;
-use crate::studies::recognition::spec::zero::ZeroSpec;
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::ZeroSpec;
 use ndarray::{Array2, Axis, concatenate};
 
 /// Fraction of missing (NaN) readings, 0 to 1, above which a taxel is masked. With a larger value, recordings with an intermittently failing taxel are

@@ -3,16 +3,13 @@
 //! On an exactly flat face, every taxel has the same shear reading. Packed spheres bulge by up to half the surface error. The bulges tilt the contact normals,
 //! so the shear readings ripple; a classifier can learn this ripple.
 
-use crate::error::Result;
 use crate::geometry::Pose;
-use crate::inputs::units::MM;
 use crate::mesh::TriangleMesh;
 use crate::note::note;
 use crate::objects::{MeshModel, Model, Object, Part, Shape, Solid};
-use crate::studies::recognition::frames::array_press::ArrayWorkspace;
-use crate::studies::recognition::plan::sensed::Sensed;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::ArrayWorkspace;
+use crate::studies::recognition::plan::Sensed;
 use crate::world::Spread;
 use glam::DVec3;
 

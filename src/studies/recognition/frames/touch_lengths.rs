@@ -1,11 +1,10 @@
 //! Recorded touches of unequal length: their numbers of frames, and resampling to the number of frames of the study.
 
-use crate::error::{Error, Result};
 use crate::inputs::arrays::axis_order::FrameShape;
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::{TableContent, is_member};
 use crate::signal::{resample, resampled_instant};
-use crate::studies::recognition::spec::recorded::RecordedSpec;
+use crate::studies::prelude::*;
 use ndarray::{Array2, s};
 use std::path::Path;
 
@@ -95,40 +94,59 @@ impl RecordedSpec {
 /// # Errors
 /// If the file cannot be read, has another number of values, or a value is no integer from 1 to the number of frames.
 pub(crate) fn lengths_of_file(
-    (path, name): (&Path, &str),
+    of: (&Path, &str),
     shape: &FrameShape,
     frames: &Path,
 ) -> Result<Vec<usize>> {
-    let array = FileArray::read_content(path, name, TableContent::Rows(shape.n_touches))?;
-    let place = array.place.clone();
-    let lengths = array.into_numbers()?;
-    one_each((path, name), (lengths.len(), shape.n_touches), frames)?;
-    let whole = |(touch, &length): (usize, &f64)| {
-        let is_length = length.fract() == 0.0;
-        let is_length = is_length && (1.0..=shape.n_frames as f64).contains(&length);
-        let refuse = || {
-            let allowed = format!("an integer from 1 to {}", shape.n_frames);
-            Error::input(format!("{place}, position {touch}"), length, allowed)
-        };
-        is_length.then_some(length as usize).ok_or_else(refuse)
-    };
-    lengths.iter().enumerate().map(whole).collect()
+    let is_length =
+        |length: f64| length.fract() == 0.0 && (1.0..=shape.n_frames as f64).contains(&length);
+    let allowed = format!("an integer from 1 to {}", shape.n_frames);
+    let each = (shape.n_touches, touch_of(frames));
+    let lengths = numbers_of(of, each, is_length, &allowed)?.into_iter();
+    Ok(lengths.map(|length| length as usize).collect())
 }
 
-/// Returns an error if the array `name` of a file does not contain exactly one value per touch.
+/// Reads one allowed number for each of n touches or frames from the array `name` of a file, shape (n,). Text `each` names what has a number.
+///
+/// # Errors
+/// If the file cannot be read, or contains texts, other numbers, or another number of them.
+pub(crate) fn numbers_of(
+    (path, name): (&Path, &str),
+    (n, each): (usize, String),
+    is_allowed: impl Fn(f64) -> bool,
+    allowed: &str,
+) -> Result<Vec<f64>> {
+    let array = FileArray::read_content(path, name, TableContent::Rows(n))?;
+    let place = array.place.clone();
+    let numbers: Vec<f64> = array.into_numbers()?.into_iter().collect();
+    one_each((path, name), (numbers.len(), n), each)?;
+    match numbers.iter().position(|&number| !is_allowed(number)) {
+        None => Ok(numbers),
+        Some(number) => {
+            let place = format!("{place}, position {number}");
+            Err(Error::input(place, numbers[number], allowed))
+        }
+    }
+}
+
+/// Returns the words for a touch of a file of frames.
+pub(crate) fn touch_of(frames: &Path) -> String {
+    format!("touch of {}", frames.display())
+}
+
+/// Returns an error if the array `name` of a file does not contain exactly one value for each touch or frame, which `each` names.
 pub(crate) fn one_each(
     (path, name): (&Path, &str),
     (n_given, n): (usize, usize),
-    frames: &Path,
+    each: String,
 ) -> Result<()> {
     let place = match is_member(path, name) {
         true => format!("{}, array `{name}`", path.display()),
         false => path.display().to_string(),
     };
     let given = format!("{n_given} values");
-    let allowed = format!("{n}, one a touch of {}", frames.display());
     match n_given == n {
         true => Ok(()),
-        false => Err(Error::input(place, given, allowed)),
+        false => Err(Error::input(place, given, format!("{n}, one a {each}"))),
     }
 }

@@ -1,18 +1,11 @@
 //! Common interface of sets of touches: pressed objects, human touches, or recorded frames.
 
-use crate::engine::progress::Progress;
-use crate::error::Result;
 use crate::learning::data::split::Side;
-use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
-use crate::studies::recognition::frames::frame_store::Frames;
-use crate::studies::recognition::frames::reading::TouchToRead;
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::pose_groups::KeepTogether;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::touches::drawn_touches::touch_labels;
-use crate::world::Touch;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::{Frames, TouchToRead};
+use crate::studies::recognition::plan::{KeepTogether, MeasurementGroup};
+use crate::studies::recognition::touches::touch_labels;
 use bubbletouch_sim::frame_coding::most_bytes;
 use ndarray::Array1;
 use std::collections::BTreeMap;

@@ -1,23 +1,17 @@
 //! Measurement of frames after the signal chain, for one signal condition, ensemble and trial.
 
-use crate::error::Result;
-use crate::inputs::sensor_errors::TestSensor;
-use crate::random::Seed;
-use crate::sensing::{Ensemble, Projection, Readings, TrainingFrames};
+use crate::sensing::{Projection, Readings, TrainingFrames};
 use crate::signal::SignalWorkspace;
-use crate::studies::recognition::frames::frame_store::Frames;
-use crate::studies::recognition::frames::reading::{ReadSkin, Reading, TouchToRead, measure};
-use crate::studies::recognition::frames::touch_set::TouchSet;
-use crate::studies::recognition::measurements::images::Images;
-use crate::studies::recognition::measurements::measurement_inputs::{
-    MeasuredTrial, MeasurementInputs, TestInputs,
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::{
+    Frames, ReadSkin, Reading, TouchSet, TouchToRead, measure,
 };
-use crate::studies::recognition::measurements::tilted_copies::TiltedCopies;
-use crate::studies::recognition::plan::taxel_array::skin;
-use crate::studies::recognition::plan::trials::projection_of;
-use crate::studies::recognition::rows::image_features::FeaturesOfImages;
-use crate::studies::recognition::rows::row_inputs::RowInputs;
-use crate::studies::recognition::sweep::learned_frames::learned_touches;
+use crate::studies::recognition::measurements::{
+    Images, MeasuredTrial, MeasurementInputs, TestInputs, TiltedCopies,
+};
+use crate::studies::recognition::plan::{projection_of, skin};
+use crate::studies::recognition::rows::{FeaturesOfImages, RowInputs};
+use crate::studies::recognition::sweep::learned_touches;
 use ndarray::{Array1, Array2, ArrayViewMut2, Axis, s};
 
 /// Measurements of all touches of a group of configurations. If touches are read several times, the first readings of all touches come first, followed by the

@@ -1,28 +1,21 @@
 //! Inputs that determine the measurements of a group of configurations, without the frames of its touches.
 //!
-//! The function `measure_group` receives these inputs and no plan, so it cannot depend on any other value of a study. Groups whose inputs have equal keys share
-//! their measurements. The key is the derived `Debug` form of all fields, so a new field becomes part of the key.
+//! The function `measure_group` receives these inputs and no plan, so it cannot depend on any other value of a study. Groups whose inputs have equal canonical
+//! bytes share their measurements.
 
 use crate::inputs::content_hash::Hashed;
-use crate::inputs::sensor_errors::{Strengths, TestSensor, all_strengths};
-use crate::random::Seed;
-use crate::sensing::{Ensemble, Selection};
-use crate::signal::{Noise, NoiseUnit, SignalStep, Strength};
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::signal::Condition;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::image_features::FeaturesOfImages;
-use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::sweep::configurations::Sweep;
-use crate::studies::recognition::sweep::training_rows::TrainingRows;
+use crate::signal::{Noise, NoiseUnit, SignalStep};
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::{Condition, MeasurementGroup};
+use crate::studies::recognition::rows::{Configuration, FeaturesOfImages};
+use crate::studies::recognition::sweep::{Sweep, TrainingRows};
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
+use serde::Serialize;
 use std::collections::BTreeSet;
 
 /// All inputs that determine the measurements of a group of configurations.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct MeasurementInputs<'a> {
     /// Array of taxels that is pressed on the objects.
     pub array: &'a TaxelArray,
@@ -53,7 +46,7 @@ pub struct MeasurementInputs<'a> {
 }
 
 /// Measurement inputs of the test touches that differ from the inputs of the training touches.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct TestInputs<'a> {
     /// Array of taxels of the test touches. Frames of test and training touches have equal shapes.
     pub array: &'a TaxelArray,
@@ -78,7 +71,7 @@ pub struct MeasuredTrial<'a> {
 }
 
 /// Inputs of the signal chain. Signal steps without effect are omitted.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct SignalInputs {
     /// Steps of the signal chain, in order of application.
     pub steps: Vec<StepSpec>,
@@ -89,7 +82,7 @@ pub struct SignalInputs {
 }
 
 /// Inputs that determine the tilted copies of training touches.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct CopyInputs {
     /// Number of copies of each touch, at least 1.
     pub n_copies: usize,
@@ -100,11 +93,6 @@ pub struct CopyInputs {
 }
 
 impl MeasurementInputs<'_> {
-    /// Returns a text that identifies the inputs; the texts are equal exactly if the inputs are equal.
-    pub fn key(&self) -> String {
-        format!("{self:?}")
-    }
-
     /// Returns the number and the split of a trial for the computation of measurements.
     pub fn trial<'s>(&self, sweep: &'s Sweep, number: usize) -> MeasuredTrial<'s> {
         let depends = self.is_fitted() || self.has_own_test() || self.copies.is_some();
@@ -206,11 +194,6 @@ fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
         StepSpec::Smoothing => condition.smoothing != 0.0,
         StepSpec::Error(error) => condition.strengths.present().any(|(own, ..)| own == *error),
     };
-    // A strength that the study does not have counts as zero.
-    let with_zero = |strengths: Strengths, (_, strength): (_, &Strength)| {
-        let value = strengths.get(strength.key).unwrap_or(0.0);
-        strengths.with(strength.key, Some(value))
-    };
     let steps = plan.spec.signal.steps.iter();
     SignalInputs {
         steps: steps.filter(is_active).copied().collect(),
@@ -218,10 +201,7 @@ fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
             true => NoiseUnit::FullScale,
             false => plan.noise_unit,
         },
-        condition: Condition {
-            strengths: all_strengths().fold(condition.strengths, with_zero),
-            ..condition
-        },
+        condition,
     }
 }
 

@@ -3,4 +3,5 @@
 pub mod images;
 pub mod measurement;
 pub mod measurement_inputs;
-pub mod tilted_copies;
+
+pub use self::{images::*, measurement::*, measurement_inputs::*};

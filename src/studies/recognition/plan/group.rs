@@ -1,11 +1,8 @@
 //! Groups of configurations that share their measurements, and families of configurations that share their features.
 
-use crate::inputs::sensor_errors::TestSensor;
-use crate::sensing::{Ensemble, Selection};
-use crate::studies::recognition::plan::signal::Condition;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::image_features::FeaturesOfImages;
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::Condition;
+use crate::studies::recognition::rows::{Configuration, FeaturesOfImages};
 
 /// Group of configurations whose results are computed from the same measurements of touches.
 #[derive(Clone, Debug)]
@@ -30,23 +27,15 @@ impl MeasurementGroup {
     /// Returns the configurations of the group, divided into families. The configurations of a family use the same rows of features. Configurations of a family
     /// differ only in the penalty C, the number of touches per decision, and the choice of the next touch. Configurations with equal C are adjacent.
     pub fn families(&self) -> impl Iterator<Item = &[Configuration]> {
-        let family = |configuration: &Configuration| {
-            let (m, kind) = (configuration.measurements, configuration.classifier);
-            let rows = (
-                (configuration.temporal_features, configuration.features),
-                (
-                    configuration.depth_window_full_scale,
-                    configuration.tilt_augmentation,
-                ),
-            );
-            let spoiled = (
-                configuration.mislabelled_fraction,
-                configuration.class_imbalance,
-            );
-            (m, rows, kind, configuration.train_touches, spoiled)
+        let family = |configuration: &Configuration| Configuration {
+            configuration: 0,
+            c: None,
+            touches_per_decision: 1,
+            next_touch: None,
+            ..configuration.clone()
         };
-        self.configurations
-            .chunk_by(move |a, b| family(a) == family(b))
+        let is_same = move |a: &Configuration, b: &Configuration| family(a) == family(b);
+        self.configurations.chunk_by(is_same)
     }
 
     /// Returns the number of readings of each training touch.
@@ -61,17 +50,16 @@ impl MeasurementGroup {
 
     /// Returns the kinds of image features that the group's configurations use, each kind once.
     pub fn features_of_images(&self) -> Vec<FeaturesOfImages> {
-        let mut all: Vec<FeaturesOfImages> = self
+        let mut all: Vec<FeaturesOfImages> = Vec::new();
+        for one in self
             .configurations
             .iter()
             .filter_map(Configuration::of_images)
-            .collect();
-        let mut known = Vec::new();
-        all.retain(|one| {
-            let is_new = !known.contains(one);
-            known.push(*one);
-            is_new
-        });
+        {
+            if !all.contains(&one) {
+                all.push(one);
+            }
+        }
         all
     }
 

@@ -1,13 +1,8 @@
 //! Checks of `[human_touch]`, and conversion of its keys to SI units.
 
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::units::{MAX_FRAMES, MM, millimetres};
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::human::HumanTouchSpec;
-use crate::studies::recognition::spec::scene::TouchesSpec;
-use crate::studies::recognition::spec::study::StudySpec;
+use crate::inputs::units::MAX_FRAMES;
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::HumanTouchSpec;
 use crate::world::{Layout, Patch, Taxels};
 
 impl HumanTouchSpec {
@@ -56,15 +51,10 @@ impl Check<'_> {
             let allowed = "it alone: it is what touches, and how";
             return Err(self.error("human_touch", "beside [objects] or [touches]", allowed));
         }
-        if spec.recognition.group_by.is_some() {
-            let allowed = "no such key: human touches have no groups";
-            return Err(self.error("recognition.group_by", "given", allowed));
-        }
-        if spec.skin.damping_n_s_per_m != 0.0 {
-            let allowed = "0: the skin of human touches has no damper";
-            let given = spec.skin.damping_n_s_per_m;
-            return Err(self.error("skin.damping_n_s_per_m", given, allowed));
-        }
+        let allowed = "no such key: human touches have no groups";
+        self.absent(("recognition", &spec.recognition), &["group_by"], allowed)?;
+        let allowed = "0: the skin of human touches has no damper";
+        self.absent(("skin", &spec.skin), &["damping_n_s_per_m"], allowed)?;
         self.table("human_touch", human)?;
         self.grids(&spec.skin)?;
         let n_frames = (human.duration_s * human.frames_hz).round() + 1.0;

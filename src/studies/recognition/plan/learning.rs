@@ -1,55 +1,31 @@
 //! Checks of `[sensing]` and `[recognition]`: compression, features, classifiers and splits.
 
-use crate::engine::axis::Axis;
-use crate::error::{Error, Result};
-use crate::inputs::check::Check;
-use crate::inputs::memory::GIB;
-use crate::inputs::toml_value::has_only;
-use crate::inputs::units::MM;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::parameters;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
-use crate::sensing::{Ensemble, Selection};
-use crate::studies::recognition::plan::pose_groups::KeepTogether;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::classifier_parameters::ClassifierParameters;
-use crate::studies::recognition::spec::pose_split::PoseSplit;
-use crate::studies::recognition::spec::study::{RecognitionSpec, SensingSpec, StudySpec};
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::KeepTogether;
+use crate::studies::recognition::spec::{
+    DEFAULT_C, DEFAULT_CV_FOLDS, DEFAULT_TEST_FRACTION, DEFAULT_TILT_DEG, PoseSplit,
+    RecognitionSpec, SensingSpec, key,
+};
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;
-use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 
-/// Default of the maximum tilt of a tilted copy about each axis, degrees. With a larger value, copies lack those parts of the object that were not touched;
-/// with a smaller value, copies add no new tilts.
-pub(crate) const DEFAULT_TILT_DEG: f64 = 5.0;
-
-/// Default of the penalty C.
-const DEFAULT_C: f64 = 1.0;
-
-/// Pairs of keys of `[recognition]` that exclude each other.
-const ONE_OF: [[&str; 2]; 3] = [
-    ["c", "c_grid"],
-    ["gamma", "gamma_grid"],
-    ["test_fraction", "folds"],
-];
-
-/// Keys of `[recognition]` that require other keys: each with a list of which at least one must be given.
-const BESIDE: [(&str, &[&str]); 4] = [
-    ("cv_touches", &["c_grid", "gamma_grid"]),
-    ("tilt_augmentation_deg", &["tilt_augmentation"]),
-    ("group_by_mm", &["group_by"]),
-    ("group_by_deg", &["group_by"]),
+/// Pairs of keys that exclude each other.
+pub(crate) const ONE_OF: [[&str; 2]; 5] = [
+    ["skin.size_mm", "skin.taxels"],
+    ["sensing.ratio", "sensing.measurements"],
+    ["recognition.c", "recognition.c_grid"],
+    ["recognition.gamma", "recognition.gamma_grid"],
+    ["recognition.test_fraction", "recognition.folds"],
 ];
 
 impl Check<'_> {
     /// Checks that `[sensing]` contains either a compression ratio or a number of measurements. The number may not exceed the number of taxels of any array.
     pub fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
         self.table("sensing", sensing)?;
-        if sensing.ratio.is_some() && sensing.measurements.is_some() {
-            return Err(self.error("sensing", "both ratio and measurements", "one of them"));
-        }
         let ratios = sensing.ratio.iter().flat_map(Axis::values);
         let ratios = ratios.map(|ratio| ("sensing.ratio", ratio));
         let counts = sensing.measurements.iter().flat_map(Axis::values);
@@ -125,37 +101,11 @@ impl Check<'_> {
 
     /// Checks `[recognition]`: keys must be in range, must not contradict each other, and must have an effect.
     pub fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
-        let given = self.table("recognition", recognition)?;
-        for [first, second] in ONE_OF {
-            if given.contains_key(first) && given.contains_key(second) {
-                let both = format!("both {first} and {second}");
-                return Err(self.error("recognition", both, "one of them"));
-            }
-        }
-        let mut changed = given.clone();
-        let usual = RecognitionSpec::usual();
-        changed.retain(|key, value| !usual.get(key).is_some_and(|usual| has_only(value, usual)));
+        let mut changed = self.table("recognition", recognition)?;
+        changed.retain(|name, value| !key(&format!("recognition.{name}")).is_usual(value));
         self.parameters(recognition, &changed)?;
-        for (key, others) in BESIDE {
-            if let Some(value) = changed.get(key)
-                && !others.iter().any(|other| given.contains_key(*other))
-            {
-                let others = others.join(" or ");
-                let given = format!("{value}, but no {others} is given that uses it");
-                let allowed = format!("recognition.{others} beside it, or no such key");
-                return Err(self.error(&format!("recognition.{key}"), given, allowed));
-            }
-        }
         // If C or γ is chosen, the rarest objects may have too few rows for the inner folds.
-        let is_open = recognition.c_grid.is_some() || recognition.gamma_grid.is_some();
-        if let Some(folds) = changed.get("cv_folds")
-            && !is_open
-            && !recognition.is_informed()
-        {
-            let given = format!("{folds}, but nothing is chosen by folds");
-            let allowed = "c_grid, gamma_grid or next_touch = \"most_informative\" beside it";
-            return Err(self.error("recognition.cv_folds", given, allowed));
-        }
+        let is_open = recognition.is_open();
         let folded = match (is_open, recognition.is_informed()) {
             (true, _) => Some(("c_grid or gamma_grid", "a given c and gamma")),
             (_, true) => Some(("next_touch = \"most_informative\"", "another next_touch")),
@@ -229,18 +179,7 @@ impl Check<'_> {
     pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
         let mut features = recognition.all_features().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
-            let foremost = recognition.depth_window_full_scale.is_some();
-            let of_images = [
-                ("recognition.depth_window_full_scale", foremost),
-                ("recognition.tilt_augmentation", recognition.has_copies()),
-            ];
-            return match of_images.into_iter().find(|(_, is_given)| *is_given) {
-                None => Ok(()),
-                Some((key, _)) => {
-                    let given = "given, but no features of the study are of images";
-                    Err(self.error(key, given, "features of images, or no such key"))
-                }
-            };
+            return Ok(());
         };
         if arrays.iter().any(|array| !array.is_placed()) {
             let given = format!("{} of taxels without a layout", String::from(features));
@@ -271,14 +210,6 @@ impl Check<'_> {
     /// Checks the key `temporal_features`; it is not allowed if it requires more frames than a touch has.
     pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
-        let values = Axis::optional_values(&recognition.temporal_features);
-        if let ([Some(TemporalFeatures::Deepest)], true) =
-            (&values[..], frames.iter().all(|&f| f == 1))
-        {
-            let given = "\"deepest\", but every touch is one frame";
-            let allowed = "touches.frames of 2 or more beside it, or no such key";
-            return Err(self.error("recognition.temporal_features", given, allowed));
-        }
         for value in recognition.temporal_features.iter().flat_map(Axis::values) {
             if let TemporalFeatures::Stacked(k) = value
                 && k > fewest
@@ -300,21 +231,12 @@ impl Check<'_> {
         if recognition.split == PoseSplit::Random {
             return Ok(());
         }
-        // If the split is an axis, the key describes the random split among its values.
+        // If the split is an axis, `test_fraction` describes the random split among its values.
         let is_axis = spec.axes.has("recognition.split");
-        let given = [
-            ("group_by", recognition.group_by.is_some()),
-            ("folds", recognition.folds.is_some()),
-            (
-                "test_fraction",
-                recognition.test_fraction.is_some() && !is_axis,
-            ),
-        ];
-        if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-            let given = format!("given beside split = {:?}", recognition.split.word());
-            let allowed = "no such key: the split says what is held out";
-            return Err(self.error(&format!("recognition.{key}"), given, allowed));
-        }
+        let of_others = ["group_by", "folds", "test_fraction"];
+        let of_others = &of_others[..of_others.len() - usize::from(is_axis)];
+        let allowed = "no such key: the split says what is held out";
+        self.absent(("recognition", recognition), of_others, allowed)?;
         if !spec.places_objects() {
             let given = recognition.split.word();
             let allowed = "\"random\": only touches that a study places have a known pose";
@@ -331,25 +253,11 @@ impl Check<'_> {
             return Ok(());
         };
         let (given, allowed) = if !spec.places_objects() {
-            let allowed = "only touches that a study places have a known pose";
-            (String::new(), format!("\"random\": {allowed}"))
+            let allowed = "\"random\": only touches that a study places have a known pose";
+            ("", allowed)
         } else if spec.touches.rest != RestPoses::AsModelled {
-            let allowed = "how an unknown object lies cannot be commanded";
-            let given = " beside touches.rest = \"stable\"";
-            (
-                given.to_owned(),
-                format!("rest = \"as_modelled\", or \"random\": {allowed}"),
-            )
-        } else if recognition
-            .touches_per_decision
-            .values()
-            .iter()
-            .all(|&k| k == 1)
-        {
-            let given = " beside recognition.touches_per_decision = 1";
-            let allowed =
-                "a touches_per_decision of 2 or more, or \"random\": one touch has no next";
-            (given.to_owned(), allowed.to_owned())
+            let allowed = "rest = \"as_modelled\", or \"random\": how an unknown object lies cannot be commanded";
+            (" beside touches.rest = \"stable\"", allowed)
         } else {
             return Ok(());
         };
@@ -392,26 +300,6 @@ impl SensingSpec {
 }
 
 impl RecognitionSpec {
-    /// Returns a table `[recognition]` in which every key has its default value. Keys whose default is a rule or the absence of the key are omitted.
-    pub fn usual() -> toml::Table {
-        let usual: Self = toml::from_str("classifier = []").expect("all other keys have defaults");
-        let usual = Self {
-            c: Some(Axis::One(DEFAULT_C)),
-            cv_folds: Some(usual.n_choice_folds()),
-            readings_per_touch: Some(1),
-            solver_memory_gib: Some(DEFAULT_MEMORY_BYTES as f64 / GIB),
-            tilt_augmentation: Some(Axis::One(0)),
-            tilt_augmentation_deg: Some(DEFAULT_TILT_DEG),
-            mislabelled_fraction: Some(Axis::One(0.0)),
-            class_imbalance: Some(Axis::One(1.0)),
-            next_touch: Some(Axis::One(NextTouch::Random)),
-            test_fraction: Some(usual.test_share()),
-            of_kinds: ClassifierParameters::usual(),
-            ..usual
-        };
-        toml::Table::try_from(usual).expect("every field of a study has a TOML form")
-    }
-
     /// Returns whether training touches have tilted copies for some value of the key `tilt_augmentation`.
     pub fn has_copies(&self) -> bool {
         let numbers = self.tilt_augmentation.iter().flat_map(Axis::values);
@@ -420,7 +308,7 @@ impl RecognitionSpec {
 
     /// Returns the fraction of the touches that is held out for testing if the study has no folds; the default is 0.25.
     pub fn test_share(&self) -> f64 {
-        self.test_fraction.unwrap_or(0.25)
+        self.test_fraction.unwrap_or(DEFAULT_TEST_FRACTION)
     }
 
     /// Returns the depth windows that image features use, as fractions of the full scale. For features of measurements, which have no window, returns a single
@@ -456,6 +344,11 @@ impl RecognitionSpec {
         all.filter(|next| *next != NextTouch::Random)
     }
 
+    /// Returns whether C or γ is chosen by cross-validation.
+    pub fn is_open(&self) -> bool {
+        self.c_grid.is_some() || self.gamma_grid.is_some()
+    }
+
     /// Returns whether a rule for the next touch uses the classifier's decisions on training touches.
     pub fn is_informed(&self) -> bool {
         let mut chosen = self.chosen_next();
@@ -471,7 +364,7 @@ impl RecognitionSpec {
 
     /// Returns the number of folds of the inner cross-validation, which selects C and γ; the default is 5.
     pub fn n_choice_folds(&self) -> usize {
-        self.cv_folds.unwrap_or(5)
+        self.cv_folds.unwrap_or(DEFAULT_CV_FOLDS as usize)
     }
 
     /// Returns the rule that forms groups of touches; all touches of a group are on one side of a split (training or test).

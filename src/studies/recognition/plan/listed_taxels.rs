@@ -3,13 +3,14 @@
 //! Sensors that are read together are separate skins. In the patch, they are so far apart that no taxel is a neighbour of a taxel of another sensor. In
 //! pictures, they are side by side.
 
-use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::inputs::content_hash::Hashed;
-use crate::inputs::units::{MAX_SIDE, millimetres};
+use crate::inputs::units::MAX_SIDE;
+use crate::studies::prelude::*;
 use crate::world::{Grid, Layout, Neighbours, Patch, nearest_distances};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
+use serde::{Serialize, Serializer};
 use std::ops::Range;
 
 /// Largest relative difference between the pitch of a sensor and the distance of taxels in a grid. With a larger value, the results of the grid would differ
@@ -270,17 +271,12 @@ impl ListedTaxels {
     /// Returns the image of each sensor.
     pub fn images(&self) -> Vec<SensorImage> {
         let image = |sensor: &ListedSensor| {
-            let ListedSensor {
-                places,
-                shape,
-                pitch,
-                ..
-            } = sensor;
+            let (shape, pitch) = (sensor.shape, sensor.pitch);
             let widest = (sensor.widest / pitch).max(1.0);
-            let chart = || Chart::with_gaps(places, (*pitch, widest), (*shape, *pitch));
+            let chart = || Chart::with_gaps(&sensor.places, (pitch, widest), (shape, pitch));
             SensorImage {
                 taxels: sensor.taxels.clone(),
-                shape: *shape,
+                shape,
                 chart: (!sensor.is_grid).then(chart),
             }
         };
@@ -299,11 +295,13 @@ impl ListedTaxels {
             }
         }
     }
+}
 
-    /// Returns a text that identifies the positions and axes of the taxels.
-    pub fn identity(&self) -> String {
+/// Writes what determines frames: the numbers of taxels, the pitches of the sensors, and the positions and axes of the taxels.
+impl Serialize for ListedTaxels {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let pitches = self.sensors.iter().map(|s| (s.taxels.len(), s.pitch));
-        format!("{:?} {:?}", pitches.collect::<Vec<_>>(), self.content)
+        (pitches.collect::<Vec<_>>(), &self.content).serialize(serializer)
     }
 }
 

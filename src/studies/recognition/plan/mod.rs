@@ -1,6 +1,5 @@
 //! Plan of a recognition study: checked keys, converted to SI units.
 
-pub mod foreign;
 pub mod group;
 pub(crate) mod human;
 pub(crate) mod learning;
@@ -9,10 +8,13 @@ pub mod pose_groups;
 pub(crate) mod recorded;
 pub(crate) mod scene;
 pub mod sensed;
-pub(crate) mod shear;
 pub mod signal;
 pub mod study_plan;
 pub mod taxel_array;
 pub mod tested;
-pub mod trials;
 pub(crate) mod unused_keys;
+
+pub(crate) use self::learning::*;
+pub use self::{
+    group::*, listed_taxels::*, pose_groups::*, sensed::*, signal::*, study_plan::*, taxel_array::*,
+};

@@ -7,9 +7,8 @@
 //! neighbours (single linkage). Touches of different groups are therefore at least the stated distance apart on some axis. Touches of different objects are
 //! never neighbours, because their labels differ.
 
-use crate::error::{Error, Result};
-use crate::studies::recognition::spec::pose_split::GroupSpec;
-use crate::world::{Touch, TouchAxis};
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::GroupSpec;
 use bubbletouch_sim::disjoint_sets::DisjointSets;
 use ndarray::Array1;
 use std::collections::BTreeMap;

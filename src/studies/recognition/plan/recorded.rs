@@ -1,18 +1,9 @@
 //! Checks of the table `[recorded]`, and creation of the array that recorded the frames.
 
-use crate::engine::axis::Axis;
-use crate::error::{Error, Result};
-use crate::inputs::check::Check;
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
-use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::units::MM;
-use crate::studies::recognition::plan::listed_taxels::PlacedSensor;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::recorded::RecordedSpec;
-use crate::studies::recognition::spec::scene::{SensedSpec, SkinSpec, TouchesSpec};
-use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::spec::study::StudySpec;
-use crate::studies::recognition::spec::zero::ZeroSpec;
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::PlacedSensor;
+use crate::studies::recognition::spec::ZeroSpec;
 use crate::world::{ArrayLayout, Grid};
 use glam::DVec2;
 
@@ -49,22 +40,34 @@ impl RecordedSpec {
 impl Check<'_> {
     /// Checks the table `[recorded]` and returns the array with which the frames were recorded. Keys that describe simulated touches are not allowed.
     pub fn recorded(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<Vec<TaxelArray>> {
-        let StudySpec {
-            objects, touches, ..
-        } = spec;
-        if *objects != ObjectsSpec::default()
-            || *touches != TouchesSpec::default()
+        if spec.objects != ObjectsSpec::default()
+            || spec.touches != TouchesSpec::default()
             || spec.human_touch.is_some()
         {
             let given = "beside [objects], [touches] or [human_touch]";
             let allowed = "it alone: it is what the skin has read";
             return Err(self.error("recorded", given, allowed));
         }
-        if spec.recognition.group_by.is_some() {
-            let allowed = "no such key: recorded.groups says what stays together";
-            return Err(self.error("recognition.group_by", "given", allowed));
-        }
+        let learned = ("recognition", &spec.recognition);
+        let allowed = "no such key: recorded.groups says what stays together";
+        self.absent(learned, &["group_by"], allowed)?;
         self.table("recorded", recorded)?;
+        if !recorded.sensors.is_empty() {
+            let of_each = [
+                "frames",
+                "frames_test",
+                "order",
+                "grid",
+                "columns",
+                "layout",
+                "lengths",
+                "lengths_test",
+                "zero",
+                "full_scale",
+            ];
+            let allowed = "this key in each of [[recorded.sensors]]";
+            self.absent(("recorded", recorded), &of_each, allowed)?;
+        }
         // Zeros from a file are compared with the full scale when the frames are read.
         if let (Some(full_scale), ZeroSpec::One(zero)) = (recorded.full_scale, &recorded.zero)
             && full_scale == *zero
@@ -75,59 +78,34 @@ impl Check<'_> {
         self.of_time(recorded, spec)?;
         let place = |error: Error| error.under(format!("{}, ", self.place));
         recorded.check_files().map_err(place)?;
-        let given_split = match recorded.has_test_set() {
-            true => Some("recorded.frames_test is the test set"),
-            false => recorded
-                .splits
-                .as_ref()
-                .map(|_| "recorded.splits has the split of each trial"),
-        };
-        if let Some(given_split) = given_split {
-            let recognition = &spec.recognition;
-            let given = [
-                ("recognition.folds", recognition.folds.is_some()),
-                (
-                    "recognition.test_fraction",
-                    recognition.test_fraction.is_some(),
-                ),
-                (
-                    "recorded.splits",
-                    recorded.has_test_set() && recorded.splits.is_some(),
-                ),
-            ];
-            if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-                let allowed = format!("no such key: {given_split}");
-                return Err(self.error(key, "given", allowed));
-            }
+        if recorded.has_test_set() {
+            let allowed = "no such key: recorded.frames_test is the test set";
+            self.absent(learned, &["folds", "test_fraction"], allowed)?;
+            self.absent(("recorded", recorded), &["splits"], allowed)?;
+        } else if recorded.splits.is_some() {
+            let allowed = "no such key: recorded.splits has the split of each trial";
+            self.absent(learned, &["folds", "test_fraction"], allowed)?;
         }
         let array = self.array_of(recorded, &spec.skin)?;
-        if !array.is_placed() {
-            let needs_places = |step: &&StepSpec| match step {
-                StepSpec::Smoothing => {
-                    let widths = spec.signal.axes.get("smoothing_mm").into_iter();
-                    widths.flat_map(Axis::values).any(|width| width > 0.0)
-                }
-                StepSpec::Error(error) => error.about().needs_places,
-                StepSpec::Force | StepSpec::Noise => false,
-            };
-            if let Some(step) = spec.signal.steps.iter().find(needs_places) {
-                let given = format!("\"{}\" of taxels without a layout", step.word());
-                let allowed = "steps of each taxel by itself (recorded.layout gives positions; recorded.grid or recorded.order names rows and columns)";
-                return Err(self.error("signal.steps", given, allowed));
-            }
-        }
-        let is_of_neighbours = |step: &&StepSpec| match step {
-            StepSpec::Error(error) => error.about().needs_places,
-            StepSpec::Smoothing | StepSpec::Force | StepSpec::Noise => false,
-        };
+        let smoothings = spec.signal.axes.get("smoothing_mm").into_iter();
+        let smooths = smoothings.flat_map(Axis::values).any(|width| width > 0.0);
+        let needs_places =
+            |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().needs_places);
+        let needs_layout =
+            |step: &&StepSpec| needs_places(step) || smooths && **step == StepSpec::Smoothing;
         let mut steps = spec.signal.steps.iter();
-        if let Some(step) = steps.find(is_of_neighbours)
+        if !array.is_placed()
+            && let Some(step) = steps.clone().find(needs_layout)
+        {
+            let given = format!("\"{}\" of taxels without a layout", step.word());
+            let allowed = "steps of each taxel by itself (recorded.layout gives positions; recorded.grid or recorded.order names rows and columns)";
+            return Err(self.error("signal.steps", given, allowed));
+        }
+        if let Some(step) = steps.find(|step| needs_places(step))
             && array.couples_sensors()
         {
-            let given = format!(
-                "\"{}\" of sensors of which one has a single row of taxels",
-                step.word()
-            );
+            let word = step.word();
+            let given = format!("\"{word}\" of sensors of which one has a single row of taxels");
             let allowed = "sensors with rows and columns, or one sensor (recorded.sensor)";
             return Err(self.error("signal.steps", given, allowed));
         }
@@ -147,16 +125,14 @@ impl Check<'_> {
             let allowed = "0 where skin.sensed is shear";
             return Err(self.error("recorded.speed_mm_per_s", recorded.speed_mm_per_s, allowed));
         }
-        let Some(interval) = recorded.frame_interval_s else {
-            return Ok(());
-        };
-        match recorded.speed_mm_per_s > 0.0 && recorded.depths.is_some() {
-            true => {
-                let allowed = "no such key: recorded.depths and recorded.speed_mm_per_s say how much time goes on between frames";
-                Err(self.error("recorded.frame_interval_s", interval, allowed))
-            }
-            false => Ok(()),
+        if let Some(interval) = recorded.frame_interval_s
+            && recorded.speed_mm_per_s > 0.0
+            && recorded.depths.is_some()
+        {
+            let allowed = "no such key: recorded.depths and recorded.speed_mm_per_s say how much time goes on between frames";
+            return Err(self.error("recorded.frame_interval_s", interval, allowed));
         }
+        Ok(())
     }
 
     fn array_of(&self, recorded: &RecordedSpec, skin: &SkinSpec) -> Result<TaxelArray> {
@@ -165,14 +141,8 @@ impl Check<'_> {
         if skin.layout.unwrap_or_default() != ArrayLayout::Grid {
             return self.array_of_layout(&sensors, skin);
         }
-        let given = [
-            ("skin.taxels", skin.taxels.is_some()),
-            ("skin.size_mm", skin.size_mm.is_some()),
-        ];
-        if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-            let allowed = "no such key: rows and columns are those of the recorded frames";
-            return Err(self.error(key, "given", allowed));
-        }
+        let allowed = "no such key: rows and columns are those of the recorded frames";
+        self.absent(("skin", skin), &["taxels", "size_mm"], allowed)?;
         let pitches = skin.pitch_mm.values();
         let [pitch_mm] = pitches[..] else {
             let given = format!("{} pitches", pitches.len());

@@ -1,17 +1,11 @@
 //! Checks of `[objects]`, `[skin]` and `[touches]`.
 
-use crate::engine::axis::Axis;
-use crate::error::Result;
-use crate::inputs::check::{Check, MAX_VALUES};
-use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::units::{MAX_SIDE, MM};
+use crate::inputs::check::MAX_VALUES;
+use crate::inputs::units::MAX_SIDE;
 use crate::mesh::SizeLimits;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::scene::{
-    RangeSpec, SensedSpec, SkinSpec, SpreadSpec, TouchesSpec,
-};
-use crate::studies::recognition::spec::study::StudySpec;
-use crate::world::{ArrayLayout, Grid, Placement, Spread, Taxel, TouchAxis};
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::{RangeSpec, SpreadSpec};
+use crate::world::{Grid, Placement, Spread, Taxel};
 
 /// Returns the smallest pitch of all arrays, metres.
 fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
@@ -60,17 +54,14 @@ impl SkinSpec {
 impl Check<'_> {
     /// Checks `[objects]`: the study names sets or meshes, and no key has no effect.
     pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
-        let given = self.table("objects", objects)?;
+        self.table("objects", objects)?;
         if objects.meshes.is_some() {
             return Ok(());
         }
         let of_meshes = ["model", "unit", "close_holes_mm"];
-        if let Some(key) = of_meshes.iter().find(|key| given.contains_key(**key)) {
-            let key = format!("objects.{key}");
-            let allowed =
-                "it only beside meshes = \"FOLDER\": solids are spheres within surface_error_mm";
-            return Err(self.error(&key, "given without meshes", allowed));
-        }
+        let allowed =
+            "it only beside meshes = \"FOLDER\": solids are spheres within surface_error_mm";
+        self.absent(("objects", objects), &of_meshes, allowed)?;
         if objects.sets.is_empty() {
             let allowed = "sets = [...] or meshes = \"FOLDER\" (or --objects FOLDER)";
             return Err(self.error("objects", "neither sets nor meshes", allowed));
@@ -80,22 +71,13 @@ impl Check<'_> {
 
     /// Checks that a layout of taxels has all required keys and no unsupported keys.
     pub fn layout(&self, spec: &StudySpec) -> Result<()> {
-        let SkinSpec {
-            layout,
-            curvature_radius_mm: radius,
-            ..
-        } = spec.skin;
-        let layout = layout.unwrap_or_default();
+        let radius = spec.skin.curvature_radius_mm;
+        let layout = spec.skin.layout.unwrap_or_default();
         let (key, given, allowed) = match radius {
             None if layout.is_curved() => (
                 "skin.layout",
                 layout.words().to_owned(),
                 "skin.curvature_radius_mm beside a cylinder or a cap",
-            ),
-            Some(radius) if !layout.is_curved() && !spec.axes.has("skin.layout") => (
-                "skin.curvature_radius_mm",
-                radius.to_string(),
-                "no such key: the layout is flat",
             ),
             Some(_) if layout.is_curved() && spec.touches.speed_mm_per_s > 0.0 => (
                 "touches.speed_mm_per_s",
@@ -110,12 +92,10 @@ impl Check<'_> {
     pub(crate) fn arrays(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         self.table("skin", skin)?;
         let pitches = skin.pitch_mm.values();
-        let refuse = |given| Err(self.error("skin", given, "one of them"));
         let n_sizes = match (&skin.size_mm, &skin.taxels) {
-            (Some(sizes), None) => sizes.values().len(),
-            (None, Some(counts)) => counts.values().len(),
-            (None, None) => return refuse("neither size_mm nor taxels"),
-            _ => return refuse("both size_mm and taxels"),
+            (Some(sizes), _) => sizes.values().len(),
+            (_, Some(counts)) => counts.values().len(),
+            _ => return Err(self.error("skin", "neither size_mm nor taxels", "one of them")),
         };
         self.configurations(pitches.len() as f64 * n_sizes as f64)?;
         let layout = skin.layout.unwrap_or_default();
@@ -141,21 +121,11 @@ impl Check<'_> {
 
     /// Checks that all arrays are square grids, and returns them.
     pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
-        let only = |key: &str, what: &str| {
-            let allowed = format!("no such key: only studies of recognition have {what}");
-            Err(self.error(key, "given", allowed))
-        };
-        if skin.layout.unwrap_or_default() != ArrayLayout::Grid
-            || skin.curvature_radius_mm.is_some()
-        {
-            return only("skin.layout", "other layouts than grids");
-        }
-        if skin.sensed.unwrap_or_default() != SensedSpec::Deflection
-            || skin.friction.is_some()
-            || skin.shear_stiffness_n_per_m.is_some()
-        {
-            return only("skin.sensed", "skins that read shear");
-        }
+        let allowed = "no such key: only studies of recognition have other layouts than grids";
+        self.absent(("skin", skin), &["layout", "curvature_radius_mm"], allowed)?;
+        let of_shear = ["sensed", "friction", "shear_stiffness_n_per_m"];
+        let allowed = "no such key: only studies of recognition have skins that read shear";
+        self.absent(("skin", skin), &of_shear, allowed)?;
         self.arrays(skin)
     }
 
@@ -185,18 +155,9 @@ impl Check<'_> {
 
     /// Returns the placement (distribution of touch poses). Returns an error if a touch has several frames or slides.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
-        let of_recognition = [
-            ("slide_mm", touches.slide_mm.is_some_and(|mm| mm != 0.0)),
-            (
-                "slide_deg",
-                touches.slide_deg.is_some_and(|degrees| degrees != 0.0),
-            ),
-            ("frames", touches.frames.values() != [1]),
-        ];
-        if let Some((key, _)) = of_recognition.into_iter().find(|(_, is_given)| *is_given) {
-            let allowed = "no such key: only studies of recognition and of breaking points use it";
-            return Err(self.error(&format!("touches.{key}"), "given", allowed));
-        }
+        let allowed = "no such key: only studies of recognition and of breaking points use it";
+        let of_recognition = ["slide_mm", "slide_deg", "frames"];
+        self.absent(("touches", touches), &of_recognition, allowed)?;
         self.placed(touches)
     }
 

@@ -1,18 +1,14 @@
 //! Checks of `[signal]`, and the signal conditions that result from its axes.
 
 use crate::engine::axes::CombineSpec;
-use crate::engine::axis::Axis;
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::sensor_errors::{NOISES, Strengths, TestSensor};
-use crate::inputs::units::MM;
+use crate::inputs::sensor_errors::{NOISES, Strengths};
 use crate::signal::{NoiseUnit, SensorError, Strength};
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
-use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec};
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::{SignalAxis, SignalSpec};
+use serde::Serialize;
 
 /// Signal condition: one strength of noise, smoothing and each sensor error, that is, one value for each axis of `[signal]`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Condition {
     /// Noise standard deviation of a reading, in the noise unit of the plan.
     pub noise: f64,

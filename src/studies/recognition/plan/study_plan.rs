@@ -1,19 +1,12 @@
 //! Plan of a recognition study: the keys of its [`StudySpec`], checked and converted to SI units.
 //!
-//! The checks are in `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. The checks also convert
+//! The checks are in `scene.rs` (arrays, taxels, placement), `sensed.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. The checks also convert
 //! millimetres, degrees and fractions into metres, radians and absolute values. Later stages use SI units only.
 
-use crate::engine::axes::AxisValues;
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::units::MM;
-use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
-use crate::studies::recognition::plan::pose_groups::KeepTogether;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::recorded::RecordedSpec;
-use crate::studies::recognition::spec::scene::{SpreadSpec, TouchesSpec};
-use crate::studies::recognition::spec::study::StudySpec;
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::KeepTogether;
+use crate::studies::recognition::spec::SpreadSpec;
 use crate::world::Placement;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -169,8 +162,7 @@ impl Plan {
     /// Returns an upper bound of the number of configurations. The actual number is smaller if values of m are equal, or if several values of C are given for a
     /// classifier without C.
     pub fn n_configurations(&self) -> f64 {
-        let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
-        self.spec.signal.n_conditions() * lengths.product::<f64>()
+        self.spec.signal.n_conditions() * self.spec.n_combinations()
     }
 
     /// Returns the numbers m of measurements for an array and an ensemble. On a small array, different ratios may give equal m.
@@ -194,5 +186,81 @@ impl Plan {
             NoiseUnit::Mm => format!("{level} mm"),
             NoiseUnit::N => format!("{level} N"),
         }
+    }
+}
+
+/// Methods that assign a split t and a projection (measurement matrix) t to each trial t. With P = `projections_per_split`, trial t has split t / P and
+/// projection t mod P, so that each split is combined with P projections. All other random numbers are drawn anew in each trial.
+impl StudySpec {
+    /// Returns the number of the split into training and test touches that is used in a trial.
+    pub fn split_of(&self, trial: usize) -> usize {
+        trial / self.projections_per_split.unwrap_or(1)
+    }
+
+    /// Returns the number of the projection (measurement matrix) that is used in a trial.
+    pub fn projection_of(&self, trial: usize) -> usize {
+        projection_of(self.projections_per_split, trial)
+    }
+}
+
+/// Returns the number of the projection (measurement matrix) that is used in a trial. Without `projections_per_split`, each trial has its own projection;
+/// otherwise, all splits share that many projections.
+pub(crate) fn projection_of(projections_per_split: Option<usize>, trial: usize) -> usize {
+    projections_per_split.map_or(trial, |n| trial % n)
+}
+
+impl Check<'_> {
+    /// Checks that the number of trials is a multiple of the key `projections_per_split`.
+    pub fn repeats(&self, spec: &StudySpec) -> Result<()> {
+        const KEY: &str = "projections_per_split";
+        let Some(n_projections) = spec.projections_per_split else {
+            return Ok(());
+        };
+        if n_projections < 2 {
+            let allowed = "at least 2, or no such key: a projection of its own for each trial";
+            return Err(self.error(KEY, n_projections, allowed));
+        }
+        let n_splits = spec.trials / n_projections;
+        if !spec.trials.is_multiple_of(n_projections) || n_splits < 2 {
+            let allowed = format!("a multiple of {KEY} = {n_projections}, for at least 2 splits");
+            return Err(self.error("trials", spec.trials, allowed));
+        }
+        match spec.recognition.folds {
+            Some(k) if !n_splits.is_multiple_of(k) => {
+                let given = format!("{n_splits} splits of {n_projections} projections each");
+                let allowed = format!("a multiple of recognition.folds = {k} splits");
+                Err(self.error("trials", given, allowed))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    fn study(projections_per_split: Option<usize>) -> StudySpec {
+        let text = "question = \"?\"\n[skin]\npitch_mm = 2.0\nstroke_mm = 5.0\n[sensing]\n[recognition]\nclassifier = \"linear_svm\"";
+        StudySpec {
+            projections_per_split,
+            ..StudySpec::parse("study.toml", text).unwrap()
+        }
+    }
+
+    #[test]
+    fn crossed_trials_meet_every_projection_with_every_split_once() {
+        let crossed = study(Some(3));
+        let met: BTreeSet<_> = (0..12)
+            .map(|t| (crossed.split_of(t), crossed.projection_of(t)))
+            .collect();
+        assert_eq!(met.len(), 12);
+        assert!(
+            met.iter()
+                .all(|&(split, projection)| split < 4 && projection < 3)
+        );
+        let own = study(None);
+        assert_eq!((own.split_of(7), own.projection_of(7)), (7, 7));
     }
 }

@@ -1,24 +1,22 @@
 //! Arrays of taxels that a study presses on objects.
 
-use crate::error::Result;
-use crate::inputs::units::millimetres;
-use crate::random::Seed;
-use crate::sensing::Ensemble;
 use crate::signal::{Chain, SignalStep};
-use crate::studies::recognition::plan::listed_taxels::{ListedTaxels, PlacedSensor, SensorImage};
-use crate::studies::recognition::plan::sensed::{Sensed, of_channel};
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::{
+    ListedTaxels, PlacedSensor, Sensed, SensorImage, of_channel,
+};
 use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
 use ndarray::Array2;
-use std::fmt;
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// Number of picture cells per taxel pitch, for layouts other than the grid. With a smaller value, the offset of staggered rows is not visible.
 const PICTURE_CELLS: f64 = 3.0;
 
 /// Array of taxels: its layout, the quantity that its taxels read, and its slide along the object. Every layout has the density and size of a square grid.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct TaxelArray {
     grid: Grid,
     taxel: Taxel,
@@ -47,17 +45,8 @@ impl TaxelArray {
                 Patch::new(layout.words(), places, Taxels::Equal(taxel))?
             }
         };
-        Ok(Self {
-            grid,
-            taxel,
-            layout,
-            radius: if layout.is_curved() { radius } else { 0.0 },
-            sensed: Sensed::Deflection,
-            slide: DVec2::ZERO,
-            is_placed: true,
-            listed: None,
-            patch: Arc::new(patch),
-        })
+        let radius = if layout.is_curved() { radius } else { 0.0 };
+        Ok(Self::of_patch((layout, radius), (grid, taxel), patch))
     }
 
     /// Creates the array of sensors whose taxels have listed positions. `pitch` is the side of the square area per taxel, metres.
@@ -67,22 +56,32 @@ impl TaxelArray {
     pub fn listed(sensors: &[PlacedSensor], taxel: Taxel, pitch: f64) -> Result<Self> {
         let (listed, layout) = ListedTaxels::new(sensors)?;
         let side = (layout.n_taxels() as f64).sqrt().round() as usize;
-        let grid = Grid {
-            nx: side,
-            ny: side,
-            pitch,
-        };
+        let (nx, ny) = (side, side);
+        let patch = Patch::new("recorded", layout, Taxels::Equal(taxel))?;
+        let of_grid = (Grid { nx, ny, pitch }, taxel);
         Ok(Self {
+            listed: Some(Arc::new(listed)),
+            ..Self::of_patch((ArrayLayout::Grid, 0.0), of_grid, patch)
+        })
+    }
+
+    /// Returns the array of a patch that reads deflections and does not slide.
+    fn of_patch(
+        (layout, radius): (ArrayLayout, f64),
+        (grid, taxel): (Grid, Taxel),
+        patch: Patch,
+    ) -> Self {
+        Self {
             grid,
             taxel,
-            layout: ArrayLayout::Grid,
-            radius: 0.0,
+            layout,
+            radius,
             sensed: Sensed::Deflection,
             slide: DVec2::ZERO,
             is_placed: true,
-            patch: Arc::new(Patch::new("recorded", layout, Taxels::Equal(taxel))?),
-            listed: Some(Arc::new(listed)),
-        })
+            listed: None,
+            patch: Arc::new(patch),
+        }
     }
 
     /// Sets the quantity that the taxels read, and the distances that the pressed array slides along its x and y axes, metres.
@@ -389,34 +388,14 @@ impl TaxelArray {
 }
 
 /// Writes all inputs that determine the frames of the array; of the patch, which is derived from them, only the absent taxels.
-impl fmt::Debug for TaxelArray {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self {
-            grid,
-            taxel,
-            layout,
-            radius,
-            sensed,
-            slide,
-            is_placed,
-            listed,
-            patch,
-        } = self;
-        let places = match listed {
-            Some(listed) => format!(" {}", listed.identity()),
-            None if *is_placed => String::new(),
-            None => " without places".to_owned(),
-        };
-        write!(
-            f,
-            "{grid:?} {taxel:?} {layout:?} {radius} {sensed:?} {slide}{places}"
-        )?;
-        let absent = patch.absent().iter().enumerate().filter(|(_, is)| **is);
-        let absent: Vec<usize> = absent.map(|(taxel, _)| taxel).collect();
-        match &absent[..] {
-            [] => Ok(()),
-            absent => write!(f, " without {absent:?}"),
-        }
+impl Serialize for TaxelArray {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let absent = self.patch.absent().iter().enumerate();
+        let absent = absent.filter_map(|(taxel, is_absent)| is_absent.then_some(taxel));
+        let absent: Vec<usize> = absent.collect();
+        let of_layout = (&self.grid, &self.taxel, &self.layout, self.radius);
+        let of_places = (self.is_placed, self.listed.as_deref(), absent);
+        (of_layout, &self.sensed, self.slide.to_array(), of_places).serialize(serializer)
     }
 }
 

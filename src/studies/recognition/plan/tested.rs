@@ -10,14 +10,11 @@
 //! The study with these keys is planned as any other study. Test touches have the same numbers as the study's touches, so the splits are equal. Projections,
 //! features and classifiers are fitted to the training touches.
 
-use crate::engine::axis::Axis;
-use crate::error::{Error, Result};
-use crate::inputs::check::Check;
 use crate::inputs::sensor_errors::NOISES;
-use crate::studies::recognition::plan::signal::Condition;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::signal::SignalAxis;
-use crate::studies::recognition::spec::study::StudySpec;
+use crate::inputs::toml_value::table_of;
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::Condition;
+use crate::studies::recognition::spec::SignalAxis;
 use std::sync::Arc;
 use toml::{Table, Value};
 
@@ -51,11 +48,8 @@ impl Check<'_> {
             let given = "given where touches are chosen by their poses (recognition.next_touch)";
             return Err(self.error("test.touches", given, "other tables of [test]"));
         }
-        let mut study = Table::try_from(StudySpec {
-            test: Table::new(),
-            ..spec.clone()
-        })
-        .expect("every field of a study has a TOML form");
+        let mut study = table_of(spec);
+        study.remove("test");
         for (name, keys) in &spec.test {
             let Value::Table(keys) = keys else {
                 let allowed = format!("a table: {}", tables.join(", "));

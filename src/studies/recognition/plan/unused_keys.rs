@@ -1,23 +1,17 @@
-//! Checks for keys that have no effect in a study.
+//! Keys without effect: each key that acts only together with other keys, and the checks that a given value acts.
 
-use crate::engine::axes::{CombineSpec, StudyAxes};
-use crate::engine::axis::Axis;
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::toml_value::{is_at, value_at};
-use crate::studies::recognition::plan::learning::DEFAULT_TILT_DEG;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::scene::{STIFFNESS, SensedSpec, SkinSpec, TouchesSpec};
-use crate::studies::recognition::spec::signal::StepSpec;
-use crate::studies::recognition::spec::study::StudySpec;
-use crate::world::{Spread, TouchAxis};
+use crate::engine::axes::StudyAxes;
+use crate::inputs::toml_value::{is_at, number, table_of, value_at};
+use crate::learning::data::temporal_features::TemporalFeatures;
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::{STIFFNESS, key};
+use crate::world::Spread;
+use toml::Table;
 
-/// A key whose values have an effect only together with other keys.
+/// Keys whose values have an effect only together with other keys.
 struct KeyUse {
-    key: &'static str,
-    /// Function that returns the value of the key, if this value may have no effect without other keys.
-    given: fn(&Plan) -> Option<f64>,
-    /// Function that returns whether the value has an effect with the other keys of the plan.
+    keys: &'static [&'static str],
+    /// Function that returns whether the values have an effect with the other keys of the plan.
     has_effect: fn(&Plan) -> bool,
     /// Names of the other keys that are needed, or of their tables. If one of these keys is an axis, the value may have an effect in another configuration.
     beside: &'static [&'static str],
@@ -27,74 +21,138 @@ struct KeyUse {
 }
 
 const OF_FORCE: &str = "skin.sensed = \"force\" or \"force\" among signal.steps beside it";
-const WHOLE_FRAMES: &str = "every ensemble of the study measures all values of a frame";
-const STICKS: &str = "tips stay where they first touch";
-const RUBS: &str = "a touches.slide_mm above 0 or a curved skin.layout beside it";
-const ENSEMBLE: &str = "no such key, or another sensing.ensemble beside it";
+const DRAWN: &str = "no such key, or { uniform = [low, high] } of such a key of [touches]";
 
 /// Keys that may have no effect.
-const USES: [KeyUse; 12] = [
+const USES: [KeyUse; 19] = [
     KeyUse {
-        key: "skin.damping_n_s_per_m",
-        given: damping,
-        has_effect: |plan| reads_force(&plan.spec),
+        keys: &["touches.slide_deg"],
+        has_effect: |plan| slides(&plan.spec),
+        beside: &["touches.slide_mm"],
+        reason: "touches do not slide",
+        allowed: "touches.slide_mm above 0 beside it, or no such key",
+    },
+    KeyUse {
+        keys: &["skin.curvature_radius_mm"],
+        has_effect: |plan| plan.spec.skin.layout.unwrap_or_default().is_curved(),
+        beside: &["skin.layout"],
+        reason: "the layout is flat",
+        allowed: "no such key, or a curved skin.layout beside it",
+    },
+    KeyUse {
+        keys: &["skin.damping_n_s_per_m"],
+        has_effect: reads_force,
         beside: &["skin.sensed", "signal.steps"],
         reason: "no force is read",
         allowed: OF_FORCE,
     },
     KeyUse {
-        key: "skin.damping_n_s_per_m",
-        given: damping,
+        keys: &["skin.damping_n_s_per_m"],
         has_effect: |plan| plan.speed > 0.0,
         beside: &["touches.speed_mm_per_s", "recorded.speed_mm_per_s"],
         reason: "every touch is read at rest",
         allowed: "a touches.speed_mm_per_s above 0 beside it",
     },
     KeyUse {
-        key: "skin.friction",
-        given: |plan| of_simulation(plan, plan.spec.skin.friction),
-        has_effect: |plan| rubs(&plan.spec),
-        beside: &["touches.slide_mm", "skin.layout"],
-        reason: STICKS,
-        allowed: RUBS,
+        keys: &["skin.friction", "skin.shear_stiffness_n_per_m"],
+        has_effect: reads_shear,
+        beside: &["skin.sensed"],
+        reason: "the skin reads no shear",
+        allowed: "skin.sensed = \"shear\" beside it, or no such key",
     },
     KeyUse {
-        key: "skin.shear_stiffness_n_per_m",
-        given: |plan| of_simulation(plan, plan.spec.skin.shear_stiffness_n_per_m),
-        has_effect: |plan| rubs(&plan.spec),
+        keys: &["skin.friction", "skin.shear_stiffness_n_per_m"],
+        has_effect: |plan| is_recorded(plan) || rubs(&plan.spec),
         beside: &["touches.slide_mm", "skin.layout"],
-        reason: STICKS,
-        allowed: RUBS,
+        reason: "tips stay where they first touch",
+        allowed: "a touches.slide_mm above 0 or a curved skin.layout beside it",
     },
     KeyUse {
-        key: "skin.stiffness_n_per_m",
-        given: |plan| {
-            let given = plan.spec.skin.stiffness_n_per_m;
-            of_simulation(plan, Some(given)).filter(|&given| given != STIFFNESS)
-        },
-        has_effect: |plan| reads_force(&plan.spec),
+        keys: &["skin.stiffness_n_per_m"],
+        has_effect: |plan| is_recorded(plan) || reads_force(plan),
         beside: &["skin.sensed", "signal.steps"],
         reason: "no force is read",
         allowed: OF_FORCE,
     },
     KeyUse {
-        key: "touches.speed_mm_per_s",
-        given: |plan| Some(plan.spec.touches.speed_mm_per_s).filter(|&speed| speed > 0.0),
+        keys: &["touches.speed_mm_per_s"],
         has_effect: |plan| {
             let needs_motion = |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().needs_motion);
-            plan.spec.skin.damping_n_s_per_m > 0.0
-                || plan.spec.signal.steps.iter().any(needs_motion)
+            let mut steps = plan.spec.signal.steps.iter();
+            plan.spec.skin.damping_n_s_per_m > 0.0 || steps.any(needs_motion)
         },
         beside: &["skin.damping_n_s_per_m", "signal.steps"],
         reason: "the skin has no damper and is not scanned",
         allowed: "a skin.damping_n_s_per_m above 0 or \"scan\" among signal.steps beside it",
     },
     KeyUse {
-        key: "recognition.readings_per_touch",
-        given: |plan| {
-            let given = plan.spec.recognition.readings_per_touch;
-            given.filter(|&n| n > 1).map(|n| n as f64)
+        keys: &["signal.combine"],
+        has_effect: |plan| {
+            let axes = plan.spec.signal.axes.given();
+            axes.filter(|(.., axis)| axis.values().len() > 1).count() > 1
         },
+        beside: &[],
+        reason: "fewer than two keys of [signal] have several values",
+        allowed: "no such key, or two axes in [signal]",
+    },
+    KeyUse {
+        keys: &["sensing.ratio", "sensing.measurements"],
+        has_effect: |plan| {
+            let counts = plan.spec.sensing.measurements.iter().flat_map(Axis::values);
+            let is_all = |m: usize| plan.arrays.iter().all(|array| array.n_values() == m);
+            compresses(plan) || plan.spec.sensing.ratio.is_none() && counts.into_iter().all(is_all)
+        },
+        beside: &["sensing.ensemble"],
+        reason: "every ensemble of the study measures all values of a frame",
+        allowed: "no such key, or another sensing.ensemble beside it",
+    },
+    KeyUse {
+        keys: &[
+            "recognition.depth_window_full_scale",
+            "recognition.tilt_augmentation",
+        ],
+        has_effect: has_images,
+        beside: &["recognition.features"],
+        reason: "no features of the study are of images",
+        allowed: "features of images, or no such key",
+    },
+    KeyUse {
+        keys: &["recognition.tilt_augmentation_deg"],
+        has_effect: |plan| plan.spec.recognition.has_copies(),
+        beside: &["recognition.tilt_augmentation"],
+        reason: "no touch is copied",
+        allowed: "a recognition.tilt_augmentation above 0 beside it",
+    },
+    KeyUse {
+        keys: &["recognition.temporal_features"],
+        has_effect: |plan| {
+            let values = Axis::optional_values(&plan.spec.recognition.temporal_features);
+            values != [Some(TemporalFeatures::Deepest)] || plan.frames.iter().any(|&n| n > 1)
+        },
+        beside: &["touches.frames"],
+        reason: "every touch is one frame",
+        allowed: "touches.frames of 2 or more beside it, or no such key",
+    },
+    KeyUse {
+        keys: &["recognition.cv_folds"],
+        has_effect: |plan| plan.spec.recognition.is_open() || plan.spec.recognition.is_informed(),
+        beside: &[
+            "recognition.c_grid",
+            "recognition.gamma_grid",
+            "recognition.next_touch",
+        ],
+        reason: "nothing is chosen by folds",
+        allowed: "c_grid, gamma_grid or next_touch = \"most_informative\" beside it",
+    },
+    KeyUse {
+        keys: &["recognition.cv_touches"],
+        has_effect: |plan| plan.spec.recognition.is_open(),
+        beside: &["recognition.c_grid", "recognition.gamma_grid"],
+        reason: "nothing is chosen by folds",
+        allowed: "c_grid or gamma_grid beside it, or no such key",
+    },
+    KeyUse {
+        keys: &["recognition.readings_per_touch"],
         has_effect: |plan| {
             let mut conditions = plan.conditions().into_iter();
             conditions.any(|condition| condition.is_random_by_reading())
@@ -104,86 +162,66 @@ const USES: [KeyUse; 12] = [
         allowed: "a signal.noise_std_full_scale above 0, drift or pink noise beside it",
     },
     KeyUse {
-        key: "sensing.ratio",
-        given: |plan| {
-            let ratios = plan.spec.sensing.ratio.iter().flat_map(Axis::values);
-            ratios.into_iter().find(|&ratio| ratio != 1.0)
+        keys: &["recognition.next_touch"],
+        has_effect: |plan| {
+            let counts = plan.spec.recognition.touches_per_decision.values();
+            counts.into_iter().any(|k| k > 1)
         },
-        has_effect: compresses,
-        beside: &["sensing.ensemble"],
-        reason: WHOLE_FRAMES,
-        allowed: ENSEMBLE,
+        beside: &["recognition.touches_per_decision"],
+        reason: "one touch has no next",
+        allowed: "a recognition.touches_per_decision of 2 or more beside it, or \"random\"",
     },
     KeyUse {
-        key: "sensing.measurements",
-        given: |plan| {
-            let counts = plan.spec.sensing.measurements.iter().flat_map(Axis::values);
-            let is_all = |m: usize| plan.arrays.iter().all(|array| array.n_values() == m);
-            counts.into_iter().find(|&m| !is_all(m)).map(|m| m as f64)
-        },
-        has_effect: compresses,
-        beside: &["sensing.ensemble"],
-        reason: WHOLE_FRAMES,
-        allowed: ENSEMBLE,
-    },
-    KeyUse {
-        key: "recognition.tilt_augmentation_deg",
-        given: |plan| {
-            let given = plan.spec.recognition.tilt_augmentation_deg;
-            given.filter(|&degrees| degrees != DEFAULT_TILT_DEG)
-        },
-        has_effect: |plan| plan.spec.recognition.has_copies(),
-        beside: &["recognition.tilt_augmentation"],
-        reason: "no touch is copied",
-        allowed: "a recognition.tilt_augmentation above 0 beside it",
-    },
-    KeyUse {
-        key: "recognition.group_by_mm",
-        given: |plan| plan.spec.recognition.group_by_mm,
+        keys: &["recognition.group_by_mm"],
         has_effect: |plan| groups_drawn(plan, |axis| !is_angle(axis)),
         beside: &["touches", "recognition.group_by"],
         reason: "no offset or depth that defines the groups is drawn",
-        allowed: "no such key, or { uniform = [low, high] } of such a key of [touches]",
+        allowed: DRAWN,
     },
     KeyUse {
-        key: "recognition.group_by_deg",
-        given: |plan| plan.spec.recognition.group_by_deg,
+        keys: &["recognition.group_by_deg"],
         has_effect: |plan| groups_drawn(plan, is_angle),
         beside: &["touches", "recognition.group_by"],
         reason: "no angle that defines the groups is drawn",
-        allowed: "no such key, or { uniform = [low, high] } of such a key of [touches]",
+        allowed: DRAWN,
     },
 ];
 
-/// Returns the damping coefficient of the taxels if it is positive.
-fn damping(plan: &Plan) -> Option<f64> {
-    Some(plan.spec.skin.damping_n_s_per_m).filter(|&damping| damping > 0.0)
+/// Returns whether the frames are recorded. Such a study may describe its skin completely.
+fn is_recorded(plan: &Plan) -> bool {
+    plan.spec.recorded.is_some()
 }
 
-/// Returns the value of a key in a study that simulates its frames. A study of recorded frames may describe the skin completely.
-fn of_simulation(plan: &Plan, value: Option<f64>) -> Option<f64> {
-    value.filter(|_| plan.spec.recorded.is_none())
+fn slides(spec: &StudySpec) -> bool {
+    spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)
 }
 
 /// Returns whether taxels move along the object. On a flat array that is pressed straight on, no taxel does.
 fn rubs(spec: &StudySpec) -> bool {
-    let layout = spec.skin.layout.as_ref();
-    spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)
-        || layout.is_some_and(|layout| layout.is_curved())
-        || spec.axes.has("touches.slide_mm")
-        || spec.axes.has("skin.layout")
+    slides(spec) || spec.skin.layout.unwrap_or_default().is_curved()
+}
+
+fn reads_shear(plan: &Plan) -> bool {
+    plan.spec.skin.sensed == Some(SensedSpec::Shear)
 }
 
 /// Returns whether the study reads forces.
-fn reads_force(spec: &StudySpec) -> bool {
-    spec.skin.sensed.unwrap_or_default() != SensedSpec::Deflection
-        || spec.signal.steps.contains(&StepSpec::Force)
+fn reads_force(plan: &Plan) -> bool {
+    let (skin, signal) = (&plan.spec.skin, &plan.spec.signal);
+    skin.sensed.unwrap_or_default() != SensedSpec::Deflection
+        || signal.steps.contains(&StepSpec::Force)
 }
 
 /// Returns whether an ensemble of the study compresses frames.
 fn compresses(plan: &Plan) -> bool {
     let mut ensembles = plan.spec.sensing.ensemble.values().into_iter();
     ensembles.any(|ensemble| !ensemble.about().is_whole_frame)
+}
+
+/// Returns whether some features of the study are of images.
+fn has_images(plan: &Plan) -> bool {
+    let mut features = plan.spec.recognition.all_features().into_iter();
+    features.any(|features| features.of_image().is_some())
 }
 
 fn is_angle(axis: TouchAxis) -> bool {
@@ -214,49 +252,44 @@ impl Check<'_> {
     /// Checks that keys have an effect. One value of an axis that uses a key suffices. A key that training touches and test touches share has an effect if it has
     /// one in either. A key of `[test]` must have an effect in test touches.
     pub fn unused_keys(&self, plan: &Plan) -> Result<()> {
-        self.sticking_shear(&plan.spec)?;
-        for key_use in &USES {
-            let KeyUse { key, given, .. } = key_use;
-            let own_value = given(plan).filter(|_| !key_use.acts(plan, &plan.spec.axes, ""));
-            let Some(tested) = plan.tested.as_deref() else {
-                self.refuse_unused(key_use, "", own_value)?;
+        self.sticking_shear(plan)?;
+        let (own, axes) = (table_of(&plan.spec), &plan.spec.axes);
+        let tested = plan.tested.as_deref();
+        let tested = tested.map(|tested| (tested, table_of(&tested.spec)));
+        let each = USES
+            .iter()
+            .flat_map(|key_use| key_use.keys.iter().map(move |key| (key_use, *key)));
+        for (key_use, key) in each {
+            let own_value = key_use.unused(key, (plan, &own), (axes, ""));
+            let Some((tested, of_test)) = &tested else {
+                self.refuse_unused((key_use, key), "", own_value)?;
                 continue;
             };
-            let of_test = given(tested).filter(|_| !key_use.acts(tested, &plan.spec.axes, "test."));
+            let of_test = key_use.unused(key, (tested, of_test), (axes, "test."));
             match value_at(&plan.spec.test, key) {
                 Some(_) => {
-                    self.refuse_unused(key_use, "", own_value)?;
-                    self.refuse_unused(key_use, "test.", of_test)?;
+                    self.refuse_unused((key_use, key), "", own_value)?;
+                    self.refuse_unused((key_use, key), "test.", of_test)?;
                 }
-                None => self.refuse_unused(key_use, "", own_value.and(of_test))?,
+                None => self.refuse_unused((key_use, key), "", own_value.and(of_test))?,
             }
-        }
-        let signal = &plan.spec.signal;
-        let several = signal.axes.given();
-        let several = several.filter(|(.., axis)| axis.values().len() > 1);
-        if signal.combine == CombineSpec::OneAtATime && several.count() < 2 {
-            let given = "one_at_a_time, but fewer than two keys of [signal] have several values";
-            let allowed = "no such key, or two axes in [signal]";
-            return Err(self.error("signal.combine", given, allowed));
         }
         Ok(())
     }
 
     /// Returns an error if `unused` is the value of a key without effect; `table` is `test.` for a key of `[test]`.
-    fn refuse_unused(&self, key_use: &KeyUse, table: &str, unused: Option<f64>) -> Result<()> {
-        let KeyUse {
-            key,
-            reason,
-            allowed,
-            ..
-        } = key_use;
-        match unused {
-            None => Ok(()),
-            Some(given) => {
-                let given = format!("{given}, but {reason}");
-                Err(self.error(&format!("{table}{key}"), given, allowed))
-            }
-        }
+    fn refuse_unused(
+        &self,
+        (key_use, key): (&KeyUse, &str),
+        table: &str,
+        unused: Option<String>,
+    ) -> Result<()> {
+        let place = format!("{table}{key}");
+        let refused = |given| {
+            let given = format!("{given}, but {}", key_use.reason);
+            self.error(&place, given, key_use.allowed)
+        };
+        unused.map(refused).map_or(Ok(()), Err)
     }
 
     /// Checks that the springs, the dampers and the speed have an effect in a study of another kind than recognition. `of_force` states which keys make the
@@ -293,20 +326,34 @@ impl Check<'_> {
     }
 
     /// Returns an error if taxels read shear and move along the object, but have no friction.
-    fn sticking_shear(&self, spec: &StudySpec) -> Result<()> {
-        let reads_shear = spec.skin.sensed == Some(SensedSpec::Shear);
-        if spec.recorded.is_none() && reads_shear && rubs(spec) && spec.skin.friction.is_none() {
-            return Err(self.error("skin.sensed", "shear", "skin.friction beside it"));
+    fn sticking_shear(&self, plan: &Plan) -> Result<()> {
+        let sticks = !is_recorded(plan) && reads_shear(plan) && rubs(&plan.spec);
+        match sticks && plan.spec.skin.friction.is_none() {
+            true => Err(self.error("skin.sensed", "shear", "skin.friction beside it")),
+            false => Ok(()),
         }
-        Ok(())
     }
 }
 
 impl KeyUse {
-    /// Returns whether the key has an effect in a plan, or may have one because another key is an axis. Other keys of test touches may be axes of `table`.
-    fn acts(&self, plan: &Plan, axes: &StudyAxes, table: &str) -> bool {
-        (self.has_effect)(plan)
-            || has_axis(axes, "", self.beside)
-            || has_axis(axes, table, self.beside)
+    /// Returns the first value of one of the keys in a study that differs from the usual value, if no value has an effect. Returns `None` if the values have an effect, or
+    /// may have one because another key is an axis. Other keys of test touches may be axes of `of_test`.
+    fn unused(
+        &self,
+        path: &str,
+        (plan, study): (&Plan, &Table),
+        (axes, of_test): (&StudyAxes, &str),
+    ) -> Option<String> {
+        let acts = || {
+            (self.has_effect)(plan)
+                || has_axis(axes, "", self.beside)
+                || has_axis(axes, of_test, self.beside)
+        };
+        let (value, about) = (value_at(study, path)?, key(path));
+        let one = std::slice::from_ref(value);
+        let mut values = value.as_array().map_or(one, Vec::as_slice).iter();
+        let given = values.find(|value| !about.is_usual(value))?;
+        let words = || number(given).map_or_else(|| given.to_string(), |n| n.to_string());
+        (!acts()).then(words)
     }
 }

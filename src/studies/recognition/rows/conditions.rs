@@ -1,8 +1,8 @@
 //! Grouping of configurations by condition (external settings, such as noise), and selection of the best configuration under each condition.
 
-use crate::error::Result;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::table::{Columns, File, Role, Table};
+use crate::studies::prelude::*;
+use crate::studies::recognition::rows::Configuration;
+use crate::table::{Columns, Role};
 
 /// Returns a table with the settings of the given configurations, without scores.
 ///

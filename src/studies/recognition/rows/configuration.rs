@@ -8,9 +8,8 @@ use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::{Ensemble, Selection};
 use crate::signal::NoiseUnit;
-use crate::studies::recognition::rows::image_features::FeaturesOfImages;
-use crate::studies::recognition::rows::row_inputs::RowInputs;
-use crate::studies::recognition::spec::keys::key;
+use crate::studies::recognition::rows::{FeaturesOfImages, RowInputs};
+use crate::studies::recognition::spec::key;
 use crate::table::{Column, Columns, Role, Scale};
 use bubbletouch_sim::features::Features;
 use serde::ser::SerializeStruct;
@@ -140,6 +139,14 @@ impl Configuration {
             features: self.features,
             depth_window_full_scale: self.depth_window_full_scale.filter(|_| is_of_images),
             n_copies: self.tilt_augmentation.unwrap_or(0),
+        }
+    }
+
+    /// Returns an error if the running program does not provide the features of the configuration.
+    pub(crate) fn check_features(&self) -> crate::error::Result<()> {
+        match self.features.foreign() {
+            Some(foreign) => foreign.n_values(self.measurements).map(drop),
+            None => Ok(()),
         }
     }
 

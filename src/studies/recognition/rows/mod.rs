@@ -2,6 +2,7 @@
 
 pub mod conditions;
 pub mod configuration;
-pub mod image_features;
 pub mod row_inputs;
 pub mod table_rows;
+
+pub use self::{conditions::*, configuration::*, row_inputs::*, table_rows::*};

@@ -1,11 +1,12 @@
 //! Inputs that determine the feature rows of a configuration: one row of features per touch.
 
 use crate::learning::data::temporal_features::TemporalFeatures;
-use crate::studies::recognition::rows::image_features::{FeaturesOfImages, join_values};
-use bubbletouch_sim::features::Features;
+use crate::studies::recognition::spec::with_version;
+use bubbletouch_sim::features::{Features, Join};
+use serde::Serialize;
 
 /// Inputs that determine how features are computed from the measurements of a touch.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RowInputs {
     /// Numbers of rows and columns of the images that represent frames, one for each sensor.
     pub image_shapes: Vec<(usize, usize)>,
@@ -16,6 +17,7 @@ pub struct RowInputs {
     /// Method that combines the frames of a touch into features; `None` if the frames are concatenated.
     pub temporal_features: Option<TemporalFeatures>,
     /// Features that are computed from the measurements of a frame.
+    #[serde(serialize_with = "with_version")]
     pub features: Features,
     /// Depth window of image features, as a fraction of the full scale; `None` for no window. Image features use only deflections that are within the window
     /// below the largest deflection of a frame.
@@ -48,4 +50,22 @@ impl RowInputs {
         self.temporal_features
             .map_or(n_frames * m, |kind| kind.n_features(n_frames, m))
     }
+}
+
+/// Image features that the configurations of a group need.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FeaturesOfImages {
+    /// Kinds of image features whose values are concatenated into one feature vector.
+    pub join: Join,
+    /// Depth window of the features, as a fraction of the full scale; `None` for the whole image. The features use only deflections that are within the window
+    /// below the largest deflection of a frame.
+    pub foremost: Option<f64>,
+    /// Number of measurements from which the images of frames are estimated.
+    pub measurements: usize,
+}
+
+/// Returns the number of values of a combination of image features for a frame. The frame has one image for each sensor, given as numbers of rows and
+/// columns.
+pub fn join_values(join: Join, shapes: &[(usize, usize)]) -> usize {
+    shapes.iter().map(|&shape| join.n_values(shape)).sum()
 }

@@ -6,7 +6,7 @@ use crate::row;
 use crate::statistics::comparison::TrialSize;
 use crate::statistics::p_status::PStatus;
 use crate::statistics::repeats::Repeat;
-use crate::studies::recognition::rows::configuration::Configuration;
+use crate::studies::recognition::rows::Configuration;
 use serde::{Deserialize, Serialize};
 
 row! {

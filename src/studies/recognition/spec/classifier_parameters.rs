@@ -25,12 +25,6 @@ impl Default for ClassifierParameters {
 }
 
 impl ClassifierParameters {
-    /// Returns the default values of all parameters whose default is a number.
-    pub(crate) fn usual() -> Self {
-        let numbers = declared().filter_map(|one| Some((one.key, one.default_number()?)));
-        Self(numbers.collect())
-    }
-
     /// Returns a copy of the classifier in which the parameters of its kind are set.
     ///
     /// # Panics

@@ -1,11 +1,13 @@
 //! Classifiers and features in a study file: those of this program, and those from outside.
 
-use crate::error::{Error, Result};
 use crate::files::FilePath;
 use crate::inputs::content_hash::short_hash;
-use crate::inputs::params::{Described, named, params};
-use crate::learning::classifiers::ClassifierKind;
+use crate::inputs::params::{Described, named};
+use crate::learning::classifiers::classifier;
 use crate::learning::classifiers::foreign::Foreign;
+use crate::learning::command_classifier::CommandClassifier;
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::RecognitionSpec;
 use bubbletouch_sim::features::{Features, ImageFeature, foreign};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{self, MapAccess, Visitor};
@@ -13,6 +15,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Value, json};
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
 
 /// Allowed letters of a name and a version, with the character between them.
 const FOREIGN: &str = r"^[A-Za-z0-9_.-]+@[A-Za-z0-9_.-]+$";
@@ -130,8 +134,7 @@ impl ClassifierChoice {
 impl Serialize for ClassifierChoice {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         match self {
-            Self::Kind(ClassifierKind::Foreign(foreign)) => serializer.collect_str(foreign),
-            Self::Kind(kind) => kind.serialize(serializer),
+            Self::Kind(kind) => classifier::with_version(kind, serializer),
             Self::Command(command) => command.keys.serialize(serializer),
         }
     }
@@ -185,8 +188,19 @@ pub struct FeatureChoice(pub Features);
 
 impl Serialize for FeatureChoice {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        serializer.serialize_str(&self.0.text())
+        with_version(&self.0, serializer)
     }
+}
+
+/// Writes features as in a study file: their name, with the version of features from outside of this program.
+///
+/// # Errors
+/// If the serialiser fails.
+pub fn with_version<S: Serializer>(
+    features: &Features,
+    serializer: S,
+) -> std::result::Result<S::Ok, S::Error> {
+    serializer.serialize_str(&features.text())
 }
 
 impl<'de> Deserialize<'de> for FeatureChoice {
@@ -221,5 +235,73 @@ impl Described for FeatureChoice {
             ] },
             { "title": "`name@version` of features that the running program provides", "type": "string", "pattern": FOREIGN },
         ] })
+    }
+}
+
+impl RecognitionSpec {
+    /// Returns the kinds of classifiers of the study.
+    pub fn kinds(&self) -> Vec<ClassifierKind> {
+        let choices = self.classifier.values();
+        let kind = |choice: &ClassifierChoice| match choice.kind() {
+            ClassifierKind::Foreign(foreign) => {
+                ClassifierKind::Foreign(foreign.with(&self.parameters_of(foreign.name())))
+            }
+            kind => kind,
+        };
+        choices.iter().map(kind).collect()
+    }
+
+    /// Returns the features of the study.
+    pub fn all_features(&self) -> Vec<Features> {
+        let choices = self.features.values().into_iter();
+        let features = |FeatureChoice(features)| match features {
+            Features::Foreign(foreign) => {
+                Features::Foreign(foreign.with(&self.parameters_of(foreign.name())))
+            }
+            features => features,
+        };
+        choices.map(features).collect()
+    }
+
+    /// Returns the values that the study gives to parameters of a classifier or of features from outside of this program.
+    fn parameters_of(&self, name: &str) -> serde_json::Map<String, Value> {
+        let values = self.parameters.get(name).into_iter().flatten();
+        let value = |value| serde_json::to_value(value).expect("every TOML value has a JSON form");
+        values
+            .map(|(name, one)| (name.clone(), value(one)))
+            .collect()
+    }
+
+    /// Adds the classifiers and features that this thread provides and the study does not name.
+    pub(crate) fn add_given(&mut self) {
+        let mut kinds = self.classifier.values();
+        for foreign in Foreign::given() {
+            let given = ClassifierKind::Foreign(foreign);
+            if !kinds.iter().any(|choice| choice.kind() == given) {
+                kinds.push(ClassifierChoice::Kind(given));
+                self.classifier = Axis::Many(kinds.clone());
+            }
+        }
+        let mut features = self.features.values();
+        for foreign in foreign::Foreign::given() {
+            let given = FeatureChoice(Features::Foreign(foreign));
+            if !features.contains(&given) {
+                features.push(given);
+                self.features = Axis::Many(features.clone());
+            }
+        }
+    }
+
+    /// Provides the code of the classifiers that are commands.
+    pub(crate) fn install_commands(&self) {
+        for choice in self.classifier.values() {
+            if let ClassifierChoice::Command(CommandSpec { keys, foreign }) = choice {
+                foreign.install(Arc::new(CommandClassifier {
+                    name: foreign.name(),
+                    command: keys.command,
+                    time_limit: keys.time_limit_s.map(Duration::from_secs_f64),
+                }));
+            }
+        }
     }
 }

@@ -1,12 +1,10 @@
 //! Descriptions of the keys of recognition studies; other kinds of studies use some of these keys.
 
-use crate::error::Result;
-use crate::inputs::check::Check;
-use crate::inputs::keys::{AxisPlace, KeyAbout, find};
-use crate::inputs::params::keys_of;
+use crate::inputs::keys::{AxisPlace, find};
 use crate::inputs::range::Range::{self, Between};
-use crate::inputs::toml_value::is_at;
-use crate::studies::recognition::spec::study::StudySpec;
+use crate::inputs::toml_value::{is_at, table_of};
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::ONE_OF;
 use serde::Serialize;
 
 /// Maximum number of trials of a study, because the splits of all trials are kept in memory.
@@ -65,7 +63,34 @@ pub(crate) fn key(path: &str) -> &'static KeyAbout {
 impl Check<'_> {
     /// Checks the keys of a table of a recognition study; returns the keys that the table contains.
     pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
-        self.keys(name, table, recognition_keys())
+        let given = self.keys(name, table, recognition_keys())?;
+        let inner = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
+        for [first, second] in ONE_OF {
+            if let (Some(first), Some(second)) = (inner(first), inner(second))
+                && given.contains_key(first)
+                && given.contains_key(second)
+            {
+                let both = format!("both {first} and {second}");
+                return Err(self.error(name, both, "one of them"));
+            }
+        }
+        Ok(given)
+    }
+
+    /// Checks that none of the named keys of a table is given, unless its value has the effect of the absent key.
+    pub fn absent(
+        &self,
+        (name, table): (&str, &impl Serialize),
+        keys: &[&str],
+        allowed: &str,
+    ) -> Result<()> {
+        let table = table_of(table);
+        let given = keys.iter().find_map(|own| {
+            let path = format!("{name}.{own}");
+            let value = table.get(*own)?;
+            (!key(&path).is_usual(value)).then_some(path)
+        });
+        given.map_or(Ok(()), |path| Err(self.error(&path, "given", allowed)))
     }
 
     /// Checks and returns the value of a numeric key of recognition studies.

@@ -2,7 +2,6 @@
 
 pub mod classifier_parameters;
 pub mod foreign;
-pub mod human;
 pub mod keys;
 pub mod pose_split;
 pub mod recorded;
@@ -10,5 +9,8 @@ pub mod recorded_sensor;
 pub mod scene;
 pub mod signal;
 pub mod study;
-mod used_sensors;
-pub mod zero;
+
+pub use self::{
+    classifier_parameters::*, foreign::*, keys::*, pose_split::*, recorded_sensor::*, scene::*,
+    signal::*, study::*,
+};

@@ -14,10 +14,8 @@
 //!
 //! If the number of values is odd, the middle value belongs to the smaller half. `opposite_blocks` omits the touches that belong to neither block.
 
-use crate::error::{Error, Result};
-use crate::inputs::params::words;
 use crate::learning::data::split::Side;
-use crate::world::{Touch, TouchAxis};
+use crate::studies::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 words! {

@@ -1,18 +1,16 @@
 //! Specification of recorded frames: the table `[recorded]`, which replaces `[objects]` and `[touches]`.
 
-use crate::error::{Error, Result};
 use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::{TableContent, is_member};
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
-use crate::inputs::params::{is_default, words};
+use crate::inputs::params::is_default;
 use crate::inputs::range::Range::{Any, Count, NotNegative, Positive, Unchecked};
 use crate::inputs::units::MAX_FRAMES;
-use crate::studies::recognition::spec::recorded_sensor::{
-    RecordedSensorSpec, SensorPlace, sensor_spec, sensor_table,
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::{
+    RecordedSensorSpec, SensorChoice, SensorPlace, ZeroSpec, sensor_spec, sensor_table,
 };
-use crate::studies::recognition::spec::used_sensors::SensorChoice;
-use crate::studies::recognition::spec::zero::ZeroSpec;
 use std::path::{Path, PathBuf};
 
 sensor_spec! {
@@ -301,6 +299,9 @@ impl RecordedSpec {
             return Err(Error::input("key recorded.labels", "no such key", allowed));
         }
         let has = |name| self.file_of(name).is_some();
+        let refuse = |key: &str, given: &str, allowed: &str| {
+            Err(Error::input(format!("key recorded.{key}"), given, allowed))
+        };
         let sensors = self.used_sensors();
         let is_without = |(_, sensor): &&(String, Self)| sensor.file_of("frames_test").is_none();
         let (frames, labels) = (self.has_test_set(), has("labels_test"));
@@ -309,45 +310,34 @@ impl RecordedSpec {
             let allowed = "frames of the test set, as other sensors have";
             return Err(Error::input(key, "no such key", allowed));
         }
-        let both = [("shear", &self.shear), ("shear_test", &self.shear_test)];
-        for (key, path) in both {
-            let key = format!("key recorded.{key}");
+        for (key, path) in [("shear", &self.shear), ("shear_test", &self.shear_test)] {
             if let (Some(path), ..=1) = (path, self.n_values) {
                 let allowed = "no such key without skin.sensed = \"shear\"";
-                return Err(Error::input(key, path.display(), allowed));
+                return refuse(key, &path.display().to_string(), allowed);
             }
         }
         match (frames, &self.shear, &self.shear_test) {
             (true, Some(_), None) => {
+                let given = "no such key beside shear and frames_test";
                 let allowed =
                     "the forces across of frames_test, as recorded.shear has those of frames";
-                return Err(Error::input(
-                    "key recorded.shear_test",
-                    "no such key beside shear and frames_test",
-                    allowed,
-                ));
+                return refuse("shear_test", given, allowed);
             }
             (_, None, Some(path)) | (false, _, Some(path)) => {
                 let allowed = "no such key without recorded.shear and recorded.frames_test";
-                return Err(Error::input(
-                    "key recorded.shear_test",
-                    path.display(),
-                    allowed,
-                ));
+                return refuse("shear_test", &path.display().to_string(), allowed);
             }
             _ => {}
         }
         match (frames, labels, has("groups_test")) {
-            (true, false, _) => Err(Error::input(
-                "key recorded.labels_test",
-                "no such key beside frames_test",
-                "the class of every touch of the test set",
-            )),
-            (false, true, _) | (false, _, true) => Err(Error::input(
-                "key recorded.frames_test",
-                "no such key beside labels_test or groups_test",
-                "the frames of the test set",
-            )),
+            (true, false, _) => {
+                let allowed = "the class of every touch of the test set";
+                refuse("labels_test", "no such key beside frames_test", allowed)
+            }
+            (false, true, _) | (false, _, true) => {
+                let given = "no such key beside labels_test or groups_test";
+                refuse("frames_test", given, "the frames of the test set")
+            }
             _ => Ok(()),
         }
     }

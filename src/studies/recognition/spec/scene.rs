@@ -1,13 +1,14 @@
-//! Specification of the touched scene: the tables `[objects]`, `[skin]` and `[touches]`.
+//! Specification of the touched scene: the tables `[objects]`, `[skin]` and `[touches]`, and `[human_touch]`, which replaces `[objects]` and `[touches]`.
 
-use crate::engine::axis::Axis;
-use crate::inputs::params::{empty_table, named, params, variants, words};
+use crate::inputs::params::{empty_table, named, variants};
 use crate::inputs::range::Range::{Any, Count, Finite, NotNegative, Positive};
 use crate::inputs::range::{SIDE, TOUCHES};
+use crate::inputs::toml_value::table_of;
 use crate::inputs::units::MAX_FRAMES;
-use crate::studies::recognition::spec::keys::SLIDE;
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::SLIDE;
 use crate::table::Scale::{Linear, Log};
-use crate::world::{ArrayLayout, RestPoses};
+use crate::world::{ArrayLayout, RestPoses, TouchKind};
 
 named!(ArrayLayout, RestPoses);
 
@@ -26,11 +27,11 @@ params! {
         taxels: Option<Axis<usize>> => SIDE, Choice, Table, scale: Linear;
         /// Layout of the taxels: `grid` (default), `foveated` (closer in the middle, farther apart at the edge), `hexagonal`, `disc`, `cylinder` or `cap`. All
         /// layouts have the same area and about the same number of taxels.
-        layout: Option<ArrayLayout> => Any, Choice, Axes;
+        layout: Option<ArrayLayout> => Any, Choice, Axes, usual: || "grid".into();
         /// Radius of curvature of the layouts `cylinder` and `cap`, from the axis or centre to the rest centres of the taxels, mm, positive.
         curvature_radius_mm: Option<f64> => Positive, Choice, Axes;
         /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and two forces across it).
-        sensed: Option<SensedSpec> => Any, Choice, Axes, title: "sensed quantity";
+        sensed: Option<SensedSpec> => Any, Choice, Axes, title: "sensed quantity", usual: || "deflection".into();
         /// Friction coefficient μ ≥ 0 between taxels and object, with `sensed = "shear"`. Friction acts only if taxels move along the object, in a slide or on a
         /// curved layout. The taxels of a flat array that is pressed straight on do not slip. Default: 0.
         friction: Option<f64> => NotNegative, Condition, Axes;
@@ -67,9 +68,9 @@ params! {
         /// Travel of the patch past first contact, mm, positive. Beyond the stroke, taxels stay saturated.
         depth_mm: SpreadSpec = SpreadSpec::List(Vec::new()) => Positive, Choice, Axes;
         /// Distance that the pressed patch slides along the object, mm, at least 0. Default: no slide.
-        slide_mm: Option<f64> => SLIDE, Choice, Axes;
+        slide_mm: Option<f64> => SLIDE, Choice, Axes, usual: || 0.0.into();
         /// Direction of the slide, degrees from the patch's x axis towards its y axis; used with `slide_mm`. Default: 0.
-        slide_deg: Option<f64> => Finite, Choice, Axes;
+        slide_deg: Option<f64> => Finite, Choice, Axes, usual: || 0.0.into();
         /// Axis: number F of frames per touch, at least 1. Default: 1. The frames are read at the depths d/F, 2d/F, …, d, where d is the depth of the touch; each
         /// has its own noise. The measurements of all frames are the features of the touch.
         frames: Axis<usize> = Axis::One(1) => Count(1, MAX_FRAMES), Choice, Table, title: "frames a touch", scale: Log, gives_way: 11;
@@ -82,7 +83,7 @@ impl TouchesSpec {
     /// Returns a text that names the keys of `[touches]` with several values, which users may mistake for an axis of the study. Returns `None` if there is no
     /// such key.
     pub fn mixed_values(&self) -> Option<String> {
-        let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
+        let table = table_of(self);
         let lists = table.iter().filter_map(|(key, spread)| {
             let is_list = spread.as_array().is_some_and(|values| values.len() > 1);
             (is_list && key != "frames").then(|| format!("{key} = {spread}"))
@@ -140,5 +141,23 @@ variants! {
         Uniform = "uniform"((f64, f64)),
         /// Values drawn uniformly between −w and w, for a given half width w ≥ 0.
         Within = "within"(f64),
+    }
+}
+
+named!(TouchKind);
+
+params! {
+    /// Keys of `[human_touch]`: recognition of kinds of human touch on a forearm. The columns of the array are bent around the arm; its rows run along the arm.
+    pub struct HumanTouchSpec {
+        /// Kinds of human touch that the classifier distinguishes. Default: all six.
+        kinds: Vec<TouchKind> = crate::world::TOUCH_KINDS.to_vec() => Any, Condition, Axes;
+        /// Number of human touches of each kind, at least 1.
+        per_kind: usize => TOUCHES, Choice, Axes;
+        /// Distance from the axis of the arm to the outside of its skin, mm, positive. Default: 43.
+        arm_radius_mm: f64 = 43.0 => Positive, Choice, Axes;
+        /// Frame rate of the skin, Hz, positive.
+        frames_hz: f64 => Positive, Choice, Axes;
+        /// Duration of the recording of each touch, s. The touch begins at a random time such that it ends within the recording.
+        duration_s: f64 => Positive, Choice, Axes;
     }
 }

@@ -25,7 +25,7 @@ params! {
         #[serde(flatten)]
         axes: SignalAxes;
         /// Axis: skin on which test touches are simulated, `same_skin` (default, the training skin) or `another_skin`.
-        test_sensor: Option<Axis<TestSensor>> => Any, Condition, Table, scale: Scale::Words;
+        test_sensor: Option<Axis<TestSensor>> => Any, Condition, Table, scale: Scale::Words, usual: || "same_skin".into();
         /// Rule that combines the axes of `[signal]`: `all` (default) or `one_at_a_time`. The axes of `[signal]` are always combined with all other axes of the
         /// study.
         #[serde(skip_serializing_if = "is_default")]

@@ -5,44 +5,45 @@
 
 use crate::engine::axes;
 use crate::engine::axes::StudyAxes;
-use crate::engine::axis::Axis;
-use crate::error::Result;
 use crate::inputs::keys::AxisPlace;
-use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::params::{Described, ORDER, is_default, named, params, words};
-use crate::inputs::range::COUNT;
-use crate::inputs::range::MAX_COUNTED;
+use crate::inputs::memory::GIB;
+use crate::inputs::params::{Described, ORDER, is_default, named};
 use crate::inputs::range::Range::{Any, AtLeastOne, Count, Fraction, Part, Positive, Unchecked};
-use crate::inputs::toml_value::value_at;
-use crate::learning::classifiers::ClassifierKind;
+use crate::inputs::range::{COUNT, MAX_COUNTED};
+use crate::inputs::toml_value::{table_of, value_at};
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
-use crate::sensing::{Ensemble, Selection};
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::table_rows::TrialScore;
-use crate::studies::recognition::spec::classifier_parameters::ClassifierParameters;
+use crate::studies::prelude::*;
+use crate::studies::recognition::rows::{Configuration, TrialScore};
 pub use crate::studies::recognition::spec::foreign::*;
-pub use crate::studies::recognition::spec::human::*;
-use crate::studies::recognition::spec::keys::{
-    CHOSEN, GAMMA, MAX_COPIES, MAX_READINGS, MAX_TRIALS, OVER_TIME, PENALTY, TILT, recognition_keys,
-};
-use crate::studies::recognition::spec::pose_split::GroupSpec;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;
 pub use crate::studies::recognition::spec::recorded::*;
-pub use crate::studies::recognition::spec::recorded_sensor::RecordedSensorSpec;
+pub use crate::studies::recognition::spec::recorded_sensor::{RecordedSensorSpec, ZeroSpec};
 pub use crate::studies::recognition::spec::scene::*;
 pub use crate::studies::recognition::spec::signal::*;
-pub use crate::studies::recognition::spec::zero::ZeroSpec;
+use crate::studies::recognition::spec::{
+    CHOSEN, ClassifierParameters, GAMMA, GroupSpec, MAX_COPIES, MAX_READINGS, MAX_TRIALS,
+    OVER_TIME, PENALTY, TILT, recognition_keys,
+};
 use crate::table::Scale::{Linear, Log, Share, Words};
 use crate::table::{Column, Columns};
 use bubbletouch_sim::features::Features;
 use bubbletouch_svm::class_weight::ClassWeight;
 use bubbletouch_svm::scaling::Scaling;
-use bubbletouch_svm::{Multiclass, Solver};
+use bubbletouch_svm::{DEFAULT_MEMORY_BYTES, Multiclass, Solver};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
+/// Default of the maximum tilt of a tilted copy about each axis, degrees. With a larger value, copies lack those parts of the object that were not touched;
+/// with a smaller value, copies add no new tilts.
+pub(crate) const DEFAULT_TILT_DEG: f64 = 5.0;
+/// Default of the penalty C.
+pub(crate) const DEFAULT_C: f64 = 1.0;
+/// Default of the fraction of the touches that a random split holds out for testing.
+pub(crate) const DEFAULT_TEST_FRACTION: f64 = 0.25;
+/// Default of the number of folds of the inner cross-validation.
+pub(crate) const DEFAULT_CV_FOLDS: u32 = 5;
 /// Default random seed of all kinds of studies.
 pub const DEFAULT_SEED: u64 = 2018;
 
@@ -96,13 +97,13 @@ params! {
         /// Axis: ensemble from which the measurement matrix is drawn. Default: `gaussian`.
         ensemble: Axis<Ensemble> = Axis::One(Ensemble::Gaussian) => Any, Choice, Table, scale: Words, names: Ensemble::NAMES;
         /// Axis: compression ratio n / m, at least 1: number n of taxels divided by the number m of measurements.
-        ratio: Option<Axis<f64>> => AtLeastOne, Choice, Table, title: "compression", unit: ":1", scale: Log, gives_way: 1;
+        ratio: Option<Axis<f64>> => AtLeastOne, Choice, Table, title: "compression", unit: ":1", scale: Log, gives_way: 1, usual: || 1.0.into();
         /// Axis: number m of measurements per frame, at least 1. Replaces `ratio`.
         measurements: Option<Axis<usize>> => COUNT, Choice, Table, title: "m", scale: Log, gives_way: 1;
         /// Axis: method by which the ensemble `selected` selects the m taxels to read, from training touches only. Values: `greedy` (default; highest
         /// validation accuracy of a nearest-neighbour classifier), `pivoted_qr` (pivots of m principal components; m is below the number of training frames)
         /// or `random` (a control). At most 4,096 frames of the training touches are used.
-        selection: Option<Axis<Selection>> => Any, Choice, Table, title: "taxels selected by", scale: Words, names: Selection::NAMES;
+        selection: Option<Axis<Selection>> => Any, Choice, Table, title: "taxels selected by", scale: Words, names: Selection::NAMES, usual: || "greedy".into();
         /// Number of measurements that the skin reads out per second. Adds the column `readout_ms`, the time to read a frame. Default: no such column.
         readings_per_s: Option<f64> => Positive, Choice, Axes;
     }
@@ -133,9 +134,9 @@ params! {
         depth_window_full_scale: Option<Axis<f64>> => Positive, Choice, Table, title: "depth window", unit: "%", scale: Share;
         /// Axis: number of additional copies of each training touch, whose images are randomly tilted. The copies make recognition robust to tilts that do not
         /// occur in training. Copies require image features. Default: 0.
-        tilt_augmentation: Option<Axis<usize>> => Count(0, MAX_COPIES), Choice, Table, scale: Linear;
+        tilt_augmentation: Option<Axis<usize>> => Count(0, MAX_COPIES), Choice, Table, scale: Linear, usual: || 0.into();
         /// Maximum tilt of a copy about the array's x and y axes, degrees; the tilts are uniformly distributed. Default: 5.
-        tilt_augmentation_deg: Option<f64> => TILT, Choice, Axes;
+        tilt_augmentation_deg: Option<f64> => TILT, Choice, Axes, usual: || DEFAULT_TILT_DEG.into();
         /// Axis: method that combines the frames of a touch into features. Values: `deepest` (deepest frame), `stacked_8` (8 or another number of evenly spaced
         /// frames), `moments` (of each measurement), `course` (of the touch) or `summarised` (moments and course). Default: all frames are concatenated.
         temporal_features: Option<Axis<TemporalFeatures>> => Any, Choice, Table, scale: Words, names: OVER_TIME, gives_way: 12;
@@ -152,7 +153,7 @@ params! {
         /// Scaling of the features, fitted to training rows: `standard` (default), `overall` or `none`.
         scaling: Scaling = Scaling::default() => Any, Choice, Axes;
         /// Axis: penalty C (positive) of classifiers with a penalty. Default: 1.
-        c: Option<Axis<f64>> => PENALTY, Choice, Table, title: "C", scale: Log, names: CHOSEN, gives_way: 4;
+        c: Option<Axis<f64>> => PENALTY, Choice, Table, title: "C", scale: Log, names: CHOSEN, gives_way: 4, usual: || DEFAULT_C.into();
         /// Candidate values of the penalty C; replaces `c`. Each fit chooses one candidate by cross-validation within its training rows.
         c_grid: Option<Vec<f64>> => PENALTY, Choice, Axes;
         /// Candidate values of the kernel parameter γ, as multiples of its default; replaces `gamma`. The default is 1 / (F · m · variance), where F · m is the
@@ -160,12 +161,12 @@ params! {
         gamma_grid: Option<Vec<f64>> => GAMMA, Choice, Axes;
         /// Number of folds of the inner cross-validation, which selects C and γ and estimates decisions on unseen touches for `most_informative`. Default: 5. Folds
         /// do not divide groups that the split does not divide.
-        cv_folds: Option<usize> => Count(2, MAX_COUNTED), Choice, Axes;
+        cv_folds: Option<usize> => Count(2, MAX_COUNTED), Choice, Axes, usual: || DEFAULT_CV_FOLDS.into();
         /// Maximum number of training touches per object that are used to choose C and γ. Default: all. The default γ is computed from all training touches.
         cv_touches: Option<usize> => COUNT, Choice, Axes;
         /// Number of readings of each training touch; each reading has its own noise. Default: 1. Without noise, drift or pink noise, all readings of a touch are
         /// equal, and one is used. C and γ are chosen on the first readings.
-        readings_per_touch: Option<usize> => Count(1, MAX_READINGS), Choice, Axes;
+        readings_per_touch: Option<usize> => Count(1, MAX_READINGS), Choice, Axes, usual: || 1.into();
         /// Keys that [classifiers declare](crate::learning::classifiers::parameters): `degree`, `n_trees` and others.
         #[serde(flatten)]
         of_kinds: ClassifierParameters;
@@ -175,26 +176,26 @@ params! {
         parameters: BTreeMap<String, toml::Table> = BTreeMap::new() => Unchecked, Choice, Axes;
         /// Maximum size of the kernel values that an SVM solver keeps in memory, GiB. Default: 2. Above the limit, values are recomputed; this takes longer and may
         /// change the last digits.
-        solver_memory_gib: Option<f64> => Positive, Choice, Axes;
+        solver_memory_gib: Option<f64> => Positive, Choice, Axes, usual: || (DEFAULT_MEMORY_BYTES as f64 / GIB).into();
         /// Axis: maximum number of training touches per object, at least 1. Default: all touches of the training split.
         train_touches: Option<Axis<usize>> => COUNT, Choice, Table, title: "training touches", scale: Log, gives_way: 5;
         /// Axis: fraction of each object's training touches that are labelled as a randomly drawn other object, 0 to 1. Default: 0.
-        mislabelled_fraction: Option<Axis<f64>> => Fraction, Condition, Table, title: "mislabelled", unit: "%", scale: Share, gives_way: 6;
+        mislabelled_fraction: Option<Axis<f64>> => Fraction, Condition, Table, title: "mislabelled", unit: "%", scale: Share, gives_way: 6, usual: || 0.0.into();
         /// Axis: number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The numbers of all objects
         /// form a geometric sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
-        class_imbalance: Option<Axis<f64>> => AtLeastOne, Condition, Table, unit: ":1", scale: Log, gives_way: 7;
+        class_imbalance: Option<Axis<f64>> => AtLeastOne, Condition, Table, unit: ":1", scale: Log, gives_way: 7, usual: || 1.0.into();
         /// Axis: number k of test touches of an object that are combined into one decision, at least 1. The scores of the combined touches are added. An object's
         /// test touches are grouped at random; a remainder of fewer than k touches is omitted. Default: 1.
         touches_per_decision: Axis<usize> = Axis::One(1) => COUNT, Choice, Table, scale: Log, gives_way: 8;
         /// Axis: rule that chooses the touches of a decision after the first touch. Values: `random` (default), `farthest` (the pose farthest from the previous
         /// ones), or `most_informative` (the pose with the lowest expected entropy of the belief over objects). All test touches of the object are candidates, each
         /// at most once per decision.
-        next_touch: Option<Axis<NextTouch>> => Any, Choice, Table, scale: Words;
+        next_touch: Option<Axis<NextTouch>> => Any, Choice, Table, scale: Words, usual: || "random".into();
         /// Rule that selects the test touches: `random` (default), or a rule by pose.
         #[serde(skip_serializing_if = "is_default")]
         split: PoseSplit = PoseSplit::default() => Any, Condition, Axes, title: "poses held out";
         /// Fraction of the touches that a random split holds out for testing, between 0 and 1. Default: 0.25.
-        test_fraction: Option<f64> => Part, Condition, Axes;
+        test_fraction: Option<f64> => Part, Condition, Axes, usual: || DEFAULT_TEST_FRACTION.into();
         /// Number k of folds if the split into training and test touches is a k-fold split, at least 2; replaces `test_fraction`.
         folds: Option<usize> => Count(2, MAX_COUNTED), Condition, Axes;
         /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If the
@@ -324,17 +325,14 @@ impl StudySpec {
         self.human_touch.is_none() && self.recorded.is_none()
     }
 
-    /// Returns the number of values of each key that is an axis. Keys of the signal are excluded, because they may be combined differently.
-    pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
-        let keys = recognition_keys().iter();
-        let keys = keys.filter(|key| key.axis == AxisPlace::Table);
+    /// Returns the product of the numbers of values of all keys that are axes. Keys of the signal are excluded, because they may be combined differently.
+    pub(crate) fn n_combinations(&self) -> f64 {
+        let table = table_of(self);
         let is_condition = |path: &str| path.starts_with("signal.") && path != "signal.test_sensor";
-        let keys = keys.filter(move |key| !is_condition(key.path));
-        keys.map(move |key| {
-            let values = value_at(&table, key.path).and_then(toml::Value::as_array);
-            (key.path, values.map_or(1, Vec::len))
-        })
+        let keys = recognition_keys().iter();
+        let keys = keys.filter(|key| key.axis == AxisPlace::Table && !is_condition(key.path));
+        let lists = keys.filter_map(|key| value_at(&table, key.path)?.as_array());
+        lists.map(|values| values.len() as f64).product()
     }
 
     /// Returns a result-table column for each axis in `[axes]` that does not have a column yet.

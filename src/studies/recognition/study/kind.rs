@@ -1,24 +1,16 @@
 //! Recognition study as a kind of study.
 
-use crate::engine::work_items::{PendingItems, Scale, WorkItem};
-use crate::error::{Error, Result};
-use crate::inputs::keys::KeyAbout;
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::snapshots;
 use crate::report::study_content::{Beyond, NamedPicture};
+use crate::studies::prelude::*;
 use crate::studies::recognition::charts;
-use crate::studies::recognition::frames::touch_set::Samples;
-use crate::studies::recognition::spec::keys::recognition_keys;
-use crate::studies::recognition::spec::pose_split::{GroupSpec, PoseSplit};
-use crate::studies::recognition::spec::study::StudySpec;
-use crate::studies::recognition::study::load::load_study;
-use crate::studies::recognition::study::recognition_study::{Family, RecognitionStudy, distinct};
-use crate::studies::recognition::study::rows::RecognitionRows;
-use crate::studies::recognition::sweep::configurations::StudyPart;
-use crate::studies::recognition::training::evaluation_inputs::{FamilyInputs, family_name};
-use crate::studies::source::Source;
-use crate::studies::study::{About, Facts, Study, TableFiles, settings_words};
-use crate::table::{ChartSpec, Table};
+use crate::studies::recognition::frames::Samples;
+use crate::studies::recognition::spec::{GroupSpec, PoseSplit, recognition_keys};
+use crate::studies::recognition::study::{RecognitionRows, RecognitionStudy, distinct, load_study};
+use crate::studies::recognition::sweep::StudyPart;
+use crate::studies::recognition::training::FamilyInputs;
+use crate::studies::study::settings_words;
 use std::collections::HashSet;
 
 /// Names of the tables and columns that contain the intervals of accuracies.
@@ -112,38 +104,38 @@ impl Study for RecognitionStudy {
             let (part, configurations) = self.family(family);
             let number = self.families[family].group;
             let placed = &self.groups[number];
-            let content = |touches: usize| &self.touch_sets[touches].content[..];
-            let touches = match placed.touches == placed.tested {
-                true => content(placed.touches).to_owned(),
-                false => format!("{} {}", content(placed.touches), content(placed.tested)),
-            };
-            let of = (self.group(number).1, &touches[..]);
+            let touches = [placed.touches, placed.tested];
+            let touches = touches.map(|touches| &self.touch_sets[touches].content);
+            // The measurements are those that the family alone needs.
+            let alone = self.group(number).1.with_cells(configurations);
             let inputs = FamilyInputs::new(&part.plan, &part.sweep, configurations);
-            family_name(&part.plan, of, &inputs, configurations)
+            identity(&(touches, alone.inputs(&part.plan), inputs))
         };
         let families: Vec<String> = families.map(of_family).collect();
         let mut items = Vec::with_capacity(self.n_trials() * families.len());
         for trial in 0..self.n_trials() {
             let of_part = |StudyPart { plan, sweep, .. }: &StudyPart| {
-                let inputs = sweep.trial(plan, trial);
-                inputs.expect("a trial of the study").name()
+                identity(&sweep.trial(plan, trial).expect("a trial of the study"))
             };
             let trials: Vec<String> = self.parts().iter().map(of_part).collect();
-            for (family, name) in self.families.iter().zip(&families) {
+            for (family, inputs) in self.families.iter().zip(&families) {
                 let group = trial * self.groups.len() + family.group;
-                let trial = &trials[self.groups[family.group].part];
-                items.push(WorkItem::new(format!("{name}, {trial}"), group));
+                let of_trial = &trials[self.groups[family.group].part];
+                items.push(WorkItem {
+                    name: format!("trial {trial}"),
+                    inputs: format!("{inputs} {of_trial}"),
+                    group,
+                    is_result: true,
+                });
             }
         }
         for (number, touches) in self.touch_sets.iter().enumerate() {
             let (_, array, n_frames) = self.on(number);
             let ((ny, nx), pitch) = (array.shape(), array.pitch());
-            let content = &touches.content;
-            let name =
-                format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m, {content}");
+            let name = format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m");
             items.push(WorkItem {
                 is_result: false,
-                ..WorkItem::new(name, touches.group)
+                ..WorkItem::of(name, touches.group, &touches.content)
             });
         }
         items
@@ -161,15 +153,11 @@ impl Study for RecognitionStudy {
         let touches = match number.checked_sub(self.touches_item(0)) {
             Some(touches) => touches,
             None => {
-                let Family {
-                    group,
-                    configurations,
-                    ..
-                } = &self.families[number % self.families.len()];
-                for (row, configuration) in rows.iter_mut().zip(configurations.clone()) {
-                    row.at = (*group, configuration);
+                let family = &self.families[number % self.families.len()];
+                for (row, configuration) in rows.iter_mut().zip(family.configurations.clone()) {
+                    row.at = (family.group, configuration);
                 }
-                self.groups[*group].touches
+                self.groups[family.group].touches
             }
         };
         for row in touch_rows {

@@ -1,10 +1,8 @@
 //! Numbers of touches and trained classifiers that reached a limit of the simulation or of the solver.
 
 use crate::report::csv_tables::{CAPPED_FITS, MISSED_TOUCHES};
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::table_rows::{Limit, TrialScore};
-use crate::studies::recognition::study::recognition_study::RecognitionStudy;
-use crate::studies::recognition::study::rows::TouchRow;
+use crate::studies::recognition::rows::{Configuration, Limit, TrialScore};
+use crate::studies::recognition::study::{RecognitionStudy, TouchRow};
 use std::collections::HashSet;
 
 impl RecognitionStudy {

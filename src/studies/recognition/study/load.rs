@@ -1,24 +1,18 @@
 //! Loading of a recognition study: its plans, objects and touches. All combinations of axis values that share objects or touches use one copy of them.
 
-use crate::engine::axes::AxisValues;
-use crate::error::{Error, Result};
 use crate::files::with_folder;
 use crate::inputs::memory::check_memory;
-use crate::inputs::object_files::load_objects;
 use crate::learning::classifiers::foreign::Foreign;
+use crate::mesh::SizeLimits;
 use crate::note::note;
-use crate::random::Seed;
-use crate::studies::recognition::frames::human_touches::HumanTouches;
-use crate::studies::recognition::frames::recorded_frames::RecordedFrames;
-use crate::studies::recognition::frames::shear_ripple::note_shear_ripple;
-use crate::studies::recognition::frames::touch_set::TouchSet;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::study::StudySpec;
-use crate::studies::recognition::study::recognition_study::RecognitionStudy;
-use crate::studies::recognition::study::scale::recognition_scale;
-use crate::studies::recognition::study::touch_inputs::TouchInputs;
-use crate::studies::recognition::touches::drawn_touches::draw_touches;
-use crate::studies::source::Source;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::{
+    HumanTouches, RecordedFrames, TouchSet, note_shear_ripple,
+};
+use crate::studies::recognition::spec::HumanTouchSpec;
+use crate::studies::recognition::study::{RecognitionStudy, recognition_scale};
+use crate::world::Placement;
+use serde::Serialize;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;
@@ -85,19 +79,19 @@ impl RecognitionStudy {
         let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
         let mut draw = |plan: &Plan| -> Result<Arc<dyn TouchSet + Send>> {
             let inputs = TouchInputs::new(plan);
-            let (content, seed) = (inputs.key(), Seed::new(inputs.seed));
+            let (content, seed) = (identity(&inputs), Seed::new(inputs.seed));
             let touched: Arc<dyn TouchSet + Send> = if let Some(known) = drawn.get(&content) {
                 known.clone()
             } else if let Some(human) = inputs.human_touch {
                 check_touches(plan, human.kinds.len(), ceiling)?;
                 Arc::new(HumanTouches::draw(human, &seed)?)
-            } else if let Some(recorded) = inputs.recorded {
+            } else if let Some((recorded, _)) = inputs.recorded {
                 Arc::new(RecordedFrames::read(recorded, ceiling)?)
             } else {
-                let known = objects.entry(format!("{:?}", inputs.objects));
+                let known = objects.entry(identity(&inputs.objects));
                 let objects = match known {
                     Entry::Occupied(known) => known.into_mut(),
-                    Entry::Vacant(new) => new.insert(load_objects(inputs.objects, packings)?),
+                    Entry::Vacant(new) => new.insert(load_objects(inputs.objects.keys, packings)?),
                 };
                 if !has_noted {
                     has_noted = note_shear_ripple(plan, objects)?;
@@ -139,7 +133,7 @@ fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
 
 /// Returns a text that identifies the touches of a plan, independently of the array and the object files.
 pub fn touch_content(plan: &Plan) -> String {
-    TouchInputs::new(plan).key()
+    identity(&TouchInputs::new(plan))
 }
 
 /// Memory that a touch occupies, bytes: its pose, its label and its reading parameters.
@@ -162,6 +156,62 @@ fn check_touches(plan: &Plan, n_classes: usize, ceiling: Option<u64>) -> Result<
     let what = format!("{n_touches} touches and their splits");
     check_memory(bytes, ceiling, &what)
         .map_err(|allowed| Error::input(format!("key {key}"), n_each, allowed))
+}
+
+/// Inputs that determine the touches of a plan, without the array and the object files. Plans with equal inputs share their touches.
+#[derive(Serialize)]
+pub(crate) struct TouchInputs<'a> {
+    pub(crate) objects: ObjectInputs<'a>,
+    pub(crate) placement: &'a Placement,
+    pub(crate) human_touch: Option<&'a HumanTouchSpec>,
+    /// Keys of the recording, and the number of values per taxel in its frames.
+    pub(crate) recorded: Option<(&'a RecordedSpec, usize)>,
+    pub(crate) seed: u64,
+}
+
+/// Inputs that determine the objects of a plan, without their files. The pitch and the sizes of the arrays only affect which objects are rejected or noted.
+#[derive(Clone, Copy, Serialize)]
+pub(crate) struct ObjectInputs<'a> {
+    pub(crate) keys: &'a ObjectsSpec,
+    pitch: Option<f64>,
+    sizes: Option<SizeLimits>,
+}
+
+impl<'a> TouchInputs<'a> {
+    /// Returns the inputs that determine the touches of a plan.
+    pub fn new(plan: &'a Plan) -> Self {
+        let spec = &plan.spec;
+        let recorded = spec.recorded.as_ref();
+        Self {
+            objects: ObjectInputs {
+                keys: &spec.objects,
+                pitch: spec.objects.pitch,
+                sizes: spec.objects.sizes,
+            },
+            placement: &plan.placement,
+            human_touch: spec.human_touch.as_ref(),
+            recorded: recorded.map(|recorded| (recorded, recorded.n_values)),
+            seed: spec.seed,
+        }
+    }
+
+    /// Returns the identity of the set of touches. It does not depend on the pitch and the sizes of the arrays, so that an axis of arrays may be extended. Files
+    /// of a recording are identified by their contents.
+    pub fn content(&self, touched: &dyn TouchSet) -> String {
+        let content = touched.recorded_content();
+        let objects = ObjectInputs {
+            pitch: None,
+            sizes: None,
+            ..self.objects
+        };
+        let recorded = self.recorded.filter(|_| content.is_none());
+        let touches = TouchInputs {
+            objects,
+            recorded,
+            ..*self
+        };
+        identity(&(touches, content.map(|content| &content.identity)))
+    }
 }
 
 #[cfg(test)]

@@ -1,21 +1,50 @@
-//! Computation of the work items: simulates touches once per array, measures each group once per trial, and evaluates each pending family.
+//! Work items and their results: touches are simulated once per array, each group is measured once per trial, and each pending family is evaluated.
 
 use crate::engine::at_once::run_at_once;
-use crate::engine::progress::{Progress, Silent};
 use crate::engine::work_items::pending::PendingItems;
-use crate::error::{Error, Result};
-use crate::learning::classifiers::ClassifierKind;
-use crate::studies::recognition::frames::frame_store::Frames;
-use crate::studies::recognition::measurements::measurement::Measurements;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::study::recognition_study::{Family, RecognitionStudy, in_frames};
-use crate::studies::recognition::study::rows::{ConfigurationRow, RecognitionRows, TouchRow};
-use crate::studies::recognition::sweep::training_rows::TrainingRows;
-use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
-use crate::studies::recognition::training::trial::Trial;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::Frames;
+use crate::studies::recognition::measurements::Measurements;
+use crate::studies::recognition::rows::Configuration;
+use crate::studies::recognition::study::{Family, RecognitionStudy, in_frames};
+use crate::studies::recognition::sweep::TrainingRows;
+use crate::studies::recognition::training::{Evaluation, FamilyInputs, Trial};
+use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+
+/// Results of all work items: rows of configurations, and rows of touches. Some items evaluate configurations in a trial; the others simulate or measure sets
+/// of touches.
+pub type RecognitionRows = (Vec<ConfigurationRow>, Vec<TouchRow>);
+
+/// Result of one configuration in one trial.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConfigurationRow {
+    /// Position of the configuration in the current study: index of its group, and index within the group.
+    #[serde(skip)]
+    pub at: (usize, usize),
+    /// Scores and times of the configuration in the trial.
+    pub evaluation: Evaluation,
+}
+
+/// Result of simulating or measuring a set of touches on an array.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TouchRow {
+    /// Index in the list of all sets of touches of the current study.
+    #[serde(skip)]
+    pub on: usize,
+    /// Whether the row describes the simulation of touches; otherwise it describes the computation of measurements.
+    pub is_made: bool,
+    /// Number of touches that were simulated or measured.
+    pub n_touches: usize,
+    /// Number of simulated touches that deflected no taxel.
+    pub n_missed: usize,
+    /// Number of simulated touches with at least one taxel at its stroke.
+    pub n_saturated: usize,
+    /// Processor time of the simulation or measurement, summed over threads, s.
+    pub cpu_s: f64,
+}
 
 /// Measurement to compute: a group of configurations in one trial, and the group's pending families.
 pub(crate) struct Job<'a> {
@@ -331,17 +360,16 @@ impl Job<'_> {
 
 /// Returns the number and the names of a configuration whose classifier or features come from outside of this program; `None` for other configurations.
 fn of_foreign(configuration: &Configuration) -> Option<String> {
-    let Configuration {
-        configuration: number,
-        classifier,
-        features,
-        ..
-    } = configuration;
-    let kind = classifier.about().words;
-    let is_foreign =
-        matches!(classifier, ClassifierKind::Foreign(_)) || features.foreign().is_some();
-    let features = String::from(*features);
-    is_foreign.then(|| format!("configuration {number} ({kind}, {features})"))
+    let (classifier, features) = (configuration.classifier, configuration.features);
+    let is_foreign = matches!(classifier, ClassifierKind::Foreign(_));
+    let (number, kind) = (configuration.configuration, classifier.about().words);
+    let words = || {
+        format!(
+            "configuration {number} ({kind}, {})",
+            String::from(features)
+        )
+    };
+    (is_foreign || features.foreign().is_some()).then(words)
 }
 
 /// Returns an error if a configuration needs a classifier or features that the running program does not provide.
@@ -349,8 +377,5 @@ fn check_provided(configuration: &Configuration) -> Result<()> {
     if let ClassifierKind::Foreign(foreign) = configuration.classifier {
         foreign.check_provided()?;
     }
-    match configuration.features.foreign() {
-        Some(foreign) => Ok(foreign.n_values(configuration.measurements).map(drop)?),
-        None => Ok(()),
-    }
+    configuration.check_features()
 }

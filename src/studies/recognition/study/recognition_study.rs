@@ -1,28 +1,19 @@
 //! Recognition study with its work items and result tables.
 
-use crate::engine::axes::AxisValues;
-use crate::engine::progress::Progress;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
-use crate::error::{Error, Result};
-use crate::inputs::content_hash::short_hash;
-use crate::inputs::object_files::objects_content;
-use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::units::millimetres;
-use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::table_rows::{Prediction, Predictions, StageTime, Tables};
-use crate::studies::recognition::spec::study::ConfusionMatrices;
-use crate::studies::recognition::study::rows::{RecognitionRows, TouchRow};
-use crate::studies::recognition::study::touch_inputs::TouchInputs;
-use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
-use crate::studies::recognition::sweep::training_rows::TrainingRows;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::{Samples, TouchSet};
+use crate::studies::recognition::plan::MeasurementGroup;
+use crate::studies::recognition::rows::{
+    Configuration, Prediction, Predictions, StageTime, Tables,
+};
+use crate::studies::recognition::spec::ConfusionMatrices;
+use crate::studies::recognition::study::{RecognitionRows, TouchInputs, TouchRow};
+use crate::studies::recognition::sweep::{StudyPart, Sweep, TrainingRows};
 use crate::studies::recognition::tables::published::{check_published, compare_with_published};
 use crate::studies::recognition::tables::tabulate::tabulate;
-use crate::studies::recognition::training::trial::Evaluation;
+use crate::studies::recognition::training::Evaluation;
 use crate::studies::study::run_whole;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
@@ -158,8 +149,7 @@ impl RecognitionStudy {
                 let mut place_touches = |of: usize| {
                     let (plan, touched) = &touched[of];
                     let array = &plan.arrays[group.array];
-                    let content = format!("{touched} {array:?} {}", group.frames);
-                    let content = short_hash(content, DIGITS);
+                    let content = identity(&(touched, array, group.frames));
                     *known_touches.entry(content.clone()).or_insert_with(|| {
                         self.touch_sets.push(Touches {
                             group: number,
@@ -174,7 +164,7 @@ impl RecognitionStudy {
                 let trials = (0..plan.spec.trials).map(|trial| inputs.trial(sweep, trial));
                 let splits = trials.map_while(|trial| Some((trial.split?, trial.group_keys)));
                 let splits: Vec<_> = splits.collect();
-                let content = format!("{touches} {tested} {} {splits:?}", inputs.key());
+                let content = identity(&(touches, tested, &inputs, splits));
                 self.groups.push(PlacedGroup {
                     part,
                     place,
@@ -255,10 +245,7 @@ impl RecognitionStudy {
     /// Returns the number of different arrays on which touches are simulated.
     pub fn n_arrays(&self) -> usize {
         let made = (0..self.touch_sets.len()).map(|touches| self.made_on(touches));
-        let arrays = made.map(|(part, array, _)| {
-            let array = &self.parts[part].plan.arrays[array];
-            format!("{array:?}")
-        });
+        let arrays = made.map(|(part, array, _)| identity(&self.parts[part].plan.arrays[array]));
         arrays.collect::<HashSet<_>>().len()
     }
 
@@ -308,13 +295,9 @@ impl RecognitionStudy {
 
     /// Returns the configurations of a family, and the part of the study that contains them.
     pub(crate) fn family(&self, family: usize) -> (&StudyPart, &[Configuration]) {
-        let Family {
-            group,
-            configurations,
-            ..
-        } = &self.families[family];
-        let (part, group) = self.group(*group);
-        (part, &group.configurations[configurations.clone()])
+        let family = &self.families[family];
+        let (part, group) = self.group(family.group);
+        (part, &group.configurations[family.configurations.clone()])
     }
 
     /// Returns the number of the work item that computes a family of configurations in a trial.
@@ -336,11 +319,9 @@ impl RecognitionStudy {
 
     /// Returns the set of touches with this index, its array, and its number of frames per touch.
     pub(crate) fn on(&self, touches: usize) -> (&dyn TouchSet, &TaxelArray, usize) {
-        let Touches {
-            group, is_tested, ..
-        } = self.touch_sets[touches];
-        let (part, group) = self.group(group);
-        let (plan, touched) = match (&part.plan.tested, is_tested) {
+        let set = &self.touch_sets[touches];
+        let (part, group) = self.group(set.group);
+        let (plan, touched) = match (&part.plan.tested, set.is_tested) {
             (Some(tested), true) => (tested.as_ref(), part.tested.as_ref()),
             _ => (&part.plan, part.touched.as_ref()),
         };
@@ -401,9 +382,6 @@ fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<(
         allowed,
     ))
 }
-
-/// Number of hexadecimal digits of the hash that identifies a set of touches. With fewer digits, two sets may get the same hash.
-const DIGITS: usize = 24;
 
 impl RecognitionStudy {
     /// Runs the whole study without a journal; the first failed work item ends the run.

@@ -2,15 +2,11 @@
 
 use crate::engine::work_items::scale::{Scale, Stage};
 use crate::sensing::{Ensemble, N_COMPONENTS};
-use crate::studies::recognition::measurements::measurement::UNTOUCHED;
-use crate::studies::recognition::measurements::measurement_inputs::MeasurementInputs;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::image_features::join_values;
-use crate::studies::recognition::study::measuring::Job;
-use crate::studies::recognition::study::recognition_study::RecognitionStudy;
-use crate::studies::recognition::sweep::configurations::StudyPart;
-use crate::studies::recognition::sweep::learned_frames::{LEARNED_FRAMES, WITH_COPIES};
-use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
+use crate::studies::recognition::measurements::{MeasurementInputs, UNTOUCHED};
+use crate::studies::recognition::rows::{Configuration, join_values};
+use crate::studies::recognition::study::{Job, RecognitionStudy};
+use crate::studies::recognition::sweep::{LEARNED_FRAMES, StudyPart, WITH_COPIES};
+use crate::studies::recognition::training::FamilyInputs;
 use bubbletouch_svm::Multiclass;
 
 /// Memory of the result rows of one configuration in one trial, bytes.

@@ -8,25 +8,16 @@
 //!                  └─ fused touches × choice of the next touch (a configuration) ── decide
 //! ```
 
-use crate::engine::axes::AxisValues;
-use crate::engine::axis::Axis;
-use crate::error::{Error, Result};
 use crate::inputs::content_hash::{Hashed, bytes_of_counts, bytes_of_numbers};
-use crate::inputs::units::millimetres;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::evaluation::next_touch::Poses;
-use crate::random::Seed;
-use crate::sensing::Selection;
-use crate::studies::recognition::frames::samples::named_samples;
-use crate::studies::recognition::frames::touch_set::TouchSet;
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::plan::taxel_array::skin;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::sweep::learned_frames::learned_touches;
-use crate::studies::recognition::sweep::splits::{draw_split, first_equal, train_touches};
-use crate::studies::recognition::sweep::training_rows::TrainingRows;
-use crate::studies::recognition::touches::scaled_poses::scaled_poses;
+use crate::studies::prelude::*;
+use crate::studies::recognition::frames::{TouchSet, named_samples};
+use crate::studies::recognition::plan::{MeasurementGroup, skin};
+use crate::studies::recognition::rows::Configuration;
+use crate::studies::recognition::sweep::{
+    TrainingRows, draw_split, first_equal, learned_touches, train_touches,
+};
+use crate::studies::recognition::touches::scaled_poses;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::sync::Arc;

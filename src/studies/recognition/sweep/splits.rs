@@ -1,14 +1,10 @@
 //! Splits into training and test touches for each trial, with checks that both sets have enough touches.
 
-use crate::engine::axis::Axis;
-use crate::error::{Error, Result};
 use crate::learning::data::split::{
     Side, given_hold_out, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
 };
-use crate::random::Seed;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::pose_split::PoseSplit;
-use crate::world::Touch;
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::PoseSplit;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::collections::{HashMap, HashSet};
@@ -104,7 +100,7 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
         at_most("touches_per_decision", k as f64, fewest_tested, what)?;
     }
     let least = train_touches.iter().min().copied().unwrap_or(0);
-    let chooses = recognition.c_grid.is_some() || recognition.gamma_grid.is_some();
+    let chooses = recognition.is_open();
     if chooses || recognition.is_informed() {
         let cv_touches = recognition.cv_touches.filter(|_| chooses);
         let of_folds = least.min(cv_touches.unwrap_or(least));

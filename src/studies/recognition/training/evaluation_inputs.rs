@@ -1,32 +1,25 @@
 //! Inputs that determine the evaluation of a family of configurations in a trial, without the measurements.
 //!
-//! The method `Trial::evaluate` receives these inputs and no plan, so it cannot depend on any other value of a study. The name of a work item is a hash of the
-//! `Debug` form of these inputs and of the inputs of its measurements. A new field therefore changes the name.
+//! The method `Trial::evaluate` receives these inputs and no plan, so it cannot depend on any other value of a study. The identity of a work item consists of
+//! the canonical bytes of these inputs and of the inputs of its measurements.
 
-use crate::error::{Error, Result};
-use crate::inputs::content_hash::{Hashed, short_hash};
+use crate::inputs::content_hash::{Hashed, canonical};
 use crate::inputs::memory::GIB;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::evaluation::next_touch::{NextTouch, Poses};
-use crate::random::Seed;
-use crate::studies::recognition::plan::group::MeasurementGroup;
-use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::row_inputs::RowInputs;
-use crate::studies::recognition::spec::study::{Metric, RecognitionSpec};
-use crate::studies::recognition::sweep::configurations::Sweep;
-use crate::studies::recognition::sweep::training_rows::TrainingRows;
+use crate::studies::prelude::*;
+use crate::studies::recognition::plan::MeasurementGroup;
+use crate::studies::recognition::rows::{Configuration, RowInputs};
+use crate::studies::recognition::spec::{Metric, RecognitionSpec};
+use crate::studies::recognition::sweep::{Sweep, TrainingRows};
 use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
+use serde::Serialize;
 use std::collections::HashSet;
 
-/// Number of hexadecimal digits of the hash that a work item's name contains. With fewer digits, the names of two work items may collide.
-const DIGITS: usize = 24;
-
 /// Inputs of a trial that all families of configurations share.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct TrialInputs<'a> {
     /// Seed from which all random numbers of the study are derived.
     pub seed: u64,
@@ -47,7 +40,7 @@ pub struct TrialInputs<'a> {
 }
 
 /// Inputs of a family of configurations that are equal in all its trials.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct FamilyInputs<'a> {
     /// Inputs that determine how feature rows are computed from measurements.
     pub rows: RowInputs,
@@ -66,7 +59,7 @@ pub struct FamilyInputs<'a> {
 }
 
 /// Inputs that determine how a classifier is trained. Parameters that the classifier does not use have their default values.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct TrainingInputs {
     /// Classifier and its parameters; the penalty C is set by each [`Decision`].
     pub classifier: Classifier,
@@ -81,7 +74,7 @@ pub struct TrainingInputs {
 }
 
 /// Settings in which the configurations of a family differ.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Decision {
     /// Penalty C of the classifier; `None` if C is chosen by cross-validation or the classifier has no C.
     pub c: Option<f64>,
@@ -92,12 +85,6 @@ pub struct Decision {
 }
 
 impl TrialInputs<'_> {
-    /// Returns the name of the trial, which contains a hash of all its inputs. Different inputs give different names.
-    pub fn name(&self) -> String {
-        let Self { number, .. } = self;
-        format!("trial {number} {}", short_hash(format!("{self:?}"), DIGITS))
-    }
-
     /// Returns the seed of the trial's random numbers that are used for the purpose `name`.
     pub fn stream(&self, name: &str) -> Seed {
         let seed = Seed::new(self.seed).named(name);
@@ -229,19 +216,6 @@ impl TrainingInputs {
     }
 }
 
-/// Returns the name of a family of configurations; the name contains a hash of the family's inputs. The measurements in the hash are those that the family
-/// alone would need.
-pub fn family_name(
-    plan: &Plan,
-    (group, touches): (&MeasurementGroup, &str),
-    inputs: &FamilyInputs,
-    family: &[Configuration],
-) -> String {
-    let alone = group.with_cells(family);
-    let measured = alone.inputs(plan);
-    short_hash(format!("{touches} {measured:?} {inputs:?}"), DIGITS)
-}
-
 impl Sweep {
     /// Checks that every family of configurations can be trained in every trial.
     ///
@@ -253,12 +227,8 @@ impl Sweep {
         for (group, family) in self.groups.iter().flat_map(families) {
             let inputs = FamilyInputs::new(plan, self, family);
             let n_per_touch = group.n_readings(plan) + inputs.rows.n_copies;
-            let FamilyInputs {
-                training_rows,
-                training,
-                ..
-            } = &inputs;
-            if checked.insert(format!("{n_per_touch} {training_rows:?} {training:?}")) {
+            let needed = (n_per_touch, &inputs.training_rows, &inputs.training);
+            if checked.insert(canonical(&needed)) {
                 for number in 0..self.splits.len() {
                     self.trial(plan, number)?.check(&inputs, n_per_touch)?;
                 }
@@ -297,4 +267,36 @@ impl Sweep {
 /// Returns the maximum memory for the kernel values of a solver, bytes; the default of `gib` is 2 GiB.
 pub fn solver_memory(gib: Option<f64>) -> usize {
     gib.map_or(DEFAULT_MEMORY_BYTES, |gib| (gib * GIB) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inputs::sensor_errors::Strengths;
+    use crate::learning::classifiers::foreign::Foreign;
+    use bubbletouch_sim::features::{Features, foreign};
+
+    #[test]
+    fn another_version_is_another_input_and_a_strength_of_zero_is_none() {
+        let own = |version| ClassifierKind::Foreign(Foreign::new("own_kind", version).unwrap());
+        let classifier = |version| identity(&Classifier::new(own(version)));
+        assert_eq!(classifier("1"), classifier("1"));
+        assert_ne!(classifier("1"), classifier("2"));
+        let rows = |version| {
+            let own = foreign::Foreign::new("own_features", version).unwrap();
+            identity(&RowInputs {
+                image_shapes: vec![(4, 4)],
+                measurements: 4,
+                frames: 1,
+                temporal_features: None,
+                features: Features::Foreign(own),
+                depth_window_full_scale: None,
+                n_copies: 0,
+            })
+        };
+        assert_ne!(rows("1"), rows("2"));
+        let strength = |value| identity(&Strengths::default().with("gain_std", value));
+        assert_eq!(strength(Some(0.0)), strength(None));
+        assert_ne!(strength(Some(0.1)), strength(None));
+    }
 }

@@ -1,11 +1,10 @@
 //! Training of a family of configurations on common features, with one classifier for each C.
 
-use crate::error::{Error, Result};
 use crate::learning::classifiers::classifier::{Classifier, Cost};
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
 use crate::learning::data::split::{group_k_fold, stratified_k_fold};
-use crate::random::Seed;
-use crate::studies::recognition::training::evaluation_inputs::TrainingInputs;
+use crate::studies::prelude::*;
+use crate::studies::recognition::training::TrainingInputs;
 use bubbletouch_svm::cross_validation::choice::Candidates;
 use bubbletouch_svm::dataset::{Dataset, rows};
 use bubbletouch_svm::kernel::Gamma;

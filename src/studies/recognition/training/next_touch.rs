@@ -5,10 +5,9 @@ use crate::error::Result;
 use crate::learning::evaluation::next_touch::{
     AnswerModel, NextTouch, PoseAnswers, most_informative, sequence,
 };
-use crate::studies::recognition::training::evaluation_inputs::{
-    Decision, FamilyInputs, TrialInputs,
+use crate::studies::recognition::training::{
+    Decision, FamilyInputs, Fitted, Training, TrialInputs,
 };
-use crate::studies::recognition::training::fit::{Fitted, Training};
 use bubbletouch_svm::dataset::Dataset;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Array2};

@@ -5,16 +5,12 @@ use crate::learning::evaluation::fusion::{fuse_rows, fuse_scores};
 use crate::learning::evaluation::metrics::ConfusionMatrix;
 use crate::statistics::grouped::{GroupCount, GroupedTest, count_groups, interval_of};
 use crate::statistics::p_status::CONFIDENCE;
-use crate::studies::recognition::measurements::measurement::Measurements;
-use crate::studies::recognition::rows::row_inputs::RowInputs;
-use crate::studies::recognition::rows::table_rows::{TrialScore, TrialTime};
-use crate::studies::recognition::training::evaluation_inputs::{
-    Decision, FamilyInputs, TrialInputs,
+use crate::studies::recognition::measurements::Measurements;
+use crate::studies::recognition::rows::{RowInputs, TrialScore, TrialTime};
+use crate::studies::recognition::training::{
+    AnsweredTouches, Decide, Decision, FamilyInputs, Fitted, Training, TrialInputs, answer_model,
+    choose_touches,
 };
-use crate::studies::recognition::training::fit::{Fitted, Training};
-use crate::studies::recognition::training::next_touch::AnsweredTouches;
-use crate::studies::recognition::training::next_touch::Decide;
-use crate::studies::recognition::training::next_touch::{answer_model, choose_touches};
 use bubbletouch_svm::dataset::{Dataset, dataset};
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Array2, Axis};
