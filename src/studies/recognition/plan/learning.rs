@@ -45,7 +45,7 @@ const BESIDE: [(&str, &[&str]); 4] = [
 
 impl Check<'_> {
     /// Checks that `[sensing]` contains either a compression ratio or a number of measurements. The number may not exceed the number of taxels of any array.
-    pub fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
+    pub(crate) fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
         self.table("sensing", sensing)?;
         if sensing.ratio.is_some() && sensing.measurements.is_some() {
             return Err(self.error("sensing", "both ratio and measurements", "one of them"));
@@ -94,7 +94,7 @@ impl Check<'_> {
     }
 
     /// Checks the key `sensing.selection`: an ensemble must select taxels.
-    pub fn selection(&self, sensing: &SensingSpec) -> Result<()> {
+    pub(crate) fn selection(&self, sensing: &SensingSpec) -> Result<()> {
         let ensembles = sensing.ensemble.values();
         let mut methods = ensembles
             .iter()
@@ -111,6 +111,9 @@ impl Check<'_> {
     }
 
     /// Returns an error if an ensemble must be learned from frames but the study has no training frames.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn drawn(&self, key: &str, ensembles: impl IntoIterator<Item = Ensemble>) -> Result<()> {
         let mut ensembles = ensembles.into_iter();
         match ensembles.find(|ensemble| !ensemble.is_drawn()) {
@@ -124,7 +127,7 @@ impl Check<'_> {
     }
 
     /// Checks `[recognition]`: keys must be in range, must not contradict each other, and must have an effect.
-    pub fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
+    pub(crate) fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
         let given = self.table("recognition", recognition)?;
         for [first, second] in ONE_OF {
             if given.contains_key(first) && given.contains_key(second) {
@@ -226,7 +229,11 @@ impl Check<'_> {
     }
 
     /// Checks that each taxel reads a single value if a study uses image features.
-    pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
+    pub(crate) fn images(
+        &self,
+        recognition: &RecognitionSpec,
+        arrays: &[TaxelArray],
+    ) -> Result<()> {
         let mut features = recognition.all_features().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
             let foremost = recognition.depth_window_full_scale.is_some();
@@ -269,7 +276,7 @@ impl Check<'_> {
     }
 
     /// Checks the key `temporal_features`; it is not allowed if it requires more frames than a touch has.
-    pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
+    pub(crate) fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
         let values = Axis::optional_values(&recognition.temporal_features);
         if let ([Some(TemporalFeatures::Deepest)], true) =
@@ -295,7 +302,7 @@ impl Check<'_> {
     }
 
     /// Checks a split that is defined by poses; no other key may define the split in addition.
-    pub fn split(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn split(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         if recognition.split == PoseSplit::Random {
             return Ok(());
@@ -325,7 +332,7 @@ impl Check<'_> {
 
     /// Checks the key `next_touch`, which names the rule that chooses the touches of a decision. The policy requires several touches per decision, and poses
     /// that a robot can command for any object.
-    pub fn next_touch(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn next_touch(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         let Some(chosen) = recognition.chosen_next().next() else {
             return Ok(());
@@ -358,7 +365,7 @@ impl Check<'_> {
     }
 
     /// Checks that the number of trials is a multiple of the number of folds.
-    pub fn folds(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn folds(&self, spec: &StudySpec) -> Result<()> {
         match spec.recognition.folds {
             Some(k) if !spec.trials.is_multiple_of(k) => {
                 let allowed = format!("a multiple of recognition.folds = {k}");

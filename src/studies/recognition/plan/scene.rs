@@ -59,6 +59,9 @@ impl SkinSpec {
 
 impl Check<'_> {
     /// Checks `[objects]`: the study names sets or meshes, and no key has no effect.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
         let given = self.table("objects", objects)?;
         if objects.meshes.is_some() {
@@ -79,7 +82,7 @@ impl Check<'_> {
     }
 
     /// Checks that a layout of taxels has all required keys and no unsupported keys.
-    pub fn layout(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn layout(&self, spec: &StudySpec) -> Result<()> {
         let SkinSpec {
             layout,
             curvature_radius_mm: radius,
@@ -140,7 +143,7 @@ impl Check<'_> {
     }
 
     /// Checks that all arrays are square grids, and returns them.
-    pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
+    pub(crate) fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         let only = |key: &str, what: &str| {
             let allowed = format!("no such key: only studies of recognition have {what}");
             Err(self.error(key, "given", allowed))
@@ -160,6 +163,9 @@ impl Check<'_> {
     }
 
     /// Returns the only array of a study; returns an error with the text `allowed` if the study has several arrays.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<TaxelArray> {
         let mut arrays = self.grids(skin)?;
         match (arrays.pop(), arrays.len()) {
@@ -184,6 +190,9 @@ impl Check<'_> {
     }
 
     /// Returns the placement (distribution of touch poses). Returns an error if a touch has several frames or slides.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
         let of_recognition = [
             ("slide_mm", touches.slide_mm.is_some_and(|mm| mm != 0.0)),
@@ -201,7 +210,7 @@ impl Check<'_> {
     }
 
     /// Returns the placement (distribution of touch poses) in SI units.
-    pub fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
+    pub(crate) fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
         self.table("touches", touches)?;
         let degree = std::f64::consts::PI / 180.0;
         let spread = |axis: TouchAxis, spread, (ending, unit)| {

@@ -64,12 +64,12 @@ pub(crate) fn key(path: &str) -> &'static KeyAbout {
 
 impl Check<'_> {
     /// Checks the keys of a table of a recognition study; returns the keys that the table contains.
-    pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
+    pub(crate) fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
         self.keys(name, table, recognition_keys())
     }
 
     /// Checks and returns the value of a numeric key of recognition studies.
-    pub fn number(&self, path: &str, value: f64) -> Result<f64> {
+    pub(crate) fn number(&self, path: &str, value: f64) -> Result<f64> {
         let range = key(path).range;
         match range.contains(value) {
             true => Ok(value),
