@@ -29,6 +29,9 @@ impl Check<'_> {
 
     /// Checks the keys of the table `name` against the list `keys`; returns the keys that the table contains. Each number must be in the range of its key; each
     /// list must contain values and no duplicates. An entry of an array of tables has its number in the name: `stability.parts[1]`.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn keys(
         &self,
         name: &str,
@@ -94,7 +97,7 @@ impl Check<'_> {
     }
 
     /// Checks that the count given under `key` is between 1 and `most`.
-    pub fn count(&self, key: &str, count: usize, most: usize) -> Result<usize> {
+    pub(crate) fn count(&self, key: &str, count: usize, most: usize) -> Result<usize> {
         match count {
             0 => Err(self.error(key, 0, "at least 1")),
             count if count <= most => Ok(count),
@@ -103,6 +106,9 @@ impl Check<'_> {
     }
 
     /// Checks that a study of `n` configurations (the product of all axis lengths) is within the limit.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn configurations(&self, n: f64) -> Result<()> {
         if n <= MAX_CONFIGURATIONS {
             return Ok(());
@@ -120,12 +126,18 @@ impl Check<'_> {
     }
 
     /// Checks that `bytes` bytes fit into the memory of the machine; the error message describes the data by `what`.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn memory(&self, key: &str, given: impl ToString, bytes: f64, what: &str) -> Result<()> {
         check_memory(bytes, machine_memory(), what)
             .map_err(|allowed| self.error(key, given, allowed))
     }
 
     /// Checks that a list of swept values is not empty and has no duplicates, which would repeat configurations.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn list<T: Clone + PartialEq + std::fmt::Debug>(
         &self,
         key: &str,

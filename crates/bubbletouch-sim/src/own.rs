@@ -11,6 +11,12 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// Maximum number of letters of a name or a version. Longer texts do not fit into a column of a table.
 const MAX_LETTERS: usize = 64;
 
+/// Returns whether a text is a name or a version of a part from outside of this crate: 1 to 64 letters (A–Z, a–z), digits, `_`, `-` and `.`.
+pub(crate) fn is_word(text: &str) -> bool {
+    let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "_-.".contains(letter);
+    (1..=MAX_LETTERS).contains(&text.len()) && text.chars().all(is_letter)
+}
+
 /// Registered part with its name, its version and its description of the type `A`. Results of equal names and versions are interchangeable.
 pub struct Own<A: 'static>(&'static Part<A>);
 
@@ -49,9 +55,6 @@ impl<A: Send + Sync> Registry<A> {
         about: A,
         is_taken: bool,
     ) -> Result<Own<A>> {
-        let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "_-.".contains(letter);
-        let is_word =
-            |text: &str| (1..=MAX_LETTERS).contains(&text.len()) && text.chars().all(is_letter);
         let mut registered = self
             .registered
             .lock()

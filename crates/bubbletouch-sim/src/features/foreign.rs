@@ -5,6 +5,7 @@
 
 use super::Features;
 use crate::error::{Error, Result};
+use crate::own::is_word;
 use ndarray::{Array2, ArrayView2};
 use serde_json::{Map, Value};
 use std::cell::RefCell;
@@ -14,9 +15,6 @@ use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// Maximum number of letters of a name or a version. Longer texts do not fit into a column of a table.
-const MAX_LETTERS: usize = 64;
 
 /// Values of parameters of features from outside of this crate, by name.
 pub type ForeignParameters = Map<String, Value>;
@@ -75,9 +73,6 @@ impl Foreign {
     /// # Errors
     /// If features of this crate have the name. If the name or the version does not consist of 1 to 64 letters (A–Z, a–z), digits, `_`, `-` and `.`.
     pub fn new(name: &str, version: &str) -> Result<Self> {
-        let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "_-.".contains(letter);
-        let is_word =
-            |text: &str| (1..=MAX_LETTERS).contains(&text.len()) && text.chars().all(is_letter);
         if !is_word(name) || !is_word(version) || Features::is_own_name(name) {
             let given = format!("{name:?}, version {version:?}");
             let allowed = "a name that no other features have, and 1 to 64 letters, digits, _, - and . in name and version";

@@ -53,6 +53,9 @@ impl SkinSpec {
 
 impl Check<'_> {
     /// Checks `[objects]`: the study names sets or meshes, and no key has no effect.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
         self.table("objects", objects)?;
         if objects.meshes.is_some() {
@@ -70,7 +73,7 @@ impl Check<'_> {
     }
 
     /// Checks that a layout of taxels has all required keys and no unsupported keys.
-    pub fn layout(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn layout(&self, spec: &StudySpec) -> Result<()> {
         let radius = spec.skin.curvature_radius_mm;
         let layout = spec.skin.layout.unwrap_or_default();
         let (key, given, allowed) = match radius {
@@ -120,7 +123,7 @@ impl Check<'_> {
     }
 
     /// Checks that all arrays are square grids, and returns them.
-    pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
+    pub(crate) fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         let allowed = "no such key: only studies of recognition have other layouts than grids";
         self.absent(("skin", skin), &["layout", "curvature_radius_mm"], allowed)?;
         let of_shear = ["sensed", "friction", "shear_stiffness_n_per_m"];
@@ -130,6 +133,9 @@ impl Check<'_> {
     }
 
     /// Returns the only array of a study; returns an error with the text `allowed` if the study has several arrays.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<TaxelArray> {
         let mut arrays = self.grids(skin)?;
         match (arrays.pop(), arrays.len()) {
@@ -154,6 +160,9 @@ impl Check<'_> {
     }
 
     /// Returns the placement (distribution of touch poses). Returns an error if a touch has several frames or slides.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
         let allowed = "no such key: only studies of recognition and of breaking points use it";
         let of_recognition = ["slide_mm", "slide_deg", "frames"];
@@ -162,7 +171,7 @@ impl Check<'_> {
     }
 
     /// Returns the placement (distribution of touch poses) in SI units.
-    pub fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
+    pub(crate) fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
         self.table("touches", touches)?;
         let degree = std::f64::consts::PI / 180.0;
         let spread = |axis: TouchAxis, spread, (ending, unit)| {

@@ -20,6 +20,9 @@ pub struct Condition {
 
 impl Check<'_> {
     /// Returns the unit and the values of the noise standard deviation, for the quantity that the taxels measure.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn noise(
         &self,
         signal: &SignalSpec,
@@ -55,6 +58,9 @@ impl Check<'_> {
     }
 
     /// Checks the strengths of the sensor errors in `[signal]`. Errors that act only during motion require that the press moves while frames are read.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn sensor_errors(&self, signal: &SignalSpec, touches: &TouchesSpec) -> Result<()> {
         let largest = |strength: &Strength| {
             let axis = signal.axes.get(strength.key).into_iter();
@@ -90,7 +96,7 @@ impl Check<'_> {
     }
 
     /// Checks the key `test_sensor`: another skin for test touches requires a sensor error that differs between skins.
-    pub fn check_test_sensor(&self, signal: &SignalSpec) -> Result<()> {
+    pub(crate) fn check_test_sensor(&self, signal: &SignalSpec) -> Result<()> {
         let is_of_skin =
             |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
         let mut skins = signal.test_sensor.iter().flat_map(Axis::values);
@@ -106,6 +112,9 @@ impl Check<'_> {
 
     /// Checks the steps of the signal chain. Each step occurs at most once. A step whose axis is set is listed. A listed sensor error has at least one
     /// strength. Without the check, a key could be ignored silently.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
         const KEY: &str = "signal.steps";
         if !signal.steps.is_empty() {

@@ -251,7 +251,7 @@ fn has_axis(axes: &StudyAxes, table: &str, names: &[&str]) -> bool {
 impl Check<'_> {
     /// Checks that keys have an effect. One value of an axis that uses a key suffices. A key that training touches and test touches share has an effect if it has
     /// one in either. A key of `[test]` must have an effect in test touches.
-    pub fn unused_keys(&self, plan: &Plan) -> Result<()> {
+    pub(crate) fn unused_keys(&self, plan: &Plan) -> Result<()> {
         self.sticking_shear(plan)?;
         let (own, axes) = (table_of(&plan.spec), &plan.spec.axes);
         let tested = plan.tested.as_deref();
@@ -294,6 +294,9 @@ impl Check<'_> {
 
     /// Checks that the springs, the dampers and the speed have an effect in a study of another kind than recognition. `of_force` states which keys make the
     /// study read forces.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
     pub fn used_springs(
         &self,
         (skin, touches): (&SkinSpec, &TouchesSpec),

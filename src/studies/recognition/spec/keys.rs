@@ -62,7 +62,7 @@ pub(crate) fn key(path: &str) -> &'static KeyAbout {
 
 impl Check<'_> {
     /// Checks the keys of a table of a recognition study; returns the keys that the table contains.
-    pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
+    pub(crate) fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
         let given = self.keys(name, table, recognition_keys())?;
         let inner = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
         for [first, second] in ONE_OF {
@@ -78,7 +78,7 @@ impl Check<'_> {
     }
 
     /// Checks that none of the named keys of a table is given, unless its value has the effect of the absent key.
-    pub fn absent(
+    pub(crate) fn absent(
         &self,
         (name, table): (&str, &impl Serialize),
         keys: &[&str],
@@ -94,7 +94,7 @@ impl Check<'_> {
     }
 
     /// Checks and returns the value of a numeric key of recognition studies.
-    pub fn number(&self, path: &str, value: f64) -> Result<f64> {
+    pub(crate) fn number(&self, path: &str, value: f64) -> Result<f64> {
         let range = key(path).range;
         match range.contains(value) {
             true => Ok(value),
