@@ -18,6 +18,7 @@ use crate::studies::recognition::plan::signal::Condition;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::signal::SignalAxis;
 use crate::studies::recognition::spec::study::StudySpec;
+use crate::world::ImageShape;
 use std::sync::Arc;
 use toml::{Table, Value};
 
@@ -127,8 +128,10 @@ impl Check<'_> {
         };
         let (learned, shown) = (shapes(plan), shapes(tested));
         if learned != shown {
-            let taxels = |shapes: &[((usize, usize), usize)]| {
-                let sizes = shapes.iter().map(|((ny, nx), _)| format!("{nx} x {ny}"));
+            let taxels = |shapes: &[(ImageShape, usize)]| {
+                let sizes = shapes
+                    .iter()
+                    .map(|(ImageShape { ny, nx }, _)| format!("{nx} x {ny}"));
                 sizes.collect::<Vec<_>>().join(", ")
             };
             let (given, allowed) = (taxels(&shown), taxels(&learned));

@@ -1,5 +1,6 @@
 //! Image features of configurations.
 
+use crate::world::ImageShape;
 use bubbletouch_sim::features::Join;
 
 /// Image features that the configurations of a group need.
@@ -16,6 +17,6 @@ pub struct FeaturesOfImages {
 
 /// Returns the number of values of a combination of image features for a frame. The frame has one image for each sensor, given as numbers of rows and
 /// columns.
-pub fn join_values(join: Join, shapes: &[(usize, usize)]) -> usize {
+pub fn join_values(join: Join, shapes: &[ImageShape]) -> usize {
     shapes.iter().map(|&shape| join.n_values(shape)).sum()
 }

@@ -2,13 +2,14 @@
 
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::studies::recognition::rows::image_features::{FeaturesOfImages, join_values};
+use crate::world::ImageShape;
 use bubbletouch_sim::features::Features;
 
 /// Inputs that determine how features are computed from the measurements of a touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowInputs {
     /// Numbers of rows and columns of the images that represent frames, one for each sensor.
-    pub image_shapes: Vec<(usize, usize)>,
+    pub image_shapes: Vec<ImageShape>,
     /// Number of values of a measured frame: m measurements, or one value per taxel if the ensemble gives frames.
     pub measurements: usize,
     /// Number F of frames per touch.
@@ -38,7 +39,9 @@ impl RowInputs {
     pub fn n_frame_features(&self) -> usize {
         match self.features.of_image() {
             Some(join) => join_values(join, &self.image_shapes),
-            None => self.features.n_values(self.measurements, (1, 1)),
+            None => self
+                .features
+                .n_values(self.measurements, ImageShape::row(1)),
         }
     }
 

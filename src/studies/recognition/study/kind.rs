@@ -19,6 +19,7 @@ use crate::studies::recognition::training::evaluation_inputs::{FamilyInputs, fam
 use crate::studies::source::Source;
 use crate::studies::study::{About, Facts, Study, TableFiles, settings_words};
 use crate::table::{ChartSpec, Table};
+use crate::world::ImageShape;
 use std::collections::HashSet;
 
 /// Names of the tables and columns that contain the intervals of accuracies.
@@ -137,7 +138,7 @@ impl Study for RecognitionStudy {
         }
         for (number, touches) in self.touch_sets.iter().enumerate() {
             let (_, array, n_frames) = self.on(number);
-            let ((ny, nx), pitch) = (array.shape(), array.pitch());
+            let (ImageShape { ny, nx }, pitch) = (array.shape(), array.pitch());
             let content = &touches.content;
             let name =
                 format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m, {content}");
