@@ -20,6 +20,7 @@ use bubbletouch::recognition::svm::{Multiclass, SvmParams};
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, SignalStep, SignalWorkspace};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
+use bubbletouch::world::ImageShape;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use linfa::DatasetBase;
 use linfa::traits::Fit;
@@ -196,7 +197,10 @@ fn features(criterion: &mut Criterion) {
     ]);
     for features in named {
         let join = Join::new(&features).unwrap();
-        let shape = (TAXELS, TAXELS);
+        let shape = ImageShape {
+            ny: TAXELS,
+            nx: TAXELS,
+        };
         let features = ImageFeatures::new(join, shape, 1.0, Cut::default());
         let (mut workspace, mut out) = (Workspace::default(), vec![0.0; join.n_values(shape)]);
         group.bench_function(BenchmarkId::new(join.to_string(), TAXELS), |bencher| {

@@ -5,6 +5,7 @@ use bubbletouch::sensing::{
     Basis, Dictionary, Effort, Ensemble, Projection, Reconstructor, SensedDictionary, Solver,
 };
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, SensorError, SignalStep, SignalWorkspace};
+use bubbletouch::world::ImageShape;
 use bubbletouch::world::{Grid, Patch, Taxel};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use ndarray::Array2;
@@ -33,8 +34,13 @@ fn measure(criterion: &mut Criterion) {
         ("identity", Ensemble::Identity),
     ] {
         for m in [64, 1024] {
-            let projection = Projection::new(ensemble, (SIDE, SIDE), m, &Seed::new(1))
-                .expect("m is in its range");
+            let projection = Projection::new(
+                ensemble,
+                ImageShape { ny: SIDE, nx: SIDE },
+                m,
+                &Seed::new(1),
+            )
+            .expect("m is in its range");
             let mut out = Array2::zeros((N_TOUCHES, projection.n_measurements()));
             group.bench_function(BenchmarkId::new(name, m), |bencher| {
                 bencher.iter(|| projection.measure_into(frames.view(), out.view_mut()));
@@ -113,7 +119,7 @@ fn bumps(n_frames: usize) -> Array2<f64> {
 fn reconstruct(criterion: &mut Criterion) {
     const BATCH: usize = 64;
     let seed = Seed::new(1);
-    let (train, grid) = (bumps(600), (SIDE, SIDE));
+    let (train, grid) = (bumps(600), ImageShape { ny: SIDE, nx: SIDE });
     let mut group = criterion.benchmark_group("reconstruct_64_touches_64x64_from_1024");
     group.throughput(Throughput::Elements(BATCH as u64));
     group.sample_size(10);

@@ -77,7 +77,7 @@
 //! chain.apply(&mut frame, None, &seed.numbered(2), &mut SignalWorkspace::default());
 //!
 //! // 64 measurements instead of 1,024 numbers.
-//! let projection = Projection::new(Ensemble::Gaussian, (grid.ny, grid.nx), 64, &seed)?;
+//! let projection = Projection::new(Ensemble::Gaussian, grid.shape(), 64, &seed)?;
 //! let frame = Array2::from_shape_vec((1, 1024), frame).expect("one number a taxel");
 //! assert_eq!(projection.measure(frame.view()).dim(), (1, 64));
 //!

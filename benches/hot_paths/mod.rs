@@ -10,7 +10,7 @@ use bubbletouch::recognition::svm::kernel::Kernel;
 use bubbletouch::recognition::svm::{Multiclass, SvmParams};
 use bubbletouch::sensing::{Ensemble, Projection};
 use bubbletouch::whole_body::{BodyState, SphereClusters, WholeBody};
-use bubbletouch::world::{Extrusion, Grid, Patch, Taxel};
+use bubbletouch::world::{Extrusion, Grid, ImageShape, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use ndarray::{Array1, Array2, Axis};
 use rand::Rng;
@@ -261,7 +261,7 @@ pub fn body_step() -> HotPath {
 pub fn sensing() -> HotPath {
     const TOUCHED: usize = 10_000;
     let seed = Seed::new(9);
-    let projection = Projection::new(Ensemble::Sbhe, (400, 500), 1024, &seed);
+    let projection = Projection::new(Ensemble::Sbhe, ImageShape { ny: 400, nx: 500 }, 1024, &seed);
     let columns = projection.expect("m is in its range").columns();
     let mut measurements = vec![0.0; 1024];
     let mut first = 0;

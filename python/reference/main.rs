@@ -13,6 +13,7 @@ use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::sensing::{Ensemble, Projection};
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, SensorError, SignalStep, SignalWorkspace};
 use bubbletouch::study::write_npy;
+use bubbletouch::world::ImageShape;
 use bubbletouch::world::{Grid, Layout, Patch, Taxel};
 use bubbletouch::{Error, Result};
 use glam::{DQuat, DVec3};
@@ -126,11 +127,17 @@ fn after_presses(folder: &Path, patch: &Patch, mut frames: Array2<f64>) -> Resul
     write_npy(&folder.join("chain.npy"), &frames)?;
     let drawn = Ensemble::ALL.iter().zip(Ensemble::NAMES);
     for (ensemble, (name, _)) in drawn.filter(|(ensemble, _)| ensemble.is_drawn()) {
-        let projection = Projection::new(*ensemble, (20, 24), 32, &Seed::new(11))?;
+        let projection =
+            Projection::new(*ensemble, ImageShape { ny: 20, nx: 24 }, 32, &Seed::new(11))?;
         let measured = projection.measure(frames.view());
         write_npy(&folder.join(format!("{name}.npy")), &measured)?;
     }
-    let projection = Projection::new(Ensemble::Sbhe, (20, 24), 32, &Seed::new(11))?;
+    let projection = Projection::new(
+        Ensemble::Sbhe,
+        ImageShape { ny: 20, nx: 24 },
+        32,
+        &Seed::new(11),
+    )?;
     let features = 1e3 * projection.measure(frames.view());
     let labels = Array1::from_iter((0..N).map(|number| number % 3));
     let data = dataset(features.clone(), labels)?;

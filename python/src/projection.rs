@@ -5,6 +5,7 @@ use crate::errors::{bad_input, exception, guarded};
 use crate::threads::pool;
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{self, Ensemble};
+use bubbletouch::world::ImageShape;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 
@@ -58,7 +59,9 @@ impl Projection {
             let side = |side: i64| usize::try_from(side).unwrap_or(0);
             let (grid, m) = ((side(shape.0), side(shape.1)), side(n_measurements));
             let drawn = ensemble_of(ensemble)?;
-            let projection = sensing::Projection::new(drawn, grid, m, &Seed::new(seed));
+            let (ny, nx) = grid;
+            let shape = ImageShape { ny, nx };
+            let projection = sensing::Projection::new(drawn, shape, m, &Seed::new(seed));
             Ok(Self {
                 projection: projection.map_err(exception)?,
                 asked: (ensemble.to_owned(), grid, m, seed),

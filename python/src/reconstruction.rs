@@ -6,6 +6,7 @@ use crate::projection::Projection;
 use crate::threads::pool;
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{self, Basis, Dictionary, Effort, SensedDictionary, Solver};
+use bubbletouch::world::ImageShape;
 use ndarray::Ix2;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
@@ -102,6 +103,8 @@ impl Reconstructor {
             let made = py.detach(|| {
                 pool.install(|| {
                     let seed = Seed::new(seed);
+                    let (ny, nx) = shape;
+                    let shape = ImageShape { ny, nx };
                     let dictionary =
                         Dictionary::learned(basis, shape, training.view(), n_atoms, &seed)?;
                     let sensed = Sensed::try_new((projection.clone(), dictionary), |owner| {

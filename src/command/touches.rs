@@ -12,6 +12,7 @@ use bubbletouch::study::{
     Plan, ReadFrames, TOUCH_FILES, load_objects, millimetres, touch_units, write_human_touches,
     write_touches,
 };
+use bubbletouch::world::ImageShape;
 use bubbletouch::{Error, Result};
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -169,7 +170,7 @@ fn data_sets<'a>(plans: &'a [(AxisValues, Plan)], read: Option<&ReadFrames>) -> 
 
 /// Returns the parts of a folder name: the array, followed by each axis with its value.
 fn folder_parts(set: &DataSet) -> Vec<String> {
-    let ((ny, nx), pitch_mm) = (set.array.shape(), millimetres(set.array.pitch()));
+    let (ImageShape { ny, nx }, pitch_mm) = (set.array.shape(), millimetres(set.array.pitch()));
     let array = format!("{nx}x{ny}_at_{pitch_mm}_mm");
     let axes = set.axes.values.iter().map(|axis| {
         let value = match &axis.value {

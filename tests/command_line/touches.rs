@@ -87,7 +87,7 @@ fn the_frames_are_the_librarys_one_folder_an_array() {
     let study = Study::new(STUDY);
     for (folder, array) in FOLDERS.iter().zip(&study.plan.arrays) {
         let files = Files::read(&case.path(folder));
-        let (ny, nx) = array.shape();
+        let bubbletouch::world::ImageShape { ny, nx } = array.shape();
         assert_eq!(files.frames.dim(), (900, ny, nx));
         let expected = simulate_array(&study.touched, array, 1, &Silent);
         let flat = files.frames.to_shape((900, ny * nx)).unwrap();

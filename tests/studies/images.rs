@@ -5,6 +5,7 @@ use bubbletouch::recognition::features::{Cut, Features, ImageFeatures, Workspace
 use bubbletouch::studies::recognition::charts::tables_of;
 use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
+use bubbletouch::world::ImageShape;
 
 const STUDY: &str = include_str!("../fixtures/texts/images.toml");
 
@@ -45,8 +46,8 @@ fn features_of_a_whole_frame_are_those_of_the_frame() {
     let [raw, found] = [0, 1].map(|configuration| features(STUDY, configuration, 0).data.records);
     let join = Features::try_from("fourier_mellin+polar_harmonics+descriptors".to_owned());
     let join = join.unwrap().of_image().unwrap();
-    let features = ImageFeatures::new(join, (24, 24), 5e-3, Cut::default());
-    let mut out = vec![0.0; join.n_values((24, 24))];
+    let features = ImageFeatures::new(join, ImageShape { ny: 24, nx: 24 }, 5e-3, Cut::default());
+    let mut out = vec![0.0; join.n_values(ImageShape { ny: 24, nx: 24 })];
     for (frame, row) in raw.outer_iter().zip(found.outer_iter()) {
         features.write(
             frame.as_slice().unwrap(),

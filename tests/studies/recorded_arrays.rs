@@ -6,6 +6,7 @@ use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::TrialScore;
 use bubbletouch::study::{write_integers, write_npy};
+use bubbletouch::world::ImageShape;
 use ndarray::{Array, Array3, Array4, ArrayD, Axis, Dimension};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -742,5 +743,8 @@ fn shape_is<D: Dimension>(frames: &Array<f64, D>) {
     write_npy(&case.path("frames.npy"), frames).unwrap();
     write_integers(&case.path("labels.npy"), labels()).unwrap();
     let found = study(&keys(case.folder(), "frames.npy", "labels.npy")).unwrap();
-    assert_eq!(found.first().plan.arrays[0].shape(), (8, 8));
+    assert_eq!(
+        found.first().plan.arrays[0].shape(),
+        ImageShape { ny: 8, nx: 8 }
+    );
 }

@@ -6,6 +6,7 @@ use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::{Configuration, TrialScore};
 use bubbletouch::study::{write_integers, write_npy};
+use bubbletouch::world::ImageShape;
 use ndarray::{Array2, Array3, Axis, s};
 use ndarray_npy::read_npy;
 use std::fmt::Write as _;
@@ -248,7 +249,10 @@ fn each_sensor_alone_is_a_value_of_an_axis() {
     // Each sensor has an image of its own, and a frame has the features of all images.
     let study = planned(&case, &recorded, &format!("{SKIN}{IMAGES}")).unwrap();
     let array = &study.first().plan.arrays[0];
-    assert_eq!(array.image_shapes(), [(3, 8), (5, 8)]);
+    assert_eq!(
+        array.image_shapes(),
+        [3, 5].map(|ny| ImageShape { ny, nx: 8 })
+    );
     assert_eq!(array.n_taxels(), 64);
     // In the picture, the sensors are side by side, two pitches apart.
     assert_eq!(array.picture_cells().dim(), (15, 3 * (8 + 2 + 8)));

@@ -6,6 +6,7 @@ use crate::recorded_sensors::{
 };
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::write_npy;
+use bubbletouch::world::ImageShape;
 use ndarray::{Array2, Array3, Array4, Axis, s};
 use ndarray_npy::read_npy;
 
@@ -81,7 +82,7 @@ fn each_value_of_a_taxel_has_an_image() {
     );
     let study = study.unwrap();
     let array = &study.first().plan.arrays[0];
-    assert_eq!(array.image_shapes(), [(4, 8), (4, 8)]);
+    assert_eq!(array.image_shapes(), [ImageShape { ny: 4, nx: 8 }; 2]);
     assert!(
         array.describe_taxels().contains("skin, value 2 32"),
         "{}",

@@ -6,6 +6,7 @@ use bubbletouch::sensing::{Projection, Selection, TrainingFrames};
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
+use bubbletouch::world::ImageShape;
 use ndarray::Axis;
 use std::collections::BTreeSet;
 
@@ -102,7 +103,12 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
             };
             let ensemble = configuration.ensemble;
             let seed = Seed::new(2018).named("projection").numbered(1);
-            let projection = Projection::learned(ensemble, (10, 10), 5, (training, &seed));
+            let projection = Projection::learned(
+                ensemble,
+                ImageShape { ny: 10, nx: 10 },
+                5,
+                (training, &seed),
+            );
             let expected = projection.unwrap().measure(frames.data.records.view());
             assert_eq!(
                 found.data.records, expected,

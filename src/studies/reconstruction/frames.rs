@@ -9,6 +9,7 @@ use crate::sensing::{Reconstructor, SensedDictionary};
 use crate::studies::reconstruction::charts::{cell_words, noise_words};
 use crate::studies::reconstruction::study::ReconstructionStudy;
 use crate::table::Table;
+use crate::world::ImageShape;
 use ndarray::Array2;
 
 impl ReconstructionStudy {
@@ -53,7 +54,8 @@ impl ReconstructionStudy {
         for (sample, (_, name)) in touches.shown.iter().enumerate() {
             let mut add = |name: String, of_all: &Array2<f64>| {
                 let values = of_all.row(sample).to_vec();
-                let frame = Array2::from_shape_vec(self.plan.shape(), values);
+                let ImageShape { ny, nx } = self.plan.shape();
+                let frame = Array2::from_shape_vec((ny, nx), values);
                 frames.push((name, frame.expect("one value a taxel")));
             };
             add(name.replace('_', " "), &clean);

@@ -11,6 +11,7 @@ use crate::studies::prelude::*;
 use crate::studies::recognition::spec::signal::{SignalSpec, StepSpec};
 use crate::studies::recognition::spec::study::SensingSpec;
 use crate::studies::reconstruction::rows::ReconstructionConfiguration;
+use crate::world::ImageShape;
 use crate::world::{Grid, Placement};
 
 study_file! {
@@ -191,7 +192,7 @@ impl ReconstructionPlan {
     }
 
     /// Returns the numbers of rows and columns of a frame of the array.
-    pub(super) fn shape(&self) -> (usize, usize) {
+    pub(super) fn shape(&self) -> ImageShape {
         self.array.shape()
     }
 
@@ -294,7 +295,14 @@ impl Check<'_> {
     fn dictionaries(&self, wanted: &ReconstructionSpec, grid: &Grid) -> Result<Vec<Basis>> {
         let bases = wanted.dictionary.values();
         for &basis in bases.iter().filter(|&&basis| basis != Basis::Pca) {
-            Dictionary::complete(basis, (grid.ny, grid.nx)).map_err(|error| {
+            Dictionary::complete(
+                basis,
+                ImageShape {
+                    ny: grid.ny,
+                    nx: grid.nx,
+                },
+            )
+            .map_err(|error| {
                 let given = format!("{basis:?} ({error})");
                 self.error("reconstruction.dictionary", given, "a basis of this array")
             })?;

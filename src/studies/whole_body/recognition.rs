@@ -13,6 +13,7 @@ use crate::studies::model_recognition::{accuracy, touches_of};
 use crate::studies::whole_body::drive::{Drive, Posture, built_in};
 use crate::studies::whole_body::plan::WholeBodyPlan;
 use crate::studies::whole_body::rows::BodyRecognition;
+use crate::world::ImageShape;
 use glam::DQuat;
 use ndarray::{Array2, ArrayView2, Axis};
 use rand::Rng;
@@ -47,7 +48,7 @@ pub(super) fn learn(
 
 /// Returns a measurement matrix for the whole skin. The ensemble is SBHE with Hadamard blocks of `block` taxels, or the sparse ensemble if `block` is `None`.
 fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Result<Columns> {
-    let size = (posture.body.n_taxels(), 1);
+    let size = ImageShape::row(posture.body.n_taxels());
     let m = plan.spec.whole_body.sensing.measurements;
     let seed = Seed::new(plan.spec.seed).named("projection");
     let projection = match block {

@@ -13,13 +13,14 @@
 
 use super::feature::{Feature, FeatureAbout, Workspace};
 use super::image::{Image, Touched};
+use crate::world::ImageShape;
 
 /// Distance between samples of the rotated grid, in taxels.
 const STEP: usize = 2;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
     words: "aligned",
-    n_values: |(ny, nx)| ny.div_ceil(STEP) * nx.div_ceil(STEP),
+    n_values: |ImageShape { ny, nx }| ny.div_ceil(STEP) * nx.div_ceil(STEP),
     prepare: |_, _| Box::new(Aligned),
 };
 
@@ -77,6 +78,7 @@ fn axis(image: &Image) -> (f64, f64) {
 mod tests {
     use super::super::ImageFeature;
     use super::super::tests::features_of;
+    use crate::world::ImageShape;
 
     #[test]
     fn a_wedge_in_any_direction_becomes_one_along_x() {
@@ -94,7 +96,13 @@ mod tests {
             };
             (0..side * side).map(value).collect()
         };
-        let of = |angle| features_of(ImageFeature::Aligned, (side, side), &wedge(angle));
+        let of = |angle| {
+            features_of(
+                ImageFeature::Aligned,
+                ImageShape { ny: side, nx: side },
+                &wedge(angle),
+            )
+        };
         let straight = of(0.0);
         let size = straight.iter().map(|v| v * v).sum::<f64>();
         for degrees in [20.0, 77.0, 135.0, 200.0, 301.0_f64] {

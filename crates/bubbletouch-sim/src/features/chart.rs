@@ -1,5 +1,6 @@
 //! Charts: images of layouts without rows and columns.
 
+use crate::world::ImageShape;
 use glam::DVec2;
 use ndarray::{Array2, ArrayView2};
 
@@ -13,7 +14,7 @@ const ON_PATCH: f64 = 0.8;
 /// the taxels near it; weights decrease linearly to 0 at a distance of one pitch. The image of a square grid equals the grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    shape: (usize, usize),
+    shape: ImageShape,
     /// Indices and weights of the taxels that contribute to each pixel, pixel after pixel; the weights of a pixel have sum 1.
     terms: Vec<(u32, f64)>,
     /// Index after the last entry of each pixel in `terms`.
@@ -21,9 +22,9 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Creates the map from the positions of taxels on the plane (metres) and their approximate pitch. The image has (rows, columns) square pixels of the
-    /// size `pixel` (metres), centred on the origin.
-    pub fn new(places: &[DVec2], pitch: f64, image: ((usize, usize), f64)) -> Self {
+    /// Creates the map from the positions of taxels on the plane (metres) and their approximate pitch. The image has square pixels of the
+    /// given size (metres), centred on the origin.
+    pub fn new(places: &[DVec2], pitch: f64, image: (ImageShape, f64)) -> Self {
         Self::with_gaps(places, (pitch, 1.0), image)
     }
 
@@ -31,8 +32,12 @@ impl Chart {
     pub fn with_gaps(
         places: &[DVec2],
         (pitch, widest): (f64, f64),
-        ((rows, columns), pixel): ((usize, usize), f64),
+        (shape, pixel): (ImageShape, f64),
     ) -> Self {
+        let ImageShape {
+            ny: rows,
+            nx: columns,
+        } = shape;
         let (mut terms, mut ends) = (Vec::new(), Vec::with_capacity(rows * columns));
         for row in 0..rows {
             for column in 0..columns {
@@ -57,7 +62,6 @@ impl Chart {
                 ends.push(terms.len());
             }
         }
-        let shape = (rows, columns);
         Self { shape, terms, ends }
     }
 
@@ -79,7 +83,7 @@ impl Chart {
     }
 
     /// Returns the numbers of rows and columns of the image.
-    pub fn shape(&self) -> (usize, usize) {
+    pub fn shape(&self) -> ImageShape {
         self.shape
     }
 }
@@ -94,7 +98,7 @@ mod tests {
         let places: Vec<DVec2> = (0..12)
             .map(|k| DVec2::new(f64::from(k % 4) - 1.5, f64::from(k / 4) - 1.0) * 2e-3)
             .collect();
-        let chart = Chart::new(&places, 2e-3, ((3, 4), 2e-3));
+        let chart = Chart::new(&places, 2e-3, (ImageShape { ny: 3, nx: 4 }, 2e-3));
         let frames = Array2::from_shape_fn((5, 12), |(i, j)| (7 * i + j) as f64);
         let difference = chart.images(frames.view()) - &frames;
         assert!(difference.iter().all(|d| d.abs() < 1e-12));
@@ -111,7 +115,7 @@ mod tests {
         let taxels = layout.taxels(&grid, 0.0).unwrap();
         let places: Vec<DVec2> = taxels.centers().iter().map(|c| c.truncate()).collect();
         let half = places.iter().map(|place| place.x).fold(0.0, f64::max);
-        let image = ((24, 24), (2.0 * half + 1.0) / 24.0);
+        let image = (ImageShape { ny: 24, nx: 24 }, (2.0 * half + 1.0) / 24.0);
         let ones = Array2::ones((1, 576));
         let chart = Chart::with_gaps(&places, (1.0, layout.widest_pitches()), image);
         let found = chart.images(ones.view());
@@ -131,7 +135,7 @@ mod tests {
         let hexagonal = ArrayLayout::Hexagonal.taxels(&grid, 0.0).unwrap();
         let centers = hexagonal.centers().iter();
         let places: Vec<DVec2> = centers.map(|center| center.truncate()).collect();
-        let chart = Chart::new(&places, 1.0, ((30, 30), 1.0));
+        let chart = Chart::new(&places, 1.0, (ImageShape { ny: 30, nx: 30 }, 1.0));
         let slope = DVec2::new(0.3, -0.2);
         let values = |of: &dyn Fn(&DVec2) -> f64| {
             let frame: Vec<f64> = places.iter().map(of).collect();

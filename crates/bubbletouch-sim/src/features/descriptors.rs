@@ -141,6 +141,7 @@ mod tests {
     use super::super::ImageFeature;
     use super::super::tests::{features_of, frame};
     use super::*;
+    use crate::world::ImageShape;
 
     fn root_of_count(frame: &[f64], is_counted: impl Fn(f64) -> bool) -> f64 {
         let counted = frame.iter().filter(|&&v| v > 0.0 && is_counted(v));
@@ -149,7 +150,7 @@ mod tests {
 
     #[test]
     fn areas_are_counts_of_taxels_above_each_level() {
-        let shape = (16, 16);
+        let shape = ImageShape { ny: 16, nx: 16 };
         let frame = frame(shape);
         let found = features_of(ImageFeature::Descriptors, shape, &frame);
         assert_eq!(found.len(), N_VALUES);
@@ -172,7 +173,7 @@ mod tests {
     /// Checks the areas at depth levels below the largest value of the image. A deeper press of a rigid object adds a constant to every touched taxel.
     #[test]
     fn areas_behind_the_foremost_point_do_not_change_with_depth() {
-        let shape = (32, 32);
+        let shape = ImageShape { ny: 32, nx: 32 };
         let ball = |depth: f64| -> Vec<f64> {
             let away =
                 |i: usize| ((i % 32) as f64 - 15.0).powi(2) + ((i / 32) as f64 - 14.0).powi(2);

@@ -3,6 +3,7 @@
 use super::image::Image;
 use super::rings::RingWorkspace;
 use super::spectrum::FourierWorkspace;
+use crate::world::ImageShape;
 use std::fmt::Debug;
 
 /// Description of an image feature: name, size, and constructor.
@@ -11,9 +12,9 @@ pub struct FeatureAbout {
     /// Display name of the feature.
     pub words: &'static str,
     /// Function that returns the number of feature values for an ny × nx image.
-    pub n_values: fn((usize, usize)) -> usize,
+    pub n_values: fn(ImageShape) -> usize,
     /// Function that prepares the feature for ny × nx images with values up to a full scale.
-    pub prepare: fn((usize, usize), f64) -> Box<dyn Feature>,
+    pub prepare: fn(ImageShape, f64) -> Box<dyn Feature>,
 }
 
 /// Image feature, prepared for images of one size.

@@ -9,14 +9,20 @@
 use super::feature::{Feature, FeatureAbout, Workspace};
 use super::image::Image;
 use super::spectrum::Spectrum;
+use crate::world::ImageShape;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
     words: "Fourier magnitude",
-    n_values: |(ny, nx)| {
+    n_values: |ImageShape { ny, nx }| {
         let (u, v) = (nx / 3, ny / 3);
         u * (2 * v + 1) + v + 1
     },
-    prepare: |shape, _| Box::new(FourierMagnitude(Spectrum::new(shape, shape.1 / 3), shape.0)),
+    prepare: |shape, _| {
+        Box::new(FourierMagnitude(
+            Spectrum::new(shape, shape.nx / 3),
+            shape.ny,
+        ))
+    },
 };
 
 /// Fourier transform of the image, and the number of rows of the image.
@@ -47,13 +53,14 @@ mod tests {
     use super::super::spectrum::tests::by_definition;
     use super::super::tests::{features_of, frame};
     use super::super::{Cut, Image, ImageFeature};
+    use crate::world::ImageShape;
 
     #[test]
     fn they_are_square_roots_of_the_magnitudes_of_the_definition() {
-        let shape = (9, 12);
+        let shape = ImageShape { ny: 9, nx: 12 };
         let frame = frame(shape);
         let mut image = Image::default();
-        image.read(&frame, shape.1, Cut::default());
+        image.read(&frame, shape.nx, Cut::default());
         let mut expected = Vec::new();
         for u in 0..=4 {
             let rows: Vec<isize> = match u {

@@ -17,6 +17,7 @@ use super::feature::{Feature, FeatureAbout, Workspace};
 use super::image::Image;
 use super::rings::{Rings, roots};
 use super::spectrum::Spectrum;
+use crate::world::ImageShape;
 use std::f64::consts::PI;
 
 /// Number of rings in the frequency plane, equally spaced up to a third of a cycle per taxel.
@@ -45,8 +46,8 @@ struct FourierMellin {
 type Read = [(u32, f64); 4];
 
 impl FourierMellin {
-    fn new((ny, nx): (usize, usize)) -> Self {
-        let spectrum = Spectrum::new((ny, nx), (nx as f64 * LAST_RING) as usize + 1);
+    fn new(ImageShape { ny, nx }: ImageShape) -> Self {
+        let spectrum = Spectrum::new(ImageShape { ny, nx }, (nx as f64 * LAST_RING) as usize + 1);
         let places = (1..=N_RINGS).flat_map(|ring| {
             (0..N_ANGLES).map(move |step| {
                 let radius = LAST_RING * ring as f64 / N_RINGS as f64;
@@ -56,7 +57,7 @@ impl FourierMellin {
         });
         Self {
             reads: places
-                .map(|place| read(place, &spectrum, (ny, nx)))
+                .map(|place| read(place, &spectrum, ImageShape { ny, nx }))
                 .collect(),
             rings: Rings::new(N_ANGLES, N_HARMONICS),
             spectrum,
@@ -66,7 +67,7 @@ impl FourierMellin {
 
 /// Returns indices and weights of the four integer frequencies around the frequency (u, v). The spectrum's magnitude has the period of the array, and is
 /// equal at (−u, −v) and (u, v).
-fn read((u, v): (f64, f64), spectrum: &Spectrum, (ny, nx): (usize, usize)) -> Read {
+fn read((u, v): (f64, f64), spectrum: &Spectrum, ImageShape { ny, nx }: ImageShape) -> Read {
     let (left, below) = (u.floor(), v.floor());
     let (along, up) = (u - left, v - below);
     let place = |right: f64, above: f64| {
@@ -115,10 +116,10 @@ mod tests {
     /// Compares all values of the feature with their definition, frequency by frequency.
     #[test]
     fn they_are_what_the_equation_says() {
-        let shape = (12, 10);
+        let shape = ImageShape { ny: 12, nx: 10 };
         let frame = frame(shape);
         let mut image = Image::default();
-        image.read(&frame, shape.1, Cut::default());
+        image.read(&frame, shape.nx, Cut::default());
         let found = features_of(ImageFeature::FourierMellin, shape, &frame);
         let between = |u: f64, v: f64| {
             let (left, below) = (u.floor() as isize, v.floor() as isize);

@@ -4,6 +4,7 @@ use super::ImageFeature;
 use super::feature::{Feature, Workspace};
 use super::image::Cut;
 use crate::error::{Error, Result};
+use crate::world::ImageShape;
 use std::fmt::{self, Debug};
 
 /// Combination of image features, whose values follow one another in the order of the list of all features. Each bit marks one feature.
@@ -38,7 +39,7 @@ impl Join {
     }
 
     /// Returns the number of values of the combined features for an ny × nx image.
-    pub fn n_values(self, shape: (usize, usize)) -> usize {
+    pub fn n_values(self, shape: ImageShape) -> usize {
         self.features().map(|f| (f.about().n_values)(shape)).sum()
     }
 }
@@ -81,13 +82,13 @@ pub struct ImageFeatures {
 
 impl ImageFeatures {
     /// Prepares the features of `join` for images of ny × nx values from 0 to `full_scale`; `cut` describes the omitted parts of a frame.
-    pub fn new(join: Join, shape: (usize, usize), full_scale: f64, cut: Cut) -> Self {
+    pub fn new(join: Join, shape: ImageShape, full_scale: f64, cut: Cut) -> Self {
         let features = join.features().map(|feature| {
             let about = feature.about();
             ((about.prepare)(shape, full_scale), (about.n_values)(shape))
         });
         Self {
-            nx: shape.1,
+            nx: shape.nx,
             cut,
             features: features.collect(),
         }

@@ -69,10 +69,11 @@ mod tests {
     use super::*;
     use crate::random::Seed;
     use crate::sensing::{Ensemble, Projection};
+    use crate::world::ImageShape;
     use ndarray::{Array1, Array2, Axis, array, concatenate};
     use rand::Rng;
 
-    const GRID: (usize, usize) = (8, 8);
+    const GRID: ImageShape = ImageShape { ny: 8, nx: 8 };
     const M: usize = 16;
 
     /// Returns twelve irregular test frames of 8 × 8 taxels.

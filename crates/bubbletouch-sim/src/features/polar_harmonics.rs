@@ -13,6 +13,7 @@
 use super::feature::{Feature, FeatureAbout, Workspace};
 use super::image::Image;
 use super::rings::{Rings, roots};
+use crate::world::ImageShape;
 use std::f64::consts::TAU;
 
 /// Number of rings around the centroid; on 64 × 64 taxels the rings are 1.2 pitches apart.
@@ -36,7 +37,7 @@ struct PolarHarmonics {
 }
 
 impl PolarHarmonics {
-    fn new((ny, nx): (usize, usize)) -> Self {
+    fn new(ImageShape { ny, nx }: ImageShape) -> Self {
         let half = 0.5 * ny.min(nx) as f64;
         let places = (0..N_RINGS).flat_map(|ring| {
             (0..N_ANGLES).map(move |step| {
@@ -71,7 +72,7 @@ mod tests {
     /// interpolation is exact on planes.
     #[test]
     fn harmonics_of_a_plane_are_its_height_and_its_slope() {
-        let shape = (64, 64);
+        let shape = ImageShape { ny: 64, nx: 64 };
         let frame: Vec<f64> = (0..4096)
             .map(|i| 1.0 + 0.01 * ((i % 64) as f64 - 31.5))
             .collect();

@@ -3,6 +3,7 @@
 use super::foreign::Foreign;
 use super::{ImageFeature, Join, fourier_magnitude, fourier_mellin};
 use crate::error::{Error, Result};
+use crate::world::ImageShape;
 use serde::{Deserialize, Serialize};
 
 /// Features of a touch, as listed in the file of a study.
@@ -63,7 +64,7 @@ impl Features {
     }
 
     /// Returns the number of feature values for a frame of m measurements of an ny × nx image. If foreign features have no code, the result is m.
-    pub fn n_values(self, m: usize, shape: (usize, usize)) -> usize {
+    pub fn n_values(self, m: usize, shape: ImageShape) -> usize {
         match self {
             Self::OfImage(join) => join.n_values(shape),
             Self::Foreign(foreign) => foreign.n_values(m).unwrap_or(m),

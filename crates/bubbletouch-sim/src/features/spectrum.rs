@@ -4,6 +4,7 @@
 
 use super::image::Image;
 use super::rings::roots;
+use crate::world::ImageShape;
 use realfft::num_complex::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
@@ -32,7 +33,7 @@ pub struct FourierWorkspace {
 
 impl Spectrum {
     /// Prepares the transform of ny × nx images for column frequencies 0 to `last`, limited to the existing columns.
-    pub(super) fn new((ny, nx): (usize, usize), last: usize) -> Self {
+    pub(super) fn new(ImageShape { ny, nx }: ImageShape, last: usize) -> Self {
         Self {
             nx,
             ny,
@@ -107,8 +108,10 @@ pub(super) mod tests {
 
     #[test]
     fn magnitudes_are_those_of_the_definition_on_any_array() {
-        for shape in [(8, 8), (5, 12), (12, 5), (1, 7), (7, 1)] {
-            let (ny, nx) = shape;
+        for shape in
+            [(8, 8), (5, 12), (12, 5), (1, 7), (7, 1)].map(|(ny, nx)| ImageShape { ny, nx })
+        {
+            let ImageShape { ny, nx } = shape;
             let frame: Vec<f64> = (0..ny * nx).map(|i| (i * i % 7) as f64).collect();
             let mut image = Image::default();
             image.read(&frame, nx, Cut::default());

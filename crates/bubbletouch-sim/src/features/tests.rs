@@ -2,10 +2,11 @@
 
 use super::*;
 use crate::random::Seed;
+use crate::world::ImageShape;
 use rand::Rng;
 
 /// Returns a test frame with an irregular blob with holes in the middle third of an array; values are between 0 and 1.
-pub(super) fn frame((ny, nx): (usize, usize)) -> Vec<f64> {
+pub(super) fn frame(ImageShape { ny, nx }: ImageShape) -> Vec<f64> {
     let mut rng = Seed::new(7).named("frame").rng();
     let near = |i: usize, n: usize| 3 * i >= n && 3 * i < 2 * n;
     let value = |i: usize| match near(i % nx, nx) && near(i / nx, ny) {
@@ -16,12 +17,12 @@ pub(super) fn frame((ny, nx): (usize, usize)) -> Vec<f64> {
 }
 
 /// Returns the features of a noise-free frame of full scale 1.
-pub(super) fn features_of(feature: ImageFeature, shape: (usize, usize), frame: &[f64]) -> Vec<f64> {
+pub(super) fn features_of(feature: ImageFeature, shape: ImageShape, frame: &[f64]) -> Vec<f64> {
     let join = Join::new(&[feature]).unwrap();
     written(join, shape, frame, 0.0)
 }
 
-fn written(join: Join, shape: (usize, usize), frame: &[f64], level: f64) -> Vec<f64> {
+fn written(join: Join, shape: ImageShape, frame: &[f64], level: f64) -> Vec<f64> {
     let cut = Cut {
         level,
         foremost: None,
@@ -29,7 +30,7 @@ fn written(join: Join, shape: (usize, usize), frame: &[f64], level: f64) -> Vec<
     cut_off(join, shape, frame, cut)
 }
 
-fn cut_off(join: Join, shape: (usize, usize), frame: &[f64], cut: Cut) -> Vec<f64> {
+fn cut_off(join: Join, shape: ImageShape, frame: &[f64], cut: Cut) -> Vec<f64> {
     let features = ImageFeatures::new(join, shape, 1.0, cut);
     let mut out = vec![f64::NAN; join.n_values(shape)];
     features.write(frame, &mut Workspace::default(), &mut out);
@@ -37,7 +38,11 @@ fn cut_off(join: Join, shape: (usize, usize), frame: &[f64], cut: Cut) -> Vec<f6
 }
 
 /// Returns the frame shifted cyclically by whole taxels.
-fn shifted(frame: &[f64], (ny, nx): (usize, usize), (up, along): (usize, usize)) -> Vec<f64> {
+fn shifted(
+    frame: &[f64],
+    ImageShape { ny, nx }: ImageShape,
+    (up, along): (usize, usize),
+) -> Vec<f64> {
     let from = |i: usize| (i / nx + ny - up) % ny * nx + (i % nx + nx - along) % nx;
     (0..ny * nx).map(|i| frame[from(i)]).collect()
 }
@@ -63,7 +68,7 @@ const ROUNDING: f64 = 1e-7;
 
 #[test]
 fn a_shift_on_the_array_changes_no_feature() {
-    for shape in [(30, 30), (24, 36), (31, 27)] {
+    for shape in [(30, 30), (24, 36), (31, 27)].map(|(ny, nx)| ImageShape { ny, nx }) {
         let frame = frame(shape);
         for &feature in ImageFeature::ALL {
             let found = features_of(feature, shape, &frame);
@@ -79,7 +84,7 @@ fn a_shift_on_the_array_changes_no_feature() {
 
 #[test]
 fn a_shift_around_the_edge_changes_no_fourier_magnitude_but_the_others() {
-    let shape = (24, 24);
+    let shape = ImageShape { ny: 24, nx: 24 };
     let frame = frame(shape);
     let moved = shifted(&frame, shape, (12, 5));
     for &feature in ImageFeature::ALL {
@@ -96,11 +101,11 @@ fn a_shift_around_the_edge_changes_no_fourier_magnitude_but_the_others() {
 #[test]
 fn a_quarter_turn_changes_none_but_the_fourier_magnitude() {
     for side in [24, 31] {
-        let frame = frame((side, side));
+        let frame = frame(ImageShape { ny: side, nx: side });
         let turned = turned(&frame, side);
         for &feature in ImageFeature::ALL {
-            let [before, after] =
-                [&frame, &turned].map(|frame| features_of(feature, (side, side), frame));
+            let [before, after] = [&frame, &turned]
+                .map(|frame| features_of(feature, ImageShape { ny: side, nx: side }, frame));
             let difference = largest_difference(&before, &after);
             let is_turned = feature == ImageFeature::FourierMagnitude;
             assert_eq!(
@@ -114,7 +119,7 @@ fn a_quarter_turn_changes_none_but_the_fourier_magnitude() {
 
 #[test]
 fn a_mirror_image_has_the_same_harmonics_and_the_descriptors_but_three() {
-    let shape = (24, 24);
+    let shape = ImageShape { ny: 24, nx: 24 };
     let frame = frame(shape);
     let mirrored = mirrored(&frame, 24);
     for (feature, n_changed) in [
@@ -132,7 +137,7 @@ fn a_mirror_image_has_the_same_harmonics_and_the_descriptors_but_three() {
 
 #[test]
 fn more_pressure_multiplies_roots_and_the_aligned_image() {
-    let shape = (20, 20);
+    let shape = ImageShape { ny: 20, nx: 20 };
     let frame = frame(shape);
     let more: Vec<f64> = frame.iter().map(|value| 4.0 * value).collect();
     for (feature, factor) in [
@@ -150,7 +155,7 @@ fn more_pressure_multiplies_roots_and_the_aligned_image() {
 
 #[test]
 fn what_is_below_the_level_counts_as_nothing() {
-    let shape = (18, 21);
+    let shape = ImageShape { ny: 18, nx: 21 };
     let frame = frame(shape);
     let kept = |value: f64| if value >= 0.4 { value } else { 0.0 };
     let above: Vec<f64> = frame.iter().map(|&value| kept(value)).collect();
@@ -171,8 +176,10 @@ fn what_is_below_the_level_counts_as_nothing() {
 
 #[test]
 fn nothing_has_no_features_and_any_array_has_finite_ones() {
-    for shape in [(1, 1), (1, 5), (5, 1), (2, 2), (3, 3), (7, 4)] {
-        let n = shape.0 * shape.1;
+    for shape in
+        [(1, 1), (1, 5), (5, 1), (2, 2), (3, 3), (7, 4)].map(|(ny, nx)| ImageShape { ny, nx })
+    {
+        let n = shape.ny * shape.nx;
         let all = Join::new(ImageFeature::ALL).unwrap();
         assert!(
             written(all, shape, &vec![0.0; n], 0.0)
@@ -192,7 +199,7 @@ fn nothing_has_no_features_and_any_array_has_finite_ones() {
 
 #[test]
 fn a_join_is_its_features_one_after_the_other_in_whatever_order_it_is_written() {
-    let shape = (16, 16);
+    let shape = ImageShape { ny: 16, nx: 16 };
     let frame = frame(shape);
     let features = Features::try_from("descriptors + fourier_mellin".to_owned()).unwrap();
     assert_eq!(String::from(features), "fourier_mellin+descriptors");
@@ -235,7 +242,7 @@ fn every_name_reads_back_and_others_are_told_what_there_is() {
 /// and touches more taxels.
 #[test]
 fn what_is_behind_the_foremost_point_does_not_change_with_depth() {
-    let shape = (32, 32);
+    let shape = ImageShape { ny: 32, nx: 32 };
     let pressed = |depth: f64| -> Vec<f64> {
         let away = |i: usize| ((i % 32) as f64 - 15.0).powi(2) + ((i / 32) as f64 - 14.0).powi(2);
         let surface = |i: usize| away(i) / 301.7 + 0.02 * ((i % 7) as f64).sin().abs();

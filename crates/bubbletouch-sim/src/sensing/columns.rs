@@ -10,9 +10,10 @@ use super::projection::Projection;
 /// ```
 /// use bubbletouch_sim::random::Seed;
 /// use bubbletouch_sim::sensing::{Ensemble, Projection};
+/// use bubbletouch_sim::world::ImageShape;
 ///
 /// let seed = Seed::new(2018).named("projection");
-/// let projection = Projection::new(Ensemble::Sbhe, (300, 400), 1024, &seed)?;
+/// let projection = Projection::new(Ensemble::Sbhe, ImageShape { ny: 300, nx: 400 }, 1024, &seed)?;
 /// let columns = projection.columns();
 /// let mut measurements = vec![0.0; 1024];
 /// columns.measure_touched([(17, 1e-3), (18, 2e-3)], &mut measurements);

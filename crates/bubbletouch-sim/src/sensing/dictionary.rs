@@ -5,6 +5,7 @@ use super::pca::Pca;
 use super::wavelet::Wavelet;
 use crate::error::{Error, Result};
 use crate::random::Seed;
+use crate::world::ImageShape;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, ArrayViewMut2, Axis, s};
 use serde::{Deserialize, Serialize};
 
@@ -29,9 +30,10 @@ pub enum Basis {
 ///
 /// ```
 /// use bubbletouch_sim::sensing::{Basis, Dictionary};
+/// use bubbletouch_sim::world::ImageShape;
 /// use ndarray::Array2;
 ///
-/// let dictionary = Dictionary::complete(Basis::Dct, (8, 8))?;
+/// let dictionary = Dictionary::complete(Basis::Dct, ImageShape { ny: 8, nx: 8 })?;
 /// let frames = Array2::from_shape_fn((3, 64), |(i, j)| ((i + 1) * j) as f64);
 /// let coefficients = dictionary.analyse(frames.view());
 /// let again = dictionary.synthesise(coefficients.view());
@@ -41,7 +43,7 @@ pub enum Basis {
 #[derive(Clone, Debug)]
 pub struct Dictionary {
     basis: Basis,
-    grid: (usize, usize),
+    grid: ImageShape,
     form: Form,
     /// Origin of the dictionary: the mean training frame for PCA, otherwise zero.
     origin: Array1<f64>,
@@ -73,14 +75,14 @@ impl Dictionary {
     ///
     /// # Errors
     /// If the basis is PCA (which needs training frames), a wavelet basis has sides that are not powers of two, or there are no taxels.
-    pub fn complete(basis: Basis, grid: (usize, usize)) -> Result<Self> {
-        let n = grid.0 * grid.1;
+    pub fn complete(basis: Basis, grid: ImageShape) -> Result<Self> {
+        let n = grid.ny * grid.nx;
         if n == 0 {
             return Err(Error::input("dictionary", "no taxels", "at least one"));
         }
         let all = (0..n).collect();
         let form = match basis {
-            Basis::Dct => Form::Cosine([cosines(grid.0), cosines(grid.1)], all),
+            Basis::Dct => Form::Cosine([cosines(grid.ny), cosines(grid.nx)], all),
             Basis::Haar | Basis::Daubechies4 => {
                 Wavelet::check(grid)?;
                 let wavelet = match basis {
@@ -113,7 +115,7 @@ impl Dictionary {
     /// If `complete` fails, if there are no frames, if frames have another length, if a value is not finite, or if `n_atoms` is 0.
     pub fn learned(
         basis: Basis,
-        grid: (usize, usize),
+        grid: ImageShape,
         frames: ArrayView2<f64>,
         n_atoms: Option<usize>,
         seed: &Seed,
@@ -145,7 +147,7 @@ impl Dictionary {
         Ok(dictionary)
     }
 
-    pub(super) fn of_components(grid: (usize, usize), pca: Pca) -> Self {
+    pub(super) fn of_components(grid: ImageShape, pca: Pca) -> Self {
         let rest = (pca.total_variance - pca.variance.sum()) / pca.mean.len() as f64;
         Self {
             basis: Basis::Pca,
@@ -244,7 +246,7 @@ impl Dictionary {
                 frame[place] = value;
             }
             let mut grid = frame
-                .into_shape_with_order(self.grid)
+                .into_shape_with_order((self.grid.ny, self.grid.nx))
                 .expect("a row of n values");
             match &self.form {
                 Form::Cosine([wy, wx], _) => {
@@ -269,7 +271,9 @@ impl Dictionary {
     }
 
     fn as_grid<'a>(&self, frame: &'a mut Array1<f64>) -> ArrayViewMut2<'a, f64> {
-        let view = frame.view_mut().into_shape_with_order(self.grid);
+        let view = frame
+            .view_mut()
+            .into_shape_with_order((self.grid.ny, self.grid.nx));
         view.expect("n values in order")
     }
 }
@@ -284,11 +288,11 @@ fn pick(all: impl Iterator<Item = f64>, chosen: &[usize], mut row: ArrayViewMut1
 }
 
 pub(super) fn check_training(
-    grid: (usize, usize),
+    grid: ImageShape,
     frames: ArrayView2<f64>,
     n_atoms: Option<usize>,
 ) -> Result<()> {
-    let n = grid.0 * grid.1;
+    let n = grid.ny * grid.nx;
     if frames.nrows() == 0 || frames.ncols() != n || n == 0 {
         return Err(Error::input(
             "training frames",

@@ -104,10 +104,11 @@ pub(super) mod tests {
     use super::*;
     use crate::random::Seed;
     use crate::sensing::Ensemble;
+    use crate::world::ImageShape;
     use rand::Rng;
     use rand_distr::StandardNormal;
 
-    pub(in crate::sensing) const GRID: (usize, usize) = (12, 12);
+    pub(in crate::sensing) const GRID: ImageShape = ImageShape { ny: 12, nx: 12 };
 
     /// Returns test frames of n taxels that contain bumps at random positions.
     pub(in crate::sensing) fn bumps(n: usize, name: &str) -> Array2<f64> {

@@ -7,6 +7,7 @@ use super::dictionary::{Dictionary, check_training};
 use super::pca::Pca;
 use crate::error::Result;
 use crate::random::Seed;
+use crate::world::ImageShape;
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 use rand::Rng;
 
@@ -44,12 +45,12 @@ impl ImagePrior {
     /// # Errors
     /// If there are no training readings, if they have another length, or if readings are not finite.
     pub fn learned(
-        grid: (usize, usize),
+        grid: ImageShape,
         readings: Readings,
         n_frames: usize,
         seed: &Seed,
     ) -> Result<Self> {
-        let k = N_COMPONENTS.min(grid.0 * grid.1);
+        let k = N_COMPONENTS.min(grid.ny * grid.nx);
         let training = with_copies(readings.training, grid, n_frames, seed);
         check_training(grid, training.view(), Some(k))?;
         let dictionary = Dictionary::of_components(grid, Pca::new(training, k, seed));
@@ -74,7 +75,7 @@ impl ImagePrior {
 /// mirrored. Shifted images are equally likely, and more frames reduce overfitting.
 pub(super) fn with_copies(
     frames: ArrayView2<f64>,
-    (ny, nx): (usize, usize),
+    ImageShape { ny, nx }: ImageShape,
     n_frames: usize,
     seed: &Seed,
 ) -> Array2<f64> {

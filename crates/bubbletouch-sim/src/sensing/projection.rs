@@ -5,6 +5,7 @@ use super::ensembles::ScrambledHadamard;
 use super::ensembles::{Operator, Source, TrainingFrames};
 use crate::error::{Error, Result};
 use crate::random::Seed;
+use crate::world::ImageShape;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use std::sync::Arc;
 
@@ -14,11 +15,12 @@ use std::sync::Arc;
 /// ```
 /// use bubbletouch_sim::random::Seed;
 /// use bubbletouch_sim::sensing::{Ensemble, Projection};
+/// use bubbletouch_sim::world::ImageShape;
 /// use ndarray::Array2;
 ///
 /// let frames = Array2::ones((3, 64));
 /// let seed = Seed::new(2018).named("projection");
-/// let projection = Projection::new(Ensemble::Sbhe, (8, 8), 16, &seed)?;
+/// let projection = Projection::new(Ensemble::Sbhe, ImageShape { ny: 8, nx: 8 }, 16, &seed)?;
 /// assert_eq!(projection.measure(frames.view()).dim(), (3, 16));
 /// # Ok::<(), bubbletouch_sim::Error>(())
 /// ```
@@ -38,7 +40,7 @@ impl Projection {
     ///
     /// # Errors
     /// If the array has no taxels, if m = 0 or m > n, or if the ensemble is learned.
-    pub fn new(ensemble: Ensemble, grid: (usize, usize), m: usize, seed: &Seed) -> Result<Self> {
+    pub fn new(ensemble: Ensemble, grid: ImageShape, m: usize, seed: &Seed) -> Result<Self> {
         let n = check_size(grid, m)?;
         let operator = match ensemble.about().source {
             Source::Drawn(draw) => draw(grid, m, seed),
@@ -65,7 +67,7 @@ impl Projection {
     /// If a frame does not have n values.
     pub fn learned<'a>(
         ensemble: Ensemble,
-        grid: (usize, usize),
+        grid: ImageShape,
         m: usize,
         (training, seed): (impl Into<TrainingFrames<'a>>, &Seed),
     ) -> Result<Self> {
@@ -96,7 +98,7 @@ impl Projection {
     ///
     /// # Errors
     /// If the size is invalid, as for `new`, or if `block` is not a power of two.
-    pub fn sbhe(grid: (usize, usize), m: usize, block: usize, seed: &Seed) -> Result<Self> {
+    pub fn sbhe(grid: ImageShape, m: usize, block: usize, seed: &Seed) -> Result<Self> {
         let n = check_size(grid, m)?;
         if !block.is_power_of_two() {
             return Err(Error::input("Hadamard block", block, "a power of two"));
@@ -119,7 +121,7 @@ impl Projection {
         n_taxels: usize,
         n_measurements: usize,
     ) -> Result<Self> {
-        check_size((1, n_taxels), n_measurements)?;
+        check_size(ImageShape::row(n_taxels), n_measurements)?;
         Ok(Self {
             ensemble: None,
             n_taxels,
@@ -234,12 +236,12 @@ impl Projection {
 }
 
 /// Returns the number of taxels of the grid, or an error if the grid is empty or m is not from 1 to this number.
-fn check_size(grid: (usize, usize), m: usize) -> Result<usize> {
-    let n = grid.0 * grid.1;
+fn check_size(grid: ImageShape, m: usize) -> Result<usize> {
+    let n = grid.ny * grid.nx;
     if n == 0 || m == 0 || m > n {
         return Err(Error::input(
             "number of measurements",
-            format!("{m} of {} × {} taxels", grid.1, grid.0),
+            format!("{m} of {} × {} taxels", grid.nx, grid.ny),
             "from 1 to the number of taxels",
         ));
     }

@@ -5,6 +5,7 @@ use super::ensembles::{Operator, TrainingFrames};
 use super::projection::Projection;
 use crate::error::Result;
 use crate::random::Seed;
+use crate::world::ImageShape;
 use ndarray::{ArrayView2, ArrayViewMut2, s};
 use std::sync::Arc;
 
@@ -25,11 +26,11 @@ impl Projection {
     /// If k = 0, or if a frame does not have k · n values.
     pub fn of_images<'a>(
         ensemble: Ensemble,
-        (k, grid): (usize, (usize, usize)),
+        (k, grid): (usize, ImageShape),
         m: usize,
         (training, seed): (impl Into<TrainingFrames<'a>>, &Seed),
     ) -> Result<Self> {
-        let (training, n) = (training.into(), grid.0 * grid.1);
+        let (training, n) = (training.into(), grid.ny * grid.nx);
         if k == 1 {
             return Self::learned(ensemble, grid, m, (training, seed));
         }

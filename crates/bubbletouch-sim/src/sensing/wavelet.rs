@@ -1,6 +1,7 @@
 //! Orthonormal wavelet pyramids of arrays whose sides are powers of two: Haar, and Daubechies' wavelet with four taps.
 
 use crate::error::{Error, Result};
+use crate::world::ImageShape;
 use ndarray::{Array1, ArrayViewMut1, ArrayViewMut2, Axis, s};
 
 /// Orthonormal wavelet, given by its low-pass filter h of length L; the high-pass filter is gₖ = (−1)ᵏ h₍L₋₁₋ₖ₎.
@@ -34,7 +35,7 @@ impl Wavelet {
     }
 
     /// Checks that both sides of an ny × nx array are powers of two.
-    pub(super) fn check((ny, nx): (usize, usize)) -> Result<()> {
+    pub(super) fn check(ImageShape { ny, nx }: ImageShape) -> Result<()> {
         if ny.is_power_of_two() && nx.is_power_of_two() {
             return Ok(());
         }

@@ -47,7 +47,7 @@ pub use robot::{
     Mimic, Robot, ShapeRole, TactileSensor,
 };
 pub use shear::{Shear, Shears};
-pub use taxel::{Grid, Taxel};
+pub use taxel::{Grid, ImageShape, Taxel};
 pub(crate) use taxel_tree::{LEAF, Leaf, Node, PlacedTaxel, TaxelTree};
 pub use touches::{MAX_TOUCHES, TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};

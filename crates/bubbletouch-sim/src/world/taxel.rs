@@ -36,6 +36,27 @@ impl Taxel {
     }
 }
 
+/// Shape of an image of taxels: numbers of rows and columns. The values of an image are listed row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ImageShape {
+    /// Number of rows, along patch y.
+    pub ny: usize,
+    /// Number of columns, along patch x.
+    pub nx: usize,
+}
+
+impl ImageShape {
+    /// Returns the shape of a list of `n` values without neighbours: one row.
+    pub fn row(n: usize) -> Self {
+        Self { ny: 1, nx: n }
+    }
+
+    /// Returns the number of values of an image.
+    pub fn n_values(self) -> usize {
+        self.ny * self.nx
+    }
+}
+
 /// Rectangular grid of taxels, centred on the patch's origin.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grid {
@@ -49,6 +70,14 @@ pub struct Grid {
 }
 
 impl Grid {
+    /// Returns the shape of an image of the grid.
+    pub fn shape(&self) -> ImageShape {
+        ImageShape {
+            ny: self.ny,
+            nx: self.nx,
+        }
+    }
+
     /// Returns the number of taxels of the grid.
     pub fn n_taxels(&self) -> usize {
         self.nx * self.ny

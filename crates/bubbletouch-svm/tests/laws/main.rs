@@ -11,6 +11,7 @@ mod limits;
 mod linear;
 #[cfg(feature = "linfa-svm")]
 mod linfa;
+mod linfa_svm;
 mod pipelines;
 mod probabilities;
 mod svm;

@@ -26,6 +26,7 @@ use crate::studies::recognition::plan::{MeasurementGroup, Sensed, as_written};
 use crate::studies::recognition::spec::{HumanTouchSpec, PreviousTouch};
 use crate::studies::recognition::sweep::{StudyPart, TrainingRows};
 use crate::studies::recognition::touches::touch_stream;
+use crate::world::ImageShape;
 use crate::world::{ArrayLayout, RestPose, TouchSource};
 use ndarray::Array2;
 use rayon::prelude::*;
@@ -340,7 +341,7 @@ pub fn write_human_touches(
 
 /// Returns the letters of the axes of a frame file, and the lengths of the axes for a single touch.
 fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (String, Vec<usize>) {
-    let (ny, nx) = array.shape();
+    let ImageShape { ny, nx } = array.shape();
     let axes = [("t", n_frames), ("c", n_channels), ("y", ny), ("x", nx)];
     let is_written = |(letter, length): &(&str, usize)| "yx".contains(letter) || *length > 1;
     let (letters, shape): (Vec<&str>, Vec<usize>) = axes.into_iter().filter(is_written).unzip();

@@ -162,7 +162,7 @@ impl Images {
                 let image = image.as_standard_layout();
                 let image = image.as_slice().expect("rows are whole");
                 let out = out.as_slice_mut().expect("rows are whole");
-                tilt_frame(image, sensor.shape.1, slope, level, out);
+                tilt_frame(image, sensor.shape.nx, slope, level, out);
             }
             tilted
         };
@@ -196,7 +196,7 @@ fn of_touch(images: &[Array2<f64>], touch: usize, n_frames: usize) -> Vec<ArrayV
 
 /// Returns the reading above which a pixel of an estimated image counts as in contact.
 fn level(sensor: &SensorImage, estimate: &ImageEstimate) -> f64 {
-    noise_level(estimate.noise_std(), sensor.shape.0 * sensor.shape.1)
+    noise_level(estimate.noise_std(), sensor.shape.n_values())
 }
 
 /// Divides the rows of all requested features into blocks of touches; returns the index and the rows of each block.

@@ -7,6 +7,7 @@ use crate::geometry::Pose;
 use crate::inputs::content_hash::Hashed;
 use crate::inputs::units::MAX_SIDE;
 use crate::studies::prelude::*;
+use crate::world::ImageShape;
 use crate::world::{Grid, Layout, Neighbours, Patch, nearest_distances};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
@@ -121,7 +122,7 @@ pub struct SensorImage {
     /// Taxels of the sensor, numbered in the array.
     pub taxels: Range<usize>,
     /// Numbers of rows and columns of the image.
-    pub shape: (usize, usize),
+    pub shape: ImageShape,
     /// Mapping from the taxels of the sensor to pixels; `None` if each taxel is a pixel.
     pub chart: Option<Chart>,
 }
@@ -133,9 +134,9 @@ struct ListedSensor {
     taxels: Range<usize>,
     /// Positions of the taxels on the plane of the sensor's image, metres, relative to the middle of the image.
     places: Vec<DVec2>,
-    shape: (usize, usize),
+    shape: ImageShape,
     /// Numbers of rows and columns of taxels, if the taxels are numbered row by row.
-    sides: Option<(usize, usize)>,
+    sides: Option<ImageShape>,
     pitch: f64,
     widest: f64,
     is_grid: bool,
@@ -164,9 +165,12 @@ impl ListedTaxels {
             let own = sensor.layout.on_plane();
             let (own, extent) = centred(own);
             let side = |length: f64| (length / sensor.pitch).round() as usize + 1;
-            let shape = (side(extent.y), side(extent.x));
-            if shape.0.max(shape.1) > MAX_SIDE {
-                let given = format!("an image of {} × {} pixels", shape.0, shape.1);
+            let shape = ImageShape {
+                ny: side(extent.y),
+                nx: side(extent.x),
+            };
+            if shape.ny.max(shape.nx) > MAX_SIDE {
+                let given = format!("an image of {} × {} pixels", shape.ny, shape.nx);
                 let allowed = format!("at most {MAX_SIDE} rows and columns of the pitch");
                 return Err(Error::input(
                     format!("sensor {}", sensor.name),
@@ -177,7 +181,7 @@ impl ListedTaxels {
             if number > 0 {
                 right += PICTURE_GAP * sensors[0].pitch;
             }
-            let width = shape.1 as f64 * sensor.pitch;
+            let width = shape.nx as f64 * sensor.pitch;
             let middle = DVec2::new(right + 0.5 * width, 0.0);
             right += width;
             let first = places.len();
@@ -187,7 +191,7 @@ impl ListedTaxels {
                 taxels: first..places.len(),
                 places: own,
                 shape,
-                sides: sensor.layout.sides().map(|[rows, columns]| (rows, columns)),
+                sides: sensor.layout.sides().map(|[ny, nx]| ImageShape { ny, nx }),
                 pitch: sensor.pitch,
                 widest: sensor.widest,
                 is_grid: sensor.layout.as_grid().is_some(),
@@ -217,7 +221,7 @@ impl ListedTaxels {
     }
 
     /// Returns the numbers of rows and columns of taxels; `None` for several sensors, or if the taxels are not numbered row by row.
-    pub fn sides(&self) -> Option<(usize, usize)> {
+    pub fn sides(&self) -> Option<ImageShape> {
         match &self.sensors[..] {
             [one] => one.sides,
             _ => None,
@@ -226,7 +230,7 @@ impl ListedTaxels {
 
     /// Returns the number of sensors, and the numbers of rows and columns that all of them have. Returns `None` if these numbers differ or a sensor has
     /// none.
-    pub fn equal_sides(&self) -> Option<(usize, (usize, usize))> {
+    pub fn equal_sides(&self) -> Option<(usize, ImageShape)> {
         let first = self.sensors.first()?.sides?;
         let is_equal = |sensor: &ListedSensor| sensor.sides == Some(first);
         let all_equal = self.sensors.iter().all(is_equal);
@@ -264,7 +268,7 @@ impl ListedTaxels {
     }
 
     /// Returns the numbers of rows and columns of the images of the sensors.
-    pub fn image_shapes(&self) -> Vec<(usize, usize)> {
+    pub fn image_shapes(&self) -> Vec<ImageShape> {
         self.sensors.iter().map(|sensor| sensor.shape).collect()
     }
 

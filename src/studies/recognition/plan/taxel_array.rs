@@ -5,6 +5,7 @@ use crate::studies::prelude::*;
 use crate::studies::recognition::plan::{
     ListedTaxels, PlacedSensor, Sensed, SensorImage, of_channel,
 };
+use crate::world::ImageShape;
 use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
@@ -183,7 +184,7 @@ impl TaxelArray {
     }
 
     /// Returns the numbers of rows and columns of the array's images, one for each sensor.
-    pub fn image_shapes(&self) -> Vec<(usize, usize)> {
+    pub fn image_shapes(&self) -> Vec<ImageShape> {
         match &self.listed {
             Some(listed) => listed.image_shapes(),
             None => vec![self.image().0],
@@ -199,15 +200,15 @@ impl TaxelArray {
     }
 
     /// Returns the numbers of rows and columns of the array's images, and the side length of a pixel, metres. An image is a square around all taxels.
-    fn image(&self) -> ((usize, usize), f64) {
+    fn image(&self) -> (ImageShape, f64) {
         let (n, pitch) = (self.grid.nx, self.pitch());
         if self.is_image() {
-            return ((self.grid.ny, n), pitch);
+            return (self.grid.shape(), pitch);
         }
         let farthest = |far: f64, place: DVec2| far.max(place.abs().max_element());
         let half = self.chart_places().into_iter().fold(0.0, farthest);
         // Positions are centres of taxels. A pixel is the distance between the outermost centres plus one pitch, divided by the number of pixels.
-        ((n, n), (2.0 * half + pitch) / n as f64)
+        (ImageShape { ny: n, nx: n }, (2.0 * half + pitch) / n as f64)
     }
 
     /// Returns the mapping from taxels to image pixels; `None` if each taxel is one pixel.
@@ -245,7 +246,7 @@ impl TaxelArray {
     }
 
     /// Returns the numbers of rows and columns of taxels; `None` if the layout has no rows and columns.
-    pub fn sides(&self) -> Option<(usize, usize)> {
+    pub fn sides(&self) -> Option<ImageShape> {
         match &self.listed {
             Some(listed) => listed.sides(),
             None => self.layout.sides(&self.grid).filter(|_| self.is_placed),
@@ -253,20 +254,23 @@ impl TaxelArray {
     }
 
     /// Returns the numbers of rows and columns of the array. A layout without rows and columns counts as one row.
-    pub fn shape(&self) -> (usize, usize) {
-        self.sides().unwrap_or((1, self.n_taxels()))
+    pub fn shape(&self) -> ImageShape {
+        self.sides().unwrap_or(ImageShape::row(self.n_taxels()))
     }
 
     /// Returns the numbers of rows and columns of a frame. If a taxel has several channels, they are stacked vertically.
-    pub fn frame_shape(&self) -> (usize, usize) {
-        let (rows, columns) = self.shape();
-        (self.sensed.n_channels() * rows, columns)
+    pub fn frame_shape(&self) -> ImageShape {
+        let ImageShape { ny, nx } = self.shape();
+        ImageShape {
+            ny: self.sensed.n_channels() * ny,
+            nx,
+        }
     }
 
     /// Returns the images of a frame that an ensemble of rows and columns measures one by one. The result contains their number, and the rows and columns
     /// of each. An image contains one kind of value of all taxels of a sensor. Returns `None` if a sensor has no rows and columns, or if sensors differ in
     /// them.
-    pub fn equal_images(&self) -> Option<(usize, (usize, usize))> {
+    pub fn equal_images(&self) -> Option<(usize, ImageShape)> {
         let (n_sensors, sides) = match &self.listed {
             Some(listed) => listed.equal_sides()?,
             None => (1, self.sides()?),
@@ -275,7 +279,7 @@ impl TaxelArray {
     }
 
     /// Returns the images of a frame that an ensemble measures one by one. An ensemble that needs no rows and columns measures the frame as one image.
-    pub fn measured_images(&self, ensemble: Ensemble) -> (usize, (usize, usize)) {
+    pub fn measured_images(&self, ensemble: Ensemble) -> (usize, ImageShape) {
         let of_rows = ensemble.about().needs_rows;
         let images = of_rows.then(|| self.equal_images()).flatten();
         images.unwrap_or((1, self.frame_shape()))
@@ -298,7 +302,7 @@ impl TaxelArray {
 
     fn say(&self, times: &str, taxels: &str) -> String {
         let count = match self.sides() {
-            Some((rows, columns)) => format!("{columns}{times}{rows}"),
+            Some(ImageShape { ny, nx }) => format!("{nx}{times}{ny}"),
             None => self.n_taxels().to_string(),
         };
         let count = format!("{count}{taxels} at {} mm", millimetres(self.pitch()));
@@ -320,7 +324,7 @@ impl TaxelArray {
     /// Returns the taxel that each cell of a picture shows, shape (rows, columns). A grid has one cell per taxel. Other layouts are projected along the axis of
     /// the middle, with three cells per pitch. Each cell shows the nearest taxel, or none if all taxels are far away. Several sensors are side by side.
     pub fn picture_cells(&self) -> Array2<Option<usize>> {
-        let (ny, nx) = self.shape();
+        let ImageShape { ny, nx } = self.shape();
         if self.is_image() {
             return Array2::from_shape_fn((ny, nx), |(row, column)| Some(row * nx + column));
         }
@@ -401,7 +405,7 @@ impl Serialize for TaxelArray {
 
 /// Returns the random seed for the sensor errors of an array's skin. The seed is equal in all touches and trials.
 pub(crate) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
-    let (ny, nx) = array.shape();
+    let ImageShape { ny, nx } = array.shape();
     let sides = study.named("skin").numbered(nx as u64);
     let sides = sides.numbered(ny as u64);
     sides.numbered(array.pitch().to_bits())

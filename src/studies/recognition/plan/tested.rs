@@ -15,6 +15,7 @@ use crate::inputs::toml_value::table_of;
 use crate::studies::prelude::*;
 use crate::studies::recognition::plan::Condition;
 use crate::studies::recognition::spec::SignalAxis;
+use crate::world::ImageShape;
 use std::sync::Arc;
 use toml::{Table, Value};
 
@@ -121,8 +122,10 @@ impl Check<'_> {
         };
         let (learned, shown) = (shapes(plan), shapes(tested));
         if learned != shown {
-            let taxels = |shapes: &[((usize, usize), usize)]| {
-                let sizes = shapes.iter().map(|((ny, nx), _)| format!("{nx} x {ny}"));
+            let taxels = |shapes: &[(ImageShape, usize)]| {
+                let sizes = shapes
+                    .iter()
+                    .map(|(ImageShape { ny, nx }, _)| format!("{nx} x {ny}"));
                 sizes.collect::<Vec<_>>().join(", ")
             };
             let (given, allowed) = (taxels(&shown), taxels(&learned));

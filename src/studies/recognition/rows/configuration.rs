@@ -11,6 +11,7 @@ use crate::signal::NoiseUnit;
 use crate::studies::recognition::rows::{FeaturesOfImages, RowInputs};
 use crate::studies::recognition::spec::key;
 use crate::table::{Column, Columns, Role, Scale};
+use crate::world::ImageShape;
 use bubbletouch_sim::features::Features;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
@@ -69,7 +70,7 @@ pub struct Configuration {
     /// Number n of values of a frame.
     frame_values: usize => hidden;
     /// Numbers of rows and columns of the images that represent frames of the array, one for each sensor.
-    image_shapes: Vec<(usize, usize)> => hidden;
+    image_shapes: Vec<ImageShape> => hidden;
     /// Side length of the array along x, mm: number of columns times the pitch. For a layout other than a grid, the side length of the square grid with the same
     /// pitch that defines its size.
     size_mm: f64 => always of "skin.size_mm";
@@ -264,7 +265,7 @@ pub(crate) mod tests {
             nx: 32,
             ny: 32,
             frame_values: 1024,
-            image_shapes: vec![(32, 32)],
+            image_shapes: vec![ImageShape { ny: 32, nx: 32 }],
             size_mm: 64.0,
             noise_std: 0.1,
             noise_unit: NoiseUnit::FullScale,

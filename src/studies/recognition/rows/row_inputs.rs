@@ -2,6 +2,7 @@
 
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::studies::recognition::spec::with_version;
+use crate::world::ImageShape;
 use bubbletouch_sim::features::{Features, Join};
 use serde::Serialize;
 
@@ -9,7 +10,7 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RowInputs {
     /// Numbers of rows and columns of the images that represent frames, one for each sensor.
-    pub image_shapes: Vec<(usize, usize)>,
+    pub image_shapes: Vec<ImageShape>,
     /// Number of values of a measured frame: m measurements, or one value per taxel if the ensemble gives frames.
     pub measurements: usize,
     /// Number F of frames per touch.
@@ -40,7 +41,9 @@ impl RowInputs {
     pub fn n_frame_features(&self) -> usize {
         match self.features.of_image() {
             Some(join) => join_values(join, &self.image_shapes),
-            None => self.features.n_values(self.measurements, (1, 1)),
+            None => self
+                .features
+                .n_values(self.measurements, ImageShape::row(1)),
         }
     }
 
@@ -66,6 +69,6 @@ pub struct FeaturesOfImages {
 
 /// Returns the number of values of a combination of image features for a frame. The frame has one image for each sensor, given as numbers of rows and
 /// columns.
-pub fn join_values(join: Join, shapes: &[(usize, usize)]) -> usize {
+pub fn join_values(join: Join, shapes: &[ImageShape]) -> usize {
     shapes.iter().map(|&shape| join.n_values(shape)).sum()
 }

@@ -11,6 +11,7 @@ use crate::studies::recognition::study::{RecognitionRows, RecognitionStudy, dist
 use crate::studies::recognition::sweep::StudyPart;
 use crate::studies::recognition::training::FamilyInputs;
 use crate::studies::study::settings_words;
+use crate::world::ImageShape;
 use std::collections::HashSet;
 
 /// Names of the tables and columns that contain the intervals of accuracies.
@@ -131,7 +132,7 @@ impl Study for RecognitionStudy {
         }
         for (number, touches) in self.touch_sets.iter().enumerate() {
             let (_, array, n_frames) = self.on(number);
-            let ((ny, nx), pitch) = (array.shape(), array.pitch());
+            let (ImageShape { ny, nx }, pitch) = (array.shape(), array.pitch());
             let name = format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m");
             items.push(WorkItem {
                 is_result: false,

@@ -15,6 +15,7 @@ use crate::studies::recognition::tables::published::{check_published, compare_wi
 use crate::studies::recognition::tables::tabulate::tabulate;
 use crate::studies::recognition::training::Evaluation;
 use crate::studies::study::run_whole;
+use crate::world::ImageShape;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
@@ -338,7 +339,7 @@ impl RecognitionStudy {
         let mut stages = Vec::new();
         for on in 0..self.touch_sets.len() {
             let (_, array, n_frames) = self.on(on);
-            let (ny, nx) = array.shape();
+            let ImageShape { ny, nx } = array.shape();
             for (stage, is_made) in [("simulate", true), ("measure", false)] {
                 let rows = rows.iter().filter(|row| row.on == on);
                 let rows: Vec<&TouchRow> = rows.filter(|row| row.is_made == is_made).collect();

@@ -18,6 +18,7 @@ use crate::studies::recognition::sweep::{
     TrainingRows, draw_split, first_equal, learned_touches, train_touches,
 };
 use crate::studies::recognition::touches::scaled_poses;
+use crate::world::ImageShape;
 use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::sync::Arc;
@@ -216,7 +217,10 @@ impl Sweep {
         train_touches: &[usize],
     ) -> Result<()> {
         let array = &plan.arrays[group.array];
-        let (n_rows, n_columns) = array.shape();
+        let ImageShape {
+            ny: n_rows,
+            nx: n_columns,
+        } = array.shape();
         if !array.is_plain() {
             // A step that the layout does not support is detected before the run.
             let skin = skin(&Seed::new(plan.spec.seed), array);

@@ -13,6 +13,7 @@
 
 use super::block_average::{Block, split_blocks};
 use super::ensemble::{EnsembleAbout, Operator, Source};
+use crate::world::ImageShape;
 use ndarray::{ArrayView2, ArrayViewMut2};
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -48,9 +49,9 @@ pub(super) struct ReadBlock {
 
 impl Adaptive {
     /// Prepares the readout of an ny × nx array with at most m readings per frame.
-    pub(super) fn new(grid: (usize, usize), m: usize) -> Self {
+    pub(super) fn new(grid: ImageShape, m: usize) -> Self {
         Self {
-            nx: grid.1,
+            nx: grid.nx,
             n_readings: m,
             coarse: split_blocks(grid, (m / COARSE_PART).max(1)),
         }
@@ -141,7 +142,7 @@ mod tests {
     use ndarray::Array2;
     use std::collections::BTreeSet;
 
-    const GRID: (usize, usize) = (16, 16);
+    const GRID: ImageShape = ImageShape { ny: 16, nx: 16 };
 
     fn readout(m: usize) -> Projection {
         Projection::new(Ensemble::Adaptive, GRID, m, &Seed::new(1)).unwrap()

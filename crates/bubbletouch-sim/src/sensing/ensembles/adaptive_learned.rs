@@ -19,6 +19,7 @@ use crate::random::Seed;
 use crate::sensing::cholesky::Cholesky;
 use crate::sensing::image_prior::{N_COMPONENTS, with_copies};
 use crate::sensing::pca::Pca;
+use crate::world::ImageShape;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
 
 /// Approximate number of training frames with shifted copies. With fewer frames, the components fit the training touches better than test touches; with more
@@ -57,17 +58,17 @@ struct AdaptiveLearned {
 }
 
 impl AdaptiveLearned {
-    fn new(training: &TrainingFrames, grid: (usize, usize), m: usize, seed: &Seed) -> Result<Self> {
+    fn new(training: &TrainingFrames, grid: ImageShape, m: usize, seed: &Seed) -> Result<Self> {
         let seed = seed.named("adaptive_learned");
         let frames = with_copies(training.frames, grid, N_FRAMES, &seed);
         let n_frames = frames.nrows() as f64;
-        let pca = Pca::new(frames, N_COMPONENTS.min(grid.0 * grid.1), &seed);
+        let pca = Pca::new(frames, N_COMPONENTS.min(grid.ny * grid.nx), &seed);
         let n = pca.mean.len() as f64;
         let rest = ((pca.total_variance - pca.variance.sum()) / n).max(0.0);
         let accuracy = 3.0 * (rest / n_frames).sqrt();
         Ok(Self {
             readout: Adaptive::new(grid, m),
-            nx: grid.1,
+            nx: grid.nx,
             sums: corner_sums(pca.components.view(), pca.mean.view(), grid),
             is_nonnegative: pca.mean.iter().all(|value| *value >= -accuracy),
             components: Dense(pca.components.t().as_standard_layout().into_owned()),
@@ -150,7 +151,7 @@ impl Operator for AdaptiveLearned {
 fn corner_sums(
     components: ArrayView2<f64>,
     mean: ArrayView1<f64>,
-    (ny, nx): (usize, usize),
+    ImageShape { ny, nx }: ImageShape,
 ) -> Array2<f64> {
     let k = components.nrows();
     let mut sums = Array2::zeros(((ny + 1) * (nx + 1), k + 1));

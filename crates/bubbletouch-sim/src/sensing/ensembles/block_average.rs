@@ -1,6 +1,7 @@
 //! Averages over blocks of neighbouring taxels.
 
 use super::ensemble::{EnsembleAbout, Operator};
+use crate::world::ImageShape;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, s};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -49,7 +50,7 @@ impl Block {
 }
 
 /// Divides an ny × nx array into m blocks, ordered row by row by the first taxel of each block.
-fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
+fn blocks(grid: ImageShape, m: usize) -> Vec<Block> {
     let equal = equal_squares(grid, m).or_else(|| equal_halves(grid, m));
     let mut blocks = equal.unwrap_or_else(|| rows_of_blocks(grid, m));
     blocks.sort_by_key(|block| (block.rows.start, block.columns.start));
@@ -57,7 +58,7 @@ fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
 }
 
 /// Returns m squares of equal size that tile the array; `None` if no such tiling exists.
-fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
+fn equal_squares(ImageShape { ny, nx }: ImageShape, m: usize) -> Option<Vec<Block>> {
     let side = (ny * nx / m).isqrt();
     let tiles = side * side * m == ny * nx && ny % side == 0 && nx % side == 0;
     let range = |tile: usize| tile * side..(tile + 1) * side;
@@ -73,7 +74,7 @@ fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
 }
 
 /// Returns m blocks of equal size, obtained by repeated halving of the array; `None` if the blocks would differ in size.
-fn equal_halves(grid: (usize, usize), m: usize) -> Option<Vec<Block>> {
+fn equal_halves(grid: ImageShape, m: usize) -> Option<Vec<Block>> {
     let blocks = split_blocks(grid, m);
     let area = blocks[0].area();
     let is_equal = blocks.iter().all(|block| block.area() == area);
@@ -81,7 +82,7 @@ fn equal_halves(grid: (usize, usize), m: usize) -> Option<Vec<Block>> {
 }
 
 /// Divides the array into m nearly square blocks, arranged in rows with about equally many blocks.
-fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
+fn rows_of_blocks(ImageShape { ny, nx }: ImageShape, m: usize) -> Vec<Block> {
     let square = (m as f64 * ny as f64 / nx as f64).sqrt().round() as usize;
     let n_rows = square.clamp(m.div_ceil(nx), ny.min(m));
     // The k-th of n parts of a length.
@@ -97,7 +98,7 @@ fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
 }
 
 /// Divides the array into m blocks by repeated halving of the largest block (the oldest among equally large blocks).
-pub(super) fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
+pub(super) fn split_blocks(ImageShape { ny, nx }: ImageShape, m: usize) -> Vec<Block> {
     let whole = Block {
         rows: 0..ny,
         columns: 0..nx,
@@ -197,12 +198,12 @@ impl Operator for Blocks {
 mod tests {
     use super::*;
 
-    fn covered(grid: (usize, usize), blocks: &[Block]) -> Vec<usize> {
-        let mut count = vec![0; grid.0 * grid.1];
+    fn covered(grid: ImageShape, blocks: &[Block]) -> Vec<usize> {
+        let mut count = vec![0; grid.ny * grid.nx];
         for block in blocks {
             for row in block.rows.clone() {
                 for column in block.columns.clone() {
-                    count[row * grid.1 + column] += 1;
+                    count[row * grid.nx + column] += 1;
                 }
             }
         }
@@ -211,8 +212,9 @@ mod tests {
 
     #[test]
     fn any_number_of_blocks_covers_every_taxel_once() {
-        for grid in [(1, 1), (1, 9), (7, 3), (8, 8), (5, 12)] {
-            for m in 1..=grid.0 * grid.1 {
+        for grid in [(1, 1), (1, 9), (7, 3), (8, 8), (5, 12)].map(|(ny, nx)| ImageShape { ny, nx })
+        {
+            for m in 1..=grid.ny * grid.nx {
                 let blocks = blocks(grid, m);
                 assert_eq!(blocks.len(), m);
                 assert!(covered(grid, &blocks).iter().all(|&count| count == 1));
@@ -223,13 +225,13 @@ mod tests {
     #[test]
     fn blocks_are_equal_squares_where_the_array_allows() {
         for (grid, m, side) in [
-            ((64, 64), 1024, 2),
-            ((64, 64), 256, 4),
-            ((64, 64), 64, 8),
-            ((40, 40), 100, 4),
-            ((32, 64), 128, 4),
-            ((9, 6), 6, 3),
-            ((5, 5), 25, 1),
+            (ImageShape { ny: 64, nx: 64 }, 1024, 2),
+            (ImageShape { ny: 64, nx: 64 }, 256, 4),
+            (ImageShape { ny: 64, nx: 64 }, 64, 8),
+            (ImageShape { ny: 40, nx: 40 }, 100, 4),
+            (ImageShape { ny: 32, nx: 64 }, 128, 4),
+            (ImageShape { ny: 9, nx: 6 }, 6, 3),
+            (ImageShape { ny: 5, nx: 5 }, 25, 1),
         ] {
             for block in blocks(grid, m) {
                 assert_eq!((block.rows.len(), block.columns.len()), (side, side));
@@ -240,12 +242,12 @@ mod tests {
     #[test]
     fn blocks_are_nearly_square_where_they_cannot_be_equal() {
         for (grid, m) in [
-            ((28, 50), 88),
-            ((28, 50), 22),
-            ((31, 31), 100),
-            ((10, 60), 37),
+            (ImageShape { ny: 28, nx: 50 }, 88),
+            (ImageShape { ny: 28, nx: 50 }, 22),
+            (ImageShape { ny: 31, nx: 31 }, 100),
+            (ImageShape { ny: 10, nx: 60 }, 37),
         ] {
-            let side = (grid.0 as f64 * grid.1 as f64 / m as f64).sqrt();
+            let side = (grid.ny as f64 * grid.nx as f64 / m as f64).sqrt();
             for block in blocks(grid, m) {
                 let sides = [block.rows.len(), block.columns.len()].map(|n| n as f64 / side);
                 assert!(
@@ -259,9 +261,9 @@ mod tests {
     #[test]
     fn splitting_meets_the_equal_squares_of_powers_of_two() {
         for m in [1, 4, 16, 64, 256] {
-            let mut split = split_blocks((16, 16), m);
+            let mut split = split_blocks(ImageShape { ny: 16, nx: 16 }, m);
             split.sort_by_key(|block| (block.rows.start, block.columns.start));
-            assert_eq!(Some(split), equal_squares((16, 16), m));
+            assert_eq!(Some(split), equal_squares(ImageShape { ny: 16, nx: 16 }, m));
         }
     }
 
@@ -274,8 +276,8 @@ mod tests {
                 && inner.columns.end <= outer.columns.end
         };
         for (coarse, fine) in [(1, 5), (5, 6), (6, 17), (17, 64), (30, 31)] {
-            let coarse = split_blocks((11, 7), coarse);
-            for cell in split_blocks((11, 7), fine) {
+            let coarse = split_blocks(ImageShape { ny: 11, nx: 7 }, coarse);
+            for cell in split_blocks(ImageShape { ny: 11, nx: 7 }, fine) {
                 assert_eq!(coarse.iter().filter(|c| inside(&cell, c)).count(), 1);
             }
         }

@@ -6,11 +6,12 @@
 use super::ensemble::{EnsembleAbout, Operator};
 use super::subsample::permutation;
 use crate::random::Seed;
+use crate::world::ImageShape;
 use ndarray::{ArrayView1, ArrayView2, ArrayViewMut2};
 use rand::Rng;
 
 pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
-    ..EnsembleAbout::new("circulant", |(ny, nx), m, seed| {
+    ..EnsembleAbout::new("circulant", |ImageShape { ny, nx }, m, seed| {
         Box::new(Circulant::new(m, ny * nx, &seed.named("circulant")))
     })
 };

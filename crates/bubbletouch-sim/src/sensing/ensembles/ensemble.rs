@@ -4,22 +4,22 @@ use crate::error::Result;
 use crate::own::{Own, Registry};
 use crate::random::Seed;
 use crate::sensing::{Ensemble, Selection};
+use crate::world::ImageShape;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use std::fmt::Debug;
 use std::sync::OnceLock;
 
 /// Function that draws the linear map from an ny × nx array to m measurements with its own random stream, 1 ≤ m ≤ ny · nx.
-pub type Draw = fn((usize, usize), usize, &Seed) -> Box<dyn Operator>;
+pub type Draw = fn(ImageShape, usize, &Seed) -> Box<dyn Operator>;
 
 /// Function that learns the linear map to m measurements from frames of training touches, with its own random stream.
 pub type Learn = fn(&TrainingFrames, usize, &Seed) -> Result<Box<dyn Operator>>;
 
 /// Function that prepares the adaptive readout of an ny × nx array with at most m readings per frame, 1 ≤ m ≤ ny · nx.
-pub type Adapt = fn((usize, usize), usize) -> Box<dyn Operator>;
+pub type Adapt = fn(ImageShape, usize) -> Box<dyn Operator>;
 
 /// Function that prepares an adaptive readout as [`Adapt`] does, and learns the estimate of a frame from training frames.
-pub type LearnAdaptive =
-    fn(&TrainingFrames, (usize, usize), usize, &Seed) -> Result<Box<dyn Operator>>;
+pub type LearnAdaptive = fn(&TrainingFrames, ImageShape, usize, &Seed) -> Result<Box<dyn Operator>>;
 
 /// Origin of a measurement map: drawn at random, learned from frames, or adapted to each frame.
 #[derive(Clone, Copy, Debug)]

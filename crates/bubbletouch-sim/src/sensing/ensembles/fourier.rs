@@ -6,6 +6,7 @@
 
 use super::dense::{Dense, about};
 use super::ensemble::EnsembleAbout;
+use crate::world::ImageShape;
 use ndarray::Array2;
 use std::f64::consts::TAU;
 
@@ -18,7 +19,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 
 /// Returns the waves (u, v, whether it is a sine) of an ny × nx array, lowest frequency first. Each pair of opposite frequencies has a cosine, and a sine
 /// unless the sine is 0 on every taxel.
-fn waves((ny, nx): (usize, usize)) -> Vec<(usize, usize, bool)> {
+fn waves(ImageShape { ny, nx }: ImageShape) -> Vec<(usize, usize, bool)> {
     let mut waves = Vec::with_capacity(ny * nx);
     for v in 0..ny {
         for u in 0..nx {
@@ -38,8 +39,8 @@ fn waves((ny, nx): (usize, usize)) -> Vec<(usize, usize, bool)> {
     waves
 }
 
-fn rows((ny, nx): (usize, usize), m: usize) -> Array2<f64> {
-    let waves = waves((ny, nx));
+fn rows(ImageShape { ny, nx }: ImageShape, m: usize) -> Array2<f64> {
+    let waves = waves(ImageShape { ny, nx });
     let mut rows = Array2::zeros((m, ny * nx));
     for (mut row, &(u, v, is_sine)) in rows.outer_iter_mut().zip(&waves) {
         for (taxel, value) in row.iter_mut().enumerate() {
@@ -61,8 +62,8 @@ mod tests {
 
     #[test]
     fn all_rows_together_are_orthonormal_and_the_first_is_the_mean() {
-        for grid in [(1, 1), (1, 6), (4, 4), (5, 3), (4, 7)] {
-            let n = grid.0 * grid.1;
+        for grid in [(1, 1), (1, 6), (4, 4), (5, 3), (4, 7)].map(|(ny, nx)| ImageShape { ny, nx }) {
+            let n = grid.ny * grid.nx;
             let rows = rows(grid, n);
             let error = rows.dot(&rows.t()) - Array2::<f64>::eye(n);
             assert!(error.iter().all(|e| e.abs() < 1e-12), "{grid:?}");
@@ -73,7 +74,7 @@ mod tests {
 
     #[test]
     fn frequencies_rise() {
-        let waves = waves((8, 8));
+        let waves = waves(ImageShape { ny: 8, nx: 8 });
         let square = |k: usize| k.min(8 - k).pow(2);
         let frequencies = waves.iter().map(|&(u, v, _)| square(u) + square(v));
         assert!(frequencies.collect::<Vec<_>>().is_sorted());

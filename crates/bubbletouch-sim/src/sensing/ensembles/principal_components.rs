@@ -49,6 +49,7 @@ pub(crate) fn components(training: &TrainingFrames, m: usize, seed: &Seed) -> Re
 mod tests {
     use crate::random::Seed;
     use crate::sensing::{Ensemble, Projection};
+    use crate::world::ImageShape;
     use ndarray::Array2;
 
     /// Returns test frames that combine three patterns; the first pattern has the largest variance.
@@ -68,7 +69,7 @@ mod tests {
         let kept = |rows: &Array2<f64>| centred.dot(&rows.t()).mapv(|y| y * y).sum();
         let learned = (frames.view(), &Seed::new(1));
         let ensemble = Ensemble::PrincipalComponents;
-        let rows = Projection::learned(ensemble, (3, 4), 2, learned)
+        let rows = Projection::learned(ensemble, ImageShape { ny: 3, nx: 4 }, 2, learned)
             .unwrap()
             .matrix();
         let unit = rows.dot(&rows.t()) - Array2::<f64>::eye(2);
@@ -76,7 +77,12 @@ mod tests {
         let most = kept(&rows);
         for seed in 0..50 {
             // Pairs of orthonormal rows near the principal components, by Gram–Schmidt.
-            let drawn = Projection::new(Ensemble::Gaussian, (3, 4), 2, &Seed::new(seed));
+            let drawn = Projection::new(
+                Ensemble::Gaussian,
+                ImageShape { ny: 3, nx: 4 },
+                2,
+                &Seed::new(seed),
+            );
             let mut other = &rows + &(0.3 * drawn.unwrap().matrix());
             let first = other.row(0).to_owned() / other.row(0).dot(&other.row(0)).sqrt();
             let mut second = other.row(1).to_owned();
@@ -93,9 +99,11 @@ mod tests {
         let frames = frames();
         let ensemble = Ensemble::PrincipalComponents;
         let learned = (frames.view(), &Seed::new(1));
-        let error = Projection::learned(ensemble, (3, 4), 4, learned).unwrap_err();
+        let error =
+            Projection::learned(ensemble, ImageShape { ny: 3, nx: 4 }, 4, learned).unwrap_err();
         assert!(error.to_string().contains("at most 3"), "{error}");
-        let error = Projection::new(ensemble, (3, 4), 2, &Seed::new(1)).unwrap_err();
+        let error =
+            Projection::new(ensemble, ImageShape { ny: 3, nx: 4 }, 2, &Seed::new(1)).unwrap_err();
         assert!(error.to_string().contains("learned"), "{error}");
     }
 }

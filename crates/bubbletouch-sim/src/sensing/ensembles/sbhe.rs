@@ -7,6 +7,7 @@
 use super::ensemble::{EnsembleAbout, Operator};
 use super::subsample::permutation;
 use crate::random::Seed;
+use crate::world::ImageShape;
 use ndarray::{ArrayView2, ArrayViewMut2};
 
 /// Block size of the transform, a power of two: 32 as in \[SBHE\]. Larger blocks mix more taxels into each measurement and are slower; with 1 the ensemble is
@@ -30,7 +31,7 @@ pub(crate) struct ScrambledHadamard {
 }
 
 pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
-    ..EnsembleAbout::new("SBHE", |(ny, nx), m, seed| {
+    ..EnsembleAbout::new("SBHE", |ImageShape { ny, nx }, m, seed| {
         Box::new(ScrambledHadamard::new(
             m,
             ny * nx,

@@ -34,9 +34,10 @@ fn learn(training: &TrainingFrames, m: usize, seed: &Seed) -> Result<Box<dyn Ope
 mod tests {
     use crate::random::Seed;
     use crate::sensing::{Ensemble, Projection, Selection, TrainingFrames};
+    use crate::world::ImageShape;
     use ndarray::{Array2, ArrayView2};
 
-    const GRID: (usize, usize) = (4, 5);
+    const GRID: ImageShape = ImageShape { ny: 4, nx: 5 };
 
     /// Returns 48 frames of three classes. Only taxels 7 and 12 depend on the class; the other taxels differ at random.
     fn training() -> (Array2<f64>, Vec<usize>) {

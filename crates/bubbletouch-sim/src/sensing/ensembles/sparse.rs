@@ -6,6 +6,7 @@
 
 use super::ensemble::{EnsembleAbout, Operator};
 use crate::random::Seed;
+use crate::world::ImageShape;
 use ndarray::{ArrayView2, ArrayViewMut2};
 use rand::Rng;
 
@@ -34,7 +35,7 @@ struct Row {
 pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     // m rows with √n entries each.
     bytes: |m, n| 16.0 * n.sqrt() * m,
-    ..EnsembleAbout::new("sparse", |(ny, nx), m, seed| {
+    ..EnsembleAbout::new("sparse", |ImageShape { ny, nx }, m, seed| {
         Box::new(VerySparse::new(m, ny * nx, &seed.named("sparse")))
     })
 };

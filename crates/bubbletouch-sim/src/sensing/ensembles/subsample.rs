@@ -2,12 +2,14 @@
 
 use super::ensemble::{EnsembleAbout, Operator};
 use crate::random::Seed;
+use crate::world::ImageShape;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use rand::seq::SliceRandom;
 
-pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout::new("subsample", |(ny, nx), m, seed| {
-    Box::new(Taxels(random_taxels(ny * nx, m, seed)))
-});
+pub(crate) const ABOUT: EnsembleAbout =
+    EnsembleAbout::new("subsample", |ImageShape { ny, nx }, m, seed| {
+        Box::new(Taxels(random_taxels(ny * nx, m, seed)))
+    });
 
 /// Index of the taxel that each measurement reads.
 #[derive(Debug)]

@@ -47,6 +47,7 @@ pub struct Reconstruction {
 /// ```
 /// use bubbletouch_sim::random::Seed;
 /// use bubbletouch_sim::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Reconstructor, SensedDictionary, Solver};
+/// use bubbletouch_sim::world::ImageShape;
 /// use ndarray::Array2;
 ///
 /// // A bump that wanders over 16 × 16 taxels; every fourth is held out.
@@ -58,8 +59,8 @@ pub struct Reconstruction {
 /// let test = Array2::from_shape_fn((20, 256), |(i, j)| bump(4 * i, j));
 ///
 /// let seed = Seed::new(2018);
-/// let projection = Projection::new(Ensemble::Sbhe, (16, 16), 96, &seed)?;
-/// let dictionary = Dictionary::learned(Basis::Pca, (16, 16), train.view(), Some(40), &seed)?;
+/// let projection = Projection::new(Ensemble::Sbhe, ImageShape { ny: 16, nx: 16 }, 96, &seed)?;
+/// let dictionary = Dictionary::learned(Basis::Pca, ImageShape { ny: 16, nx: 16 }, train.view(), Some(40), &seed)?;
 /// let sensed = SensedDictionary::new(&projection, &dictionary)?;
 /// let reconstructor = Reconstructor::new(Solver::Lmmse, &sensed, &Effort::default(), 0.0)?;
 /// let found = reconstructor.reconstruct(projection.measure(test.view()).view())?;

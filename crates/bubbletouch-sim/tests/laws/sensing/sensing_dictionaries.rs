@@ -2,6 +2,7 @@
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::sensing::{Basis, Dictionary, Ensemble, Projection, SensedDictionary};
+use bubbletouch_sim::world::ImageShape;
 use ndarray::{Array2, Axis};
 
 const FIXED: [Basis; 3] = [Basis::Dct, Basis::Haar, Basis::Daubechies4];
@@ -23,8 +24,9 @@ fn largest(values: &Array2<f64>) -> f64 {
 #[test]
 fn atoms_are_orthonormal_and_synthesis_undoes_analysis() {
     for basis in FIXED {
-        for grid in [(8, 8), (1, 16), (4, 2), (2, 32), (1, 1)] {
-            let n = grid.0 * grid.1;
+        for grid in [(8, 8), (1, 16), (4, 2), (2, 32), (1, 1)].map(|(ny, nx)| ImageShape { ny, nx })
+        {
+            let n = grid.ny * grid.nx;
             let dictionary = Dictionary::complete(basis, grid).unwrap();
             let atoms = dictionary.synthesise(unit_rows(n).view());
             let error = atoms.dot(&atoms.t()) - Array2::<f64>::eye(n);
@@ -42,7 +44,7 @@ fn atoms_are_orthonormal_and_synthesis_undoes_analysis() {
 #[test]
 fn a_constant_frame_is_one_atom_and_a_plane_few() {
     for basis in FIXED {
-        let dictionary = Dictionary::complete(basis, (16, 16)).unwrap();
+        let dictionary = Dictionary::complete(basis, ImageShape { ny: 16, nx: 16 }).unwrap();
         let constant = Array2::from_elem((1, 256), 2.0);
         let coefficients = dictionary.analyse(constant.view());
         let n_used = coefficients.iter().filter(|c| c.abs() > 1e-12).count();
@@ -51,7 +53,8 @@ fn a_constant_frame_is_one_atom_and_a_plane_few() {
     }
     // Two vanishing moments: a linear slope has no details, except for the jump at the periodic edge.
     let slope = Array2::from_shape_fn((1, 64), |(_, j)| j as f64);
-    let dictionary = Dictionary::complete(Basis::Daubechies4, (1, 64)).unwrap();
+    let dictionary =
+        Dictionary::complete(Basis::Daubechies4, ImageShape { ny: 1, nx: 64 }).unwrap();
     let details = dictionary.analyse(slope.view());
     let n_used = details.iter().filter(|c| c.abs() > 1e-9).count();
     assert!(n_used < 16, "{n_used}");
@@ -59,7 +62,7 @@ fn a_constant_frame_is_one_atom_and_a_plane_few() {
 
 #[test]
 fn a_learned_dictionary_keeps_the_atoms_that_carry_most() {
-    let (grid, frames) = ((8, 8), frames(30, 64));
+    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, frames(30, 64));
     for basis in FIXED {
         let all = Dictionary::complete(basis, grid).unwrap();
         let squares = all.analyse(frames.view()).mapv(|c| c * c);
@@ -76,7 +79,7 @@ fn a_learned_dictionary_keeps_the_atoms_that_carry_most() {
 
 #[test]
 fn energies_and_rest_add_up_to_the_mean_square_of_training_frames() {
-    let (grid, frames) = ((8, 8), frames(30, 64));
+    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, frames(30, 64));
     for basis in [Basis::Dct, Basis::Haar, Basis::Daubechies4, Basis::Pca] {
         for n_atoms in [Some(1), Some(7), None] {
             let seed = Seed::new(1);
@@ -92,7 +95,7 @@ fn energies_and_rest_add_up_to_the_mean_square_of_training_frames() {
 
 #[test]
 fn principal_components_show_training_frames_best() {
-    let (grid, frames) = ((8, 8), frames(30, 64));
+    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, frames(30, 64));
     let missed = |basis| {
         let learned =
             Dictionary::learned(basis, grid, frames.view(), Some(8), &Seed::new(1)).unwrap();
@@ -105,7 +108,7 @@ fn principal_components_show_training_frames_best() {
 
 #[test]
 fn sensed_atoms_are_the_projection_times_the_dictionary() {
-    let (grid, frames) = ((8, 8), frames(30, 64));
+    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, frames(30, 64));
     for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe, Ensemble::Sparse] {
         let projection = Projection::new(ensemble, grid, 20, &Seed::new(2)).unwrap();
         for basis in [Basis::Dct, Basis::Haar, Basis::Pca] {
@@ -133,7 +136,10 @@ fn row_norm_and_row_gram_are_those_of_the_matrix() {
         Ensemble::Subsample,
         Ensemble::Identity,
     ] {
-        for (grid, m) in [((8, 8), 16), ((5, 7), 9)] {
+        for (grid, m) in [
+            (ImageShape { ny: 8, nx: 8 }, 16),
+            (ImageShape { ny: 5, nx: 7 }, 9),
+        ] {
             let projection = Projection::new(ensemble, grid, m, &Seed::new(2)).unwrap();
             let matrix = projection.matrix();
             let square = matrix.iter().map(|v| v * v).sum::<f64>() / matrix.nrows() as f64;
@@ -147,8 +153,14 @@ fn row_norm_and_row_gram_are_those_of_the_matrix() {
 
 #[test]
 fn coherence_is_the_largest_cosine_between_two_columns() {
-    let dictionary = Dictionary::complete(Basis::Dct, (8, 8)).unwrap();
-    let projection = Projection::new(Ensemble::Gaussian, (8, 8), 24, &Seed::new(2)).unwrap();
+    let dictionary = Dictionary::complete(Basis::Dct, ImageShape { ny: 8, nx: 8 }).unwrap();
+    let projection = Projection::new(
+        Ensemble::Gaussian,
+        ImageShape { ny: 8, nx: 8 },
+        24,
+        &Seed::new(2),
+    )
+    .unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
     let a = sensed.atoms();
     let mut slow: f64 = 0.0;
@@ -169,8 +181,14 @@ fn coherence_is_the_largest_cosine_between_two_columns() {
 #[test]
 fn atoms_that_averaging_wipes_out_are_counted_not_compared() {
     // Averages of 2 × 2 taxels of the finest Haar details are zero, which are three quarters of the atoms.
-    let dictionary = Dictionary::complete(Basis::Haar, (8, 8)).unwrap();
-    let projection = Projection::new(Ensemble::BlockAverage, (8, 8), 16, &Seed::new(2)).unwrap();
+    let dictionary = Dictionary::complete(Basis::Haar, ImageShape { ny: 8, nx: 8 }).unwrap();
+    let projection = Projection::new(
+        Ensemble::BlockAverage,
+        ImageShape { ny: 8, nx: 8 },
+        16,
+        &Seed::new(2),
+    )
+    .unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
     let coherence = sensed.coherence();
     assert_eq!(coherence.n_invisible, 48);
@@ -179,8 +197,14 @@ fn atoms_that_averaging_wipes_out_are_counted_not_compared() {
 
 #[test]
 fn full_sampling_keeps_every_support_an_isometry() {
-    let dictionary = Dictionary::complete(Basis::Haar, (8, 8)).unwrap();
-    let projection = Projection::new(Ensemble::Identity, (8, 8), 64, &Seed::new(2)).unwrap();
+    let dictionary = Dictionary::complete(Basis::Haar, ImageShape { ny: 8, nx: 8 }).unwrap();
+    let projection = Projection::new(
+        Ensemble::Identity,
+        ImageShape { ny: 8, nx: 8 },
+        64,
+        &Seed::new(2),
+    )
+    .unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
     assert!(sensed.coherence().mutual < 1e-13);
     for extremes in sensed.isometry(9, 20, &Seed::new(3)).unwrap() {
@@ -191,8 +215,14 @@ fn full_sampling_keeps_every_support_an_isometry() {
 #[test]
 fn the_isometry_of_all_atoms_is_known_where_rows_are_orthonormal() {
     // With A Aᵀ = 1 (m × m), the matrix AᵀA has m eigenvalues 1 and others 0. Columns of mean square norm m / k scale the eigenvalues by k / m.
-    let dictionary = Dictionary::complete(Basis::Dct, (8, 8)).unwrap();
-    let projection = Projection::new(Ensemble::Sbhe, (8, 8), 16, &Seed::new(2)).unwrap();
+    let dictionary = Dictionary::complete(Basis::Dct, ImageShape { ny: 8, nx: 8 }).unwrap();
+    let projection = Projection::new(
+        Ensemble::Sbhe,
+        ImageShape { ny: 8, nx: 8 },
+        16,
+        &Seed::new(2),
+    )
+    .unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
     let all = sensed.isometry(64, 2, &Seed::new(3)).unwrap();
     for extremes in all {
@@ -202,9 +232,15 @@ fn the_isometry_of_all_atoms_is_known_where_rows_are_orthonormal() {
 
 #[test]
 fn more_measurements_or_fewer_atoms_bring_a_projection_nearer_to_an_isometry() {
-    let dictionary = Dictionary::complete(Basis::Dct, (16, 16)).unwrap();
+    let dictionary = Dictionary::complete(Basis::Dct, ImageShape { ny: 16, nx: 16 }).unwrap();
     let mean = |m, sparsity| {
-        let projection = Projection::new(Ensemble::Gaussian, (16, 16), m, &Seed::new(2)).unwrap();
+        let projection = Projection::new(
+            Ensemble::Gaussian,
+            ImageShape { ny: 16, nx: 16 },
+            m,
+            &Seed::new(2),
+        )
+        .unwrap();
         let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
         let all = sensed.isometry(sparsity, 50, &Seed::new(3)).unwrap();
         assert_eq!(all, sensed.isometry(sparsity, 50, &Seed::new(3)).unwrap());
@@ -220,15 +256,27 @@ fn bad_dictionaries_are_refused_by_a_clear_sentence() {
     let seed = Seed::new(1);
     let said = |result: bubbletouch_sim::Result<Dictionary>| result.unwrap_err().to_string();
     for basis in [Basis::Haar, Basis::Daubechies4] {
-        let error = said(Dictionary::complete(basis, (8, 12)));
+        let error = said(Dictionary::complete(basis, ImageShape { ny: 8, nx: 12 }));
         assert!(error.contains("12 × 8 taxels; a power of two"), "{error}");
     }
-    assert!(said(Dictionary::complete(Basis::Dct, (0, 3))).contains("no taxels"));
-    assert!(said(Dictionary::complete(Basis::Pca, (4, 4))).contains("without training frames"));
+    assert!(
+        said(Dictionary::complete(
+            Basis::Dct,
+            ImageShape { ny: 0, nx: 3 }
+        ))
+        .contains("no taxels")
+    );
+    assert!(
+        said(Dictionary::complete(
+            Basis::Pca,
+            ImageShape { ny: 4, nx: 4 }
+        ))
+        .contains("without training frames")
+    );
     let learned = |frames: Array2<f64>, n_atoms| {
         said(Dictionary::learned(
             Basis::Dct,
-            (4, 4),
+            ImageShape { ny: 4, nx: 4 },
             frames.view(),
             n_atoms,
             &seed,
@@ -241,16 +289,25 @@ fn bad_dictionaries_are_refused_by_a_clear_sentence() {
     broken[[1, 5]] = f64::NAN;
     assert!(learned(broken, None).starts_with("training frame 1, taxel 5: NaN"));
 
-    let dictionary = Dictionary::complete(Basis::Dct, (4, 4)).unwrap();
-    let projection = Projection::new(Ensemble::Sbhe, (4, 5), 4, &seed).unwrap();
+    let dictionary = Dictionary::complete(Basis::Dct, ImageShape { ny: 4, nx: 4 }).unwrap();
+    let projection =
+        Projection::new(Ensemble::Sbhe, ImageShape { ny: 4, nx: 5 }, 4, &seed).unwrap();
     assert!(SensedDictionary::new(&projection, &dictionary).is_err());
-    let projection = Projection::new(Ensemble::Sbhe, (4, 4), 4, &seed).unwrap();
+    let projection =
+        Projection::new(Ensemble::Sbhe, ImageShape { ny: 4, nx: 4 }, 4, &seed).unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
     for sparsity in [0, 17] {
         assert!(sensed.isometry(sparsity, 1, &seed).is_err());
     }
     // Identical frames have no principal component.
     let same = Array2::from_elem((3, 16), 1.0);
-    let flat = Dictionary::learned(Basis::Pca, (4, 4), same.view(), None, &seed).unwrap();
+    let flat = Dictionary::learned(
+        Basis::Pca,
+        ImageShape { ny: 4, nx: 4 },
+        same.view(),
+        None,
+        &seed,
+    )
+    .unwrap();
     assert!(SensedDictionary::new(&projection, &flat).is_err());
 }

@@ -2,6 +2,7 @@
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::sensing::{Ensemble, Projection};
+use bubbletouch_sim::world::ImageShape;
 use ndarray::{Array2, ArrayView2, s};
 
 const ENSEMBLES: [Ensemble; 7] = [
@@ -22,7 +23,7 @@ const RANDOM: [Ensemble; 4] = [
     Ensemble::Sbhe,
 ];
 
-fn projection(ensemble: Ensemble, grid: (usize, usize), m: usize) -> Projection {
+fn projection(ensemble: Ensemble, grid: ImageShape, m: usize) -> Projection {
     Projection::new(ensemble, grid, m, &Seed::new(2018)).unwrap()
 }
 
@@ -39,10 +40,15 @@ fn bits(values: ArrayView2<f64>) -> Vec<u64> {
 #[test]
 fn measuring_what_is_touched_is_measuring_the_frame() {
     for ensemble in ENSEMBLES {
-        for (grid, m) in [((1, 1), 1), ((3, 5), 4), ((12, 9), 50), ((64, 64), 256)] {
+        for (grid, m) in [
+            (ImageShape { ny: 1, nx: 1 }, 1),
+            (ImageShape { ny: 3, nx: 5 }, 4),
+            (ImageShape { ny: 12, nx: 9 }, 50),
+            (ImageShape { ny: 64, nx: 64 }, 256),
+        ] {
             let projection = projection(ensemble, grid, m);
             let columns = projection.columns();
-            let n = grid.0 * grid.1;
+            let n = grid.ny * grid.nx;
             assert_eq!(columns.n_taxels(), n);
             let mut frames = frames(3, n);
             frames.mapv_inplace(|value| if value > 0.6 { value } else { 0.0 });
@@ -63,7 +69,7 @@ fn measuring_what_is_touched_is_measuring_the_frame() {
 #[test]
 fn larger_hadamard_blocks_read_more_taxels_and_their_rows_are_orthonormal_too() {
     let seed = Seed::new(5);
-    let (grid, m) = ((64, 64), 16);
+    let (grid, m) = (ImageShape { ny: 64, nx: 64 }, 16);
     let mut last = 0;
     for block in [1, 32, 256, 4096] {
         let projection = Projection::sbhe(grid, m, block, &seed).unwrap();
@@ -86,9 +92,14 @@ fn larger_hadamard_blocks_read_more_taxels_and_their_rows_are_orthonormal_too() 
 #[test]
 fn measuring_is_multiplying_by_the_matrix() {
     for ensemble in ENSEMBLES {
-        for (grid, m) in [((1, 1), 1), ((3, 5), 4), ((12, 9), 50), ((8, 8), 64)] {
+        for (grid, m) in [
+            (ImageShape { ny: 1, nx: 1 }, 1),
+            (ImageShape { ny: 3, nx: 5 }, 4),
+            (ImageShape { ny: 12, nx: 9 }, 50),
+            (ImageShape { ny: 8, nx: 8 }, 64),
+        ] {
             let projection = projection(ensemble, grid, m);
-            let frames = frames(13, grid.0 * grid.1);
+            let frames = frames(13, grid.ny * grid.nx);
             let matrix = projection.matrix();
             let slow = Array2::from_shape_fn((13, matrix.nrows()), |(i, k)| {
                 let terms = frames
@@ -110,9 +121,14 @@ fn measuring_is_multiplying_by_the_matrix() {
 #[test]
 fn a_frame_has_the_same_measurements_in_every_batch() {
     for ensemble in ENSEMBLES {
-        for (grid, m) in [((64, 64), 64), ((31, 17), 100), ((5, 7), 35), ((9, 9), 1)] {
+        for (grid, m) in [
+            (ImageShape { ny: 64, nx: 64 }, 64),
+            (ImageShape { ny: 31, nx: 17 }, 100),
+            (ImageShape { ny: 5, nx: 7 }, 35),
+            (ImageShape { ny: 9, nx: 9 }, 1),
+        ] {
             let projection = projection(ensemble, grid, m);
-            let frames = frames(150, grid.0 * grid.1);
+            let frames = frames(150, grid.ny * grid.nx);
             let together = projection.measure(frames.view());
             for batch in [1, 2, 3, 7, 8, 64, 149] {
                 for start in [0, 1, 150 - batch] {
@@ -133,9 +149,14 @@ fn a_frame_has_the_same_measurements_in_every_batch() {
 fn taxels_that_read_nothing_change_no_bit() {
     // One frame of ones makes every taxel count.
     for ensemble in ENSEMBLES {
-        for (grid, m) in [((64, 64), 70), ((31, 17), 100), ((5, 7), 35), ((9, 9), 1)] {
+        for (grid, m) in [
+            (ImageShape { ny: 64, nx: 64 }, 70),
+            (ImageShape { ny: 31, nx: 17 }, 100),
+            (ImageShape { ny: 5, nx: 7 }, 35),
+            (ImageShape { ny: 9, nx: 9 }, 1),
+        ] {
             let projection = projection(ensemble, grid, m);
-            let n = grid.0 * grid.1;
+            let n = grid.ny * grid.nx;
             for (above, from) in [(0.0, 0), (0.9, 0), (0.0, n / 2), (0.99, n / 3), (1.0, 0)] {
                 let mut frames = frames(6, n);
                 for ((_, taxel), value) in frames.indexed_iter_mut() {
@@ -157,7 +178,7 @@ fn taxels_that_read_nothing_change_no_bit() {
 #[test]
 fn memory_layout_changes_nothing() {
     for ensemble in ENSEMBLES {
-        let projection = projection(ensemble, (16, 16), 40);
+        let projection = projection(ensemble, ImageShape { ny: 16, nx: 16 }, 40);
         let frames = frames(21, 256);
         let column_major = frames.t().as_standard_layout().into_owned();
         let mut wide = Array2::zeros((21, 2 * projection.n_measurements()));
@@ -177,8 +198,8 @@ fn a_smaller_projection_is_a_prefix_of_a_larger_bit_by_bit() {
         if !ensemble.is_prefix_nested() || ensemble == Ensemble::Identity {
             continue;
         }
-        for grid in [(32, 32), (13, 11)] {
-            let n = grid.0 * grid.1;
+        for grid in [(32, 32), (13, 11)].map(|(ny, nx)| ImageShape { ny, nx }) {
+            let n = grid.ny * grid.nx;
             let frames = frames(9, n);
             let largest = projection(ensemble, grid, n).measure(frames.view());
             for m in [1, 2, 5, 16, 64, 100, n - 1] {
@@ -196,8 +217,10 @@ fn a_smaller_projection_is_a_prefix_of_a_larger_bit_by_bit() {
 #[test]
 fn coarse_block_averages_are_averages_of_fine_ones() {
     let frames = frames(4, 256);
-    let fine = projection(Ensemble::BlockAverage, (16, 16), 64).measure(frames.view());
-    let coarse = projection(Ensemble::BlockAverage, (16, 16), 16).measure(frames.view());
+    let fine = projection(Ensemble::BlockAverage, ImageShape { ny: 16, nx: 16 }, 64)
+        .measure(frames.view());
+    let coarse = projection(Ensemble::BlockAverage, ImageShape { ny: 16, nx: 16 }, 16)
+        .measure(frames.view());
     for frame in 0..4 {
         for block in 0..16 {
             let corner = 16 * (block / 4) + 2 * (block % 4);
@@ -213,7 +236,8 @@ fn random_ensembles_keep_distances_between_frames() {
     let (n, m) = (1024, 256);
     let frames = frames(12, n);
     for ensemble in RANDOM {
-        let measured = projection(ensemble, (32, 32), m).measure(frames.view());
+        let measured =
+            projection(ensemble, ImageShape { ny: 32, nx: 32 }, m).measure(frames.view());
         for a in 0..12 {
             for b in 0..a {
                 let square = |rows: &Array2<f64>| {
@@ -237,7 +261,7 @@ fn independent_entries_have_mean_zero_and_variance_one_over_n() {
         (Ensemble::Bernoulli, 1e-20),
         (Ensemble::Sparse, 19.0),
     ] {
-        let matrix = projection(ensemble, (20, 20), 400).matrix();
+        let matrix = projection(ensemble, ImageShape { ny: 20, nx: 20 }, 400).matrix();
         let count = 160_000.0f64;
         let mean = matrix.sum() / count;
         let variance = matrix.iter().map(|v| v * v).sum::<f64>() / count;
@@ -250,9 +274,9 @@ fn independent_entries_have_mean_zero_and_variance_one_over_n() {
 #[test]
 fn bernoulli_entries_have_one_magnitude_and_sparse_ones_three_values_at_a_density_of_one_over_root_n()
  {
-    let bernoulli = projection(Ensemble::Bernoulli, (16, 16), 100).matrix();
+    let bernoulli = projection(Ensemble::Bernoulli, ImageShape { ny: 16, nx: 16 }, 100).matrix();
     assert!(bernoulli.iter().all(|v| v.abs() == 1.0 / 16.0));
-    let sparse = projection(Ensemble::Sparse, (16, 16), 256).matrix();
+    let sparse = projection(Ensemble::Sparse, ImageShape { ny: 16, nx: 16 }, 256).matrix();
     // With s = 16, entries are ±√(16/256) = ±0.25.
     assert!(sparse.iter().all(|v| [0.0, 0.25].contains(&v.abs())));
     let n_set = sparse.iter().filter(|v| **v != 0.0).count() as f64;
@@ -263,7 +287,7 @@ fn bernoulli_entries_have_one_magnitude_and_sparse_ones_three_values_at_a_densit
 
 #[test]
 fn a_subsample_takes_each_taxel_at_most_once() {
-    let matrix = projection(Ensemble::Subsample, (9, 7), 63).matrix();
+    let matrix = projection(Ensemble::Subsample, ImageShape { ny: 9, nx: 7 }, 63).matrix();
     assert_eq!(matrix.sum(), 63.0);
     assert!(matrix.columns().into_iter().all(|c| c.sum() == 1.0));
 }
@@ -271,7 +295,7 @@ fn a_subsample_takes_each_taxel_at_most_once() {
 #[test]
 fn identity_gives_the_frame_whatever_is_asked() {
     let frames = frames(3, 20);
-    let projection = projection(Ensemble::Identity, (4, 5), 2);
+    let projection = projection(Ensemble::Identity, ImageShape { ny: 4, nx: 5 }, 2);
     assert_eq!(projection.n_measurements(), 20);
     assert_eq!(projection.measure(frames.view()), frames);
 }
@@ -280,7 +304,7 @@ fn identity_gives_the_frame_whatever_is_asked() {
 fn another_seed_draws_another_projection() {
     for ensemble in RANDOM.into_iter().chain([Ensemble::Subsample]) {
         let of = |seed| {
-            Projection::new(ensemble, (8, 8), 16, &Seed::new(seed))
+            Projection::new(ensemble, ImageShape { ny: 8, nx: 8 }, 16, &Seed::new(seed))
                 .unwrap()
                 .matrix()
         };
@@ -292,7 +316,11 @@ fn another_seed_draws_another_projection() {
 #[test]
 fn no_measurement_and_more_than_taxels_are_refused() {
     for ensemble in ENSEMBLES {
-        for (grid, m) in [((4, 4), 0), ((4, 4), 17), ((0, 4), 1)] {
+        for (grid, m) in [
+            (ImageShape { ny: 4, nx: 4 }, 0),
+            (ImageShape { ny: 4, nx: 4 }, 17),
+            (ImageShape { ny: 0, nx: 4 }, 1),
+        ] {
             let error = Projection::new(ensemble, grid, m, &Seed::new(1)).unwrap_err();
             assert!(error.to_string().starts_with("number of measurements"));
         }
@@ -302,7 +330,8 @@ fn no_measurement_and_more_than_taxels_are_refused() {
 #[test]
 fn no_frames_have_no_measurements() {
     for ensemble in ENSEMBLES {
-        let none = projection(ensemble, (4, 4), 3).measure(Array2::zeros((0, 16)).view());
+        let none = projection(ensemble, ImageShape { ny: 4, nx: 4 }, 3)
+            .measure(Array2::zeros((0, 16)).view());
         assert_eq!(none.nrows(), 0);
     }
 }

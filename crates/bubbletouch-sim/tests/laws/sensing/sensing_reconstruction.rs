@@ -5,6 +5,7 @@ use bubbletouch_sim::sensing::{
     Basis, Dictionary, Effort, Ensemble, Lasso, Lmmse, Omp, Projection, Reconstructor,
     SensedDictionary, Solver,
 };
+use bubbletouch_sim::world::ImageShape;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
 
 const RANDOM: [Ensemble; 4] = [
@@ -42,7 +43,7 @@ fn wavy_frames(n_frames: usize, n: usize) -> Array2<f64> {
 
 #[test]
 fn pursuit_and_l1_recover_sparse_frames_from_enough_measurements_without_noise() {
-    let grid = (16, 16);
+    let grid = ImageShape { ny: 16, nx: 16 };
     for ensemble in RANDOM {
         let projection = Projection::new(ensemble, grid, 100, &Seed::new(5)).unwrap();
         for basis in [Basis::Dct, Basis::Haar, Basis::Daubechies4] {
@@ -125,7 +126,7 @@ fn gauss(mut a: Array2<f64>, mut b: Array1<f64>) -> Array1<f64> {
 
 #[test]
 fn batch_pursuit_is_the_textbook_pursuit() {
-    let (grid, frames) = ((8, 8), wavy_frames(12, 64));
+    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(12, 64));
     for ensemble in RANDOM {
         let projection = Projection::new(ensemble, grid, 30, &Seed::new(6)).unwrap();
         let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
@@ -148,7 +149,7 @@ fn batch_pursuit_is_the_textbook_pursuit() {
 
 #[test]
 fn pursuit_stops_at_the_residual_and_says_when_it_could_not_reach_it() {
-    let (grid, frames) = ((8, 8), wavy_frames(10, 64));
+    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(10, 64));
     let projection = Projection::new(Ensemble::Gaussian, grid, 40, &Seed::new(6)).unwrap();
     let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
@@ -170,7 +171,7 @@ fn pursuit_stops_at_the_residual_and_says_when_it_could_not_reach_it() {
 
 #[test]
 fn the_l1_solution_meets_the_optimality_conditions() {
-    let (grid, frames) = ((8, 8), wavy_frames(20, 64));
+    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(20, 64));
     for (ensemble, m) in [(Ensemble::Gaussian, 20), (Ensemble::Sbhe, 50)] {
         let projection = Projection::new(ensemble, grid, m, &Seed::new(6)).unwrap();
         let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
@@ -200,7 +201,7 @@ fn the_l1_solution_meets_the_optimality_conditions() {
 
 #[test]
 fn a_penalty_above_every_correlation_leaves_nothing() {
-    let (grid, frames) = ((8, 8), wavy_frames(4, 64));
+    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(4, 64));
     let projection = Projection::new(Ensemble::Gaussian, grid, 20, &Seed::new(6)).unwrap();
     let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
@@ -218,7 +219,7 @@ fn a_penalty_above_every_correlation_leaves_nothing() {
 /// Returns a small problem with known solutions: 24 taxels in a row, all 24 cosines as atoms, and 10 measurements. The measurements are averages over blocks of
 /// 2, 2, 3, 2, 3, 2, 2, 3, 2, 3 taxels.
 fn golden_problem() -> (Projection, Dictionary, Array2<f64>) {
-    let grid = (1, 24);
+    let grid = ImageShape { ny: 1, nx: 24 };
     let projection = Projection::new(Ensemble::BlockAverage, grid, 10, &Seed::new(1)).unwrap();
     let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
     let y = Array2::from_shape_fn((1, 10), |(_, i)| (0.7 * i as f64).sin() + 0.1 * i as f64);
@@ -353,7 +354,7 @@ fn dense_lmmse(sensed: &SensedDictionary, noise_std: f64, y: ArrayView2<f64>) ->
 
 #[test]
 fn the_linear_estimate_is_its_dense_formula() {
-    let (grid, frames) = ((6, 6), wavy_frames(40, 36));
+    let (grid, frames) = (ImageShape { ny: 6, nx: 6 }, wavy_frames(40, 36));
     let noise_std = 0.2;
     for ensemble in RANDOM.into_iter().chain([Ensemble::BlockAverage]) {
         // With 4 atoms the estimate goes through coefficients, with 30 directly to taxels.
@@ -374,7 +375,7 @@ fn the_linear_estimate_is_its_dense_formula() {
 
 #[test]
 fn the_linear_estimate_trusts_training_alone_when_noise_drowns_the_measurements() {
-    let (grid, frames) = ((6, 6), wavy_frames(40, 36));
+    let (grid, frames) = (ImageShape { ny: 6, nx: 6 }, wavy_frames(40, 36));
     let seed = Seed::new(7);
     let projection = Projection::new(Ensemble::Sbhe, grid, 20, &seed).unwrap();
     let dictionary = Dictionary::learned(Basis::Pca, grid, frames.view(), Some(8), &seed).unwrap();
@@ -390,7 +391,7 @@ fn the_linear_estimate_trusts_training_alone_when_noise_drowns_the_measurements(
 
 #[test]
 fn a_frame_is_reconstructed_the_same_in_every_batch() {
-    let (grid, frames) = ((8, 8), wavy_frames(70, 64));
+    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(70, 64));
     let seed = Seed::new(8);
     let projection = Projection::new(Ensemble::Gaussian, grid, 24, &seed).unwrap();
     for basis in [Basis::Dct, Basis::Pca] {
@@ -417,7 +418,7 @@ fn a_frame_is_reconstructed_the_same_in_every_batch() {
 
 #[test]
 fn limits_out_of_range_and_untrained_dictionaries_are_refused() {
-    let grid = (4, 4);
+    let grid = ImageShape { ny: 4, nx: 4 };
     let projection = Projection::new(Ensemble::Gaussian, grid, 8, &Seed::new(1)).unwrap();
     let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();

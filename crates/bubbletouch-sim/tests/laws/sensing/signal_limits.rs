@@ -5,6 +5,7 @@ use crate::standard_errors::assert_expected;
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::sensing::{Ensemble, Projection};
 use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, SensorError, SignalStep, SignalWorkspace};
+use bubbletouch_sim::world::ImageShape;
 use bubbletouch_sim::world::{Grid, Patch, Taxel};
 use ndarray::Array2;
 use rand::Rng;
@@ -158,7 +159,13 @@ fn as_many_measurements_as_taxels_lose_nothing() {
         let n = side * side;
         let frame = Array2::from_shape_fn((1, n), |(_, i)| 5e-3 * (1.3 * i as f64).sin().max(0.0));
         for ensemble in ENSEMBLES {
-            let projection = Projection::new(ensemble, (side, side), n, &Seed::new(4)).unwrap();
+            let projection = Projection::new(
+                ensemble,
+                ImageShape { ny: side, nx: side },
+                n,
+                &Seed::new(4),
+            )
+            .unwrap();
             let measured = projection.measure(frame.view());
             let back = solve(&projection.matrix(), measured.row(0).as_slice().unwrap());
             // Blocks of 32 taxels are padded with zeros; only as many of their coefficients as there are taxels are kept.
@@ -186,7 +193,13 @@ fn a_single_measurement_is_its_row_of_the_matrix_and_none_is_refused() {
         let n = side * side;
         let frame = Array2::from_shape_fn((1, n), |(_, i)| 5e-3 * (0.7 * i as f64).sin().max(0.0));
         for ensemble in ENSEMBLES {
-            let projection = Projection::new(ensemble, (side, side), 1, &Seed::new(4)).unwrap();
+            let projection = Projection::new(
+                ensemble,
+                ImageShape { ny: side, nx: side },
+                1,
+                &Seed::new(4),
+            )
+            .unwrap();
             let measured = projection.measure(frame.view());
             let matrix = projection.matrix();
             assert_eq!(
@@ -207,7 +220,13 @@ fn a_single_measurement_is_its_row_of_the_matrix_and_none_is_refused() {
                     "the mean of the array"
                 );
             }
-            let error = Projection::new(ensemble, (side, side), 0, &Seed::new(4)).unwrap_err();
+            let error = Projection::new(
+                ensemble,
+                ImageShape { ny: side, nx: side },
+                0,
+                &Seed::new(4),
+            )
+            .unwrap_err();
             assert!(
                 error.to_string().starts_with("number of measurements: 0"),
                 "{error}"

@@ -1,6 +1,7 @@
 //! Description of an array layout, with the functions that create and project its taxels.
 
 use crate::error::Result;
+use crate::world::ImageShape;
 use crate::world::{Grid, Layout};
 use glam::{DVec2, DVec3};
 
@@ -11,7 +12,7 @@ pub struct LayoutAbout {
     /// Function that creates the taxels on the area of a square grid; the second argument is the radius of curvature, metres.
     pub taxels: fn(&Grid, f64) -> Result<Layout>,
     /// Function that returns the numbers of rows and columns; `None` if taxels are not numbered row by row.
-    pub sides: fn(&Grid) -> Option<(usize, usize)>,
+    pub sides: fn(&Grid) -> Option<ImageShape>,
     /// Limits of the curvature; `None` for a flat layout.
     pub curved: Option<Curved>,
     /// Distance between neighbouring taxels, in pitches; `None` if the distance is about one pitch.

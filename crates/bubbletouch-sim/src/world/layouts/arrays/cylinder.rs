@@ -7,7 +7,7 @@ use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::PI;
 
 pub const ABOUT: LayoutAbout = LayoutAbout {
-    sides: |grid| Some((grid.ny, grid.nx)),
+    sides: |grid| Some(grid.shape()),
     is_image: true,
     curved: Some(Curved {
         least_radius: |side| side / PI,

@@ -9,7 +9,7 @@ use crate::world::Layout;
 use glam::DVec3;
 
 pub const ABOUT: LayoutAbout = LayoutAbout {
-    sides: |grid| Some((grid.ny, grid.nx)),
+    sides: |grid| Some(grid.shape()),
     widest_pitches: 2.0,
     ..LayoutAbout::new("foveated grid", |grid, _| {
         let place = |index: usize, n: usize| {

@@ -11,6 +11,7 @@ mod about;
 mod lattice;
 
 use crate::error::{Error, Result};
+use crate::world::ImageShape;
 use crate::world::{Grid, Layout};
 use about::LayoutAbout;
 use glam::{DVec2, DVec3};
@@ -84,7 +85,7 @@ impl ArrayLayout {
     }
 
     /// Returns the numbers of rows and columns if taxels are numbered row by row, else `None`.
-    pub fn sides(self, grid: &Grid) -> Option<(usize, usize)> {
+    pub fn sides(self, grid: &Grid) -> Option<ImageShape> {
         (self.about().sides)(grid)
     }
 }
