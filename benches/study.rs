@@ -45,7 +45,7 @@ fn name(number: usize) -> String {
 
 /// Lists the work items.
 fn nothing_items() -> Vec<WorkItem> {
-    let item = |n| WorkItem::new(name(n), n);
+    let item = |n| WorkItem::of(name(n), n, &n);
     (0..N_ITEMS).map(item).collect()
 }
 

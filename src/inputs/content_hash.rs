@@ -49,7 +49,9 @@ pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
     let digits = Sha256::digest(bytes).into_iter();
     let digits = digits.flat_map(|byte| [byte >> 4, byte & 0xf]);
     let digits = digits.map(|digit| char::from_digit(digit.into(), 16));
-    digits.map(|digit| digit.expect("a half of a byte")).collect()
+    digits
+        .map(|digit| digit.expect("a half of a byte"))
+        .collect()
 }
 
 /// Number of hexadecimal digits of an identity. With fewer digits, two inputs may get equal identities.

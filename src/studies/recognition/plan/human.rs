@@ -39,7 +39,7 @@ impl HumanTouchSpec {
 
 impl Check<'_> {
     /// Checks the table `[human_touch]` of a study. A study has either objects or human touches; human touches exclude all keys that need objects.
-    pub fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
+    pub(crate) fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
         let Some(human) = &spec.human_touch else {
             if spec.places_objects() && spec.touches == TouchesSpec::default() {
                 let allowed = "a table [touches]: how the objects are touched";

@@ -13,18 +13,9 @@ use crate::studies::recognition::spec::{
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;
 
-/// Pairs of keys that exclude each other.
-pub(crate) const ONE_OF: [[&str; 2]; 5] = [
-    ["skin.size_mm", "skin.taxels"],
-    ["sensing.ratio", "sensing.measurements"],
-    ["recognition.c", "recognition.c_grid"],
-    ["recognition.gamma", "recognition.gamma_grid"],
-    ["recognition.test_fraction", "recognition.folds"],
-];
-
 impl Check<'_> {
     /// Checks that `[sensing]` contains either a compression ratio or a number of measurements. The number may not exceed the number of taxels of any array.
-    pub fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
+    pub(crate) fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
         self.table("sensing", sensing)?;
         let ratios = sensing.ratio.iter().flat_map(Axis::values);
         let ratios = ratios.map(|ratio| ("sensing.ratio", ratio));
@@ -70,7 +61,7 @@ impl Check<'_> {
     }
 
     /// Checks the key `sensing.selection`: an ensemble must select taxels.
-    pub fn selection(&self, sensing: &SensingSpec) -> Result<()> {
+    pub(crate) fn selection(&self, sensing: &SensingSpec) -> Result<()> {
         let ensembles = sensing.ensemble.values();
         let mut methods = ensembles
             .iter()
@@ -100,7 +91,7 @@ impl Check<'_> {
     }
 
     /// Checks `[recognition]`: keys must be in range, must not contradict each other, and must have an effect.
-    pub fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
+    pub(crate) fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
         let mut changed = self.table("recognition", recognition)?;
         changed.retain(|name, value| !key(&format!("recognition.{name}")).is_usual(value));
         self.parameters(recognition, &changed)?;
@@ -176,7 +167,11 @@ impl Check<'_> {
     }
 
     /// Checks that each taxel reads a single value if a study uses image features.
-    pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
+    pub(crate) fn images(
+        &self,
+        recognition: &RecognitionSpec,
+        arrays: &[TaxelArray],
+    ) -> Result<()> {
         let mut features = recognition.all_features().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
             return Ok(());
@@ -208,7 +203,7 @@ impl Check<'_> {
     }
 
     /// Checks the key `temporal_features`; it is not allowed if it requires more frames than a touch has.
-    pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
+    pub(crate) fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
         for value in recognition.temporal_features.iter().flat_map(Axis::values) {
             if let TemporalFeatures::Stacked(k) = value
@@ -226,7 +221,7 @@ impl Check<'_> {
     }
 
     /// Checks a split that is defined by poses; no other key may define the split in addition.
-    pub fn split(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn split(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         if recognition.split == PoseSplit::Random {
             return Ok(());
@@ -247,7 +242,7 @@ impl Check<'_> {
 
     /// Checks the key `next_touch`, which names the rule that chooses the touches of a decision. The policy requires several touches per decision, and poses
     /// that a robot can command for any object.
-    pub fn next_touch(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn next_touch(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         let Some(chosen) = recognition.chosen_next().next() else {
             return Ok(());
@@ -266,7 +261,7 @@ impl Check<'_> {
     }
 
     /// Checks that the number of trials is a multiple of the number of folds.
-    pub fn folds(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn folds(&self, spec: &StudySpec) -> Result<()> {
         match spec.recognition.folds {
             Some(k) if !spec.trials.is_multiple_of(k) => {
                 let allowed = format!("a multiple of recognition.folds = {k}");

@@ -39,7 +39,11 @@ impl RecordedSpec {
 
 impl Check<'_> {
     /// Checks the table `[recorded]` and returns the array with which the frames were recorded. Keys that describe simulated touches are not allowed.
-    pub fn recorded(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<Vec<TaxelArray>> {
+    pub(crate) fn recorded(
+        &self,
+        recorded: &RecordedSpec,
+        spec: &StudySpec,
+    ) -> Result<Vec<TaxelArray>> {
         if spec.objects != ObjectsSpec::default()
             || spec.touches != TouchesSpec::default()
             || spec.human_touch.is_some()

@@ -69,7 +69,7 @@ impl Check<'_> {
     }
 
     /// Checks that a layout of taxels has all required keys and no unsupported keys.
-    pub fn layout(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn layout(&self, spec: &StudySpec) -> Result<()> {
         let radius = spec.skin.curvature_radius_mm;
         let layout = spec.skin.layout.unwrap_or_default();
         let (key, given, allowed) = match radius {
@@ -119,7 +119,7 @@ impl Check<'_> {
     }
 
     /// Checks that all arrays are square grids, and returns them.
-    pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
+    pub(crate) fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         let allowed = "no such key: only studies of recognition have other layouts than grids";
         self.absent(("skin", skin), &["layout", "curvature_radius_mm"], allowed)?;
         let of_shear = ["sensed", "friction", "shear_stiffness_n_per_m"];
@@ -161,7 +161,7 @@ impl Check<'_> {
     }
 
     /// Returns the placement (distribution of touch poses) in SI units.
-    pub fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
+    pub(crate) fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
         self.table("touches", touches)?;
         let degree = std::f64::consts::PI / 180.0;
         let spread = |axis: TouchAxis, spread, (ending, unit)| {

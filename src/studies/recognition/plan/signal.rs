@@ -90,7 +90,7 @@ impl Check<'_> {
     }
 
     /// Checks the key `test_sensor`: another skin for test touches requires a sensor error that differs between skins.
-    pub fn check_test_sensor(&self, signal: &SignalSpec) -> Result<()> {
+    pub(crate) fn check_test_sensor(&self, signal: &SignalSpec) -> Result<()> {
         let is_of_skin =
             |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
         let mut skins = signal.test_sensor.iter().flat_map(Axis::values);

@@ -35,7 +35,7 @@ impl Check<'_> {
     ///
     /// # Errors
     /// If a key cannot differ for test touches or is out of its range. If a taxel of the test touches has no counterpart in training touches.
-    pub fn tested(&self, plan: &Plan) -> Result<Option<Arc<Plan>>> {
+    pub(crate) fn tested(&self, plan: &Plan) -> Result<Option<Arc<Plan>>> {
         let spec = &plan.spec;
         if spec.test.is_empty() {
             return Ok(None);

@@ -4,7 +4,6 @@ use crate::inputs::keys::{AxisPlace, find};
 use crate::inputs::range::Range::{self, Between};
 use crate::inputs::toml_value::{is_at, table_of};
 use crate::studies::prelude::*;
-use crate::studies::recognition::plan::ONE_OF;
 use serde::Serialize;
 
 /// Maximum number of trials of a study, because the splits of all trials are kept in memory.
@@ -29,6 +28,15 @@ pub(super) const OVER_TIME: &[(&str, &str)] = &[
     ("summarised", "moments and course"),
 ];
 pub(super) const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
+
+/// Pairs of keys that exclude each other.
+const ONE_OF: [[&str; 2]; 5] = [
+    ["skin.size_mm", "skin.taxels"],
+    ["sensing.ratio", "sensing.measurements"],
+    ["recognition.c", "recognition.c_grid"],
+    ["recognition.gamma", "recognition.gamma_grid"],
+    ["recognition.test_fraction", "recognition.folds"],
+];
 
 /// Returns the descriptions of all keys of a recognition study.
 ///
@@ -62,7 +70,7 @@ pub(crate) fn key(path: &str) -> &'static KeyAbout {
 
 impl Check<'_> {
     /// Checks the keys of a table of a recognition study; returns the keys that the table contains.
-    pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
+    pub(crate) fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
         let given = self.keys(name, table, recognition_keys())?;
         let inner = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
         for [first, second] in ONE_OF {
@@ -78,7 +86,7 @@ impl Check<'_> {
     }
 
     /// Checks that none of the named keys of a table is given, unless its value has the effect of the absent key.
-    pub fn absent(
+    pub(crate) fn absent(
         &self,
         (name, table): (&str, &impl Serialize),
         keys: &[&str],
@@ -94,7 +102,7 @@ impl Check<'_> {
     }
 
     /// Checks and returns the value of a numeric key of recognition studies.
-    pub fn number(&self, path: &str, value: f64) -> Result<f64> {
+    pub(crate) fn number(&self, path: &str, value: f64) -> Result<f64> {
         let range = key(path).range;
         match range.contains(value) {
             true => Ok(value),
