@@ -1,6 +1,7 @@
 //! Recognition studies, in which classifiers recognise objects from touches.
 //!
-//! Data flow: each stage is a folder, and a stage imports only from stages above it in this table.
+//! Data flow: each stage is a folder, and a stage imports only from stages above it in this table. A stage is imported from its folder: `plan::Plan`. Names that
+//! most stages use come from the prelude of all kinds of studies.
 //!
 //! | stage | in → out |
 //! |---|---|

@@ -37,7 +37,7 @@ impl Taxel {
 }
 
 /// Shape of an image of taxels: numbers of rows and columns. The values of an image are listed row by row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 pub struct ImageShape {
     /// Number of rows, along patch y.
     pub ny: usize,

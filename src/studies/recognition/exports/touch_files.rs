@@ -422,15 +422,8 @@ fn pressed<'a>(
     workspace: &mut ArrayWorkspace,
 ) -> Reading<'a> {
     let pose = touch.patch_from_object(&rests[touch.rest]);
-    let mut frames = Vec::new();
-    let mut contact = None;
-    for frame in 1..=n_frames {
-        let part = frame as f64 / n_frames as f64;
-        contact = press.touch(pose, (touch.depth, part), workspace);
-        let start = frames.len();
-        frames.resize(start + press.n_values(), 0.0);
-        press.write_values(workspace, &mut frames[start..]);
-    }
+    let mut frames = Array2::zeros((n_frames, press.n_values()));
+    let contact = press.write_frames(pose, touch.depth, frames.view_mut(), workspace);
     let pose = press.end(pose, contact);
     Reading {
         row: TouchRow {
@@ -447,7 +440,7 @@ fn pressed<'a>(
             n_touched: contact.map_or(0, |c| c.n_touched),
             n_saturated: contact.map_or(0, |c| c.n_saturated),
         },
-        frames,
+        frames: frames.into_iter().collect(),
         pose: pose.to_array(),
         depth: touch.depth,
     }

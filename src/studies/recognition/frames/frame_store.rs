@@ -91,11 +91,6 @@ fn block(n_frames: usize) -> usize {
     (BLOCK / n_frames.max(1)).max(1)
 }
 
-/// Returns the number of touches to simulate before their frames are stored; `n_frames` is the number of frames per touch.
-fn made_at_once(n_frames: usize) -> usize {
-    block(n_frames) * BLOCKS_A_THREAD * rayon::current_num_threads()
-}
-
 impl Frames {
     /// Simulates the frames of touches on all threads, each of which has a workspace; results do not depend on the number of threads. For each touch, `press`
     /// writes F frames of n_values values. The function `press` returns whether the touch missed the object, and whether it saturated a taxel at its deepest
@@ -108,7 +103,8 @@ impl Frames {
         progress: &dyn Progress,
     ) {
         let shape = (self.facts.n_frames, self.n_values);
-        for touches in touches.chunks(made_at_once(shape.0)) {
+        let at_once = block(shape.0) * BLOCKS_A_THREAD * rayon::current_num_threads();
+        for touches in touches.chunks(at_once) {
             let blocks = touches.par_chunks(block(shape.0));
             let made = blocks.map_init(&workspace, |workspace, touches: &[T]| {
                 let start = Instant::now();

@@ -81,6 +81,24 @@ impl ArrayPress<'_> {
         pressed.expect(CHECKED)
     }
 
+    /// Simulates the frames of a touch, shape (F, n_values), which are read at even parts of its path. Returns the contact at its end.
+    pub(crate) fn write_frames(
+        &self,
+        pose: Pose,
+        depth: f64,
+        mut rows: ArrayViewMut2<f32>,
+        workspace: &mut ArrayWorkspace,
+    ) -> Option<Contact> {
+        let n_frames = rows.nrows();
+        let mut last = None;
+        for (frame, row) in rows.outer_iter_mut().enumerate() {
+            let part = (frame + 1) as f64 / n_frames as f64;
+            last = self.touch(pose, (depth, part), workspace);
+            self.write_values(workspace, row.into_slice().expect("rows are whole"));
+        }
+        last
+    }
+
     /// Returns the pose of the object, in the patch frame, at the end of a touch that starts at `pose`.
     pub fn end(&self, mut pose: Pose, contact: Option<Contact>) -> Pose {
         if let Some(contact) = contact {
@@ -132,18 +150,12 @@ pub(crate) fn press_objects(
     } in touched
     {
         let press = array.press(&object.model);
-        let press =
-            |touch: &&Touch, workspace: &mut ArrayWorkspace, mut rows: ArrayViewMut2<f32>| {
-                let pose = touch.patch_from_object(&rests[touch.rest]);
-                let mut last = None;
-                for (frame, row) in rows.outer_iter_mut().enumerate() {
-                    let part = (frame + 1) as f64 / n_frames as f64;
-                    last = press.touch(pose, (touch.depth, part), workspace);
-                    press.write_values(workspace, row.into_slice().expect("rows are whole"));
-                }
-                let reads_any = |count: fn(Contact) -> usize| last.is_some_and(|c| count(c) > 0);
-                (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
-            };
+        let press = |touch: &&Touch, workspace: &mut ArrayWorkspace, rows: ArrayViewMut2<f32>| {
+            let pose = touch.patch_from_object(&rests[touch.rest]);
+            let last = press.write_frames(pose, touch.depth, rows, workspace);
+            let reads_any = |count: fn(Contact) -> usize| last.is_some_and(|c| count(c) > 0);
+            (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
+        };
         let step = touches.len().div_ceil(n_touches).max(1);
         let touches: Vec<&Touch> = touches.iter().step_by(step).collect();
         frames.make(&touches, ArrayWorkspace::default, press, progress);

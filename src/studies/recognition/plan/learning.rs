@@ -13,15 +13,6 @@ use crate::studies::recognition::spec::{
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;
 
-/// Pairs of keys that exclude each other.
-pub(crate) const ONE_OF: [[&str; 2]; 5] = [
-    ["skin.size_mm", "skin.taxels"],
-    ["sensing.ratio", "sensing.measurements"],
-    ["recognition.c", "recognition.c_grid"],
-    ["recognition.gamma", "recognition.gamma_grid"],
-    ["recognition.test_fraction", "recognition.folds"],
-];
-
 impl Check<'_> {
     /// Checks that `[sensing]` contains either a compression ratio or a number of measurements. The number may not exceed the number of taxels of any array.
     pub(crate) fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {

@@ -14,7 +14,6 @@ pub mod taxel_array;
 pub mod tested;
 pub(crate) mod unused_keys;
 
-pub(crate) use self::learning::*;
 pub use self::{
     group::*, listed_taxels::*, pose_groups::*, sensed::*, signal::*, study_plan::*, taxel_array::*,
 };

@@ -47,7 +47,7 @@ pub(crate) fn of_channel(named: &Seed, channel: usize) -> Seed {
 
 impl Check<'_> {
     /// Checks the keys of skins that read shear forces and of touches that slide.
-    pub fn shear(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn shear(&self, spec: &StudySpec) -> Result<()> {
         self.of_sensed(spec)?;
         let touches = &spec.touches;
         let slides = touches.slide_mm.is_some_and(|slide| slide > 0.0);
@@ -74,7 +74,7 @@ impl Check<'_> {
     }
 
     /// Returns the arrays of a study, each with its measured quantity and its slide along the object.
-    pub fn touching_arrays(
+    pub(crate) fn touching_arrays(
         &self,
         skin: &SkinSpec,
         touches: &TouchesSpec,

@@ -211,7 +211,7 @@ pub(crate) fn projection_of(projections_per_split: Option<usize>, trial: usize) 
 
 impl Check<'_> {
     /// Checks that the number of trials is a multiple of the key `projections_per_split`.
-    pub fn repeats(&self, spec: &StudySpec) -> Result<()> {
+    pub(crate) fn repeats(&self, spec: &StudySpec) -> Result<()> {
         const KEY: &str = "projections_per_split";
         let Some(n_projections) = spec.projections_per_split else {
             return Ok(());

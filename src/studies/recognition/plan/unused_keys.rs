@@ -20,172 +20,76 @@ struct KeyUse {
     allowed: &'static str,
 }
 
+/// Declares the keys that may have no effect: keys that act under one condition, the keys that it depends on, the reason why they do not act, and what is allowed.
+macro_rules! key_uses {
+    ($([$($key:literal),+] beside [$($beside:literal),*] if $has_effect:expr => $reason:literal, $allowed:expr;)*) => {
+        const USES: &[KeyUse] = &[$(KeyUse {
+            keys: &[$($key),+],
+            has_effect: $has_effect,
+            beside: &[$($beside),*],
+            reason: $reason,
+            allowed: $allowed,
+        }),*];
+    };
+}
+
 const OF_FORCE: &str = "skin.sensed = \"force\" or \"force\" among signal.steps beside it";
 const DRAWN: &str = "no such key, or { uniform = [low, high] } of such a key of [touches]";
 
-/// Keys that may have no effect.
-const USES: [KeyUse; 19] = [
-    KeyUse {
-        keys: &["touches.slide_deg"],
-        has_effect: |plan| slides(&plan.spec),
-        beside: &["touches.slide_mm"],
-        reason: "touches do not slide",
-        allowed: "touches.slide_mm above 0 beside it, or no such key",
-    },
-    KeyUse {
-        keys: &["skin.curvature_radius_mm"],
-        has_effect: |plan| plan.spec.skin.layout.unwrap_or_default().is_curved(),
-        beside: &["skin.layout"],
-        reason: "the layout is flat",
-        allowed: "no such key, or a curved skin.layout beside it",
-    },
-    KeyUse {
-        keys: &["skin.damping_n_s_per_m"],
-        has_effect: reads_force,
-        beside: &["skin.sensed", "signal.steps"],
-        reason: "no force is read",
-        allowed: OF_FORCE,
-    },
-    KeyUse {
-        keys: &["skin.damping_n_s_per_m"],
-        has_effect: |plan| plan.speed > 0.0,
-        beside: &["touches.speed_mm_per_s", "recorded.speed_mm_per_s"],
-        reason: "every touch is read at rest",
-        allowed: "a touches.speed_mm_per_s above 0 beside it",
-    },
-    KeyUse {
-        keys: &["skin.friction", "skin.shear_stiffness_n_per_m"],
-        has_effect: reads_shear,
-        beside: &["skin.sensed"],
-        reason: "the skin reads no shear",
-        allowed: "skin.sensed = \"shear\" beside it, or no such key",
-    },
-    KeyUse {
-        keys: &["skin.friction", "skin.shear_stiffness_n_per_m"],
-        has_effect: |plan| is_recorded(plan) || rubs(&plan.spec),
-        beside: &["touches.slide_mm", "skin.layout"],
-        reason: "tips stay where they first touch",
-        allowed: "a touches.slide_mm above 0 or a curved skin.layout beside it",
-    },
-    KeyUse {
-        keys: &["skin.stiffness_n_per_m"],
-        has_effect: |plan| is_recorded(plan) || reads_force(plan),
-        beside: &["skin.sensed", "signal.steps"],
-        reason: "no force is read",
-        allowed: OF_FORCE,
-    },
-    KeyUse {
-        keys: &["touches.speed_mm_per_s"],
-        has_effect: |plan| {
-            let needs_motion = |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().needs_motion);
-            let mut steps = plan.spec.signal.steps.iter();
-            plan.spec.skin.damping_n_s_per_m > 0.0 || steps.any(needs_motion)
-        },
-        beside: &["skin.damping_n_s_per_m", "signal.steps"],
-        reason: "the skin has no damper and is not scanned",
-        allowed: "a skin.damping_n_s_per_m above 0 or \"scan\" among signal.steps beside it",
-    },
-    KeyUse {
-        keys: &["signal.combine"],
-        has_effect: |plan| {
-            let axes = plan.spec.signal.axes.given();
-            axes.filter(|(.., axis)| axis.values().len() > 1).count() > 1
-        },
-        beside: &[],
-        reason: "fewer than two keys of [signal] have several values",
-        allowed: "no such key, or two axes in [signal]",
-    },
-    KeyUse {
-        keys: &["sensing.ratio", "sensing.measurements"],
-        has_effect: |plan| {
-            let counts = plan.spec.sensing.measurements.iter().flat_map(Axis::values);
-            let is_all = |m: usize| plan.arrays.iter().all(|array| array.n_values() == m);
-            compresses(plan) || plan.spec.sensing.ratio.is_none() && counts.into_iter().all(is_all)
-        },
-        beside: &["sensing.ensemble"],
-        reason: "every ensemble of the study measures all values of a frame",
-        allowed: "no such key, or another sensing.ensemble beside it",
-    },
-    KeyUse {
-        keys: &[
-            "recognition.depth_window_full_scale",
-            "recognition.tilt_augmentation",
-        ],
-        has_effect: has_images,
-        beside: &["recognition.features"],
-        reason: "no features of the study are of images",
-        allowed: "features of images, or no such key",
-    },
-    KeyUse {
-        keys: &["recognition.tilt_augmentation_deg"],
-        has_effect: |plan| plan.spec.recognition.has_copies(),
-        beside: &["recognition.tilt_augmentation"],
-        reason: "no touch is copied",
-        allowed: "a recognition.tilt_augmentation above 0 beside it",
-    },
-    KeyUse {
-        keys: &["recognition.temporal_features"],
-        has_effect: |plan| {
-            let values = Axis::optional_values(&plan.spec.recognition.temporal_features);
-            values != [Some(TemporalFeatures::Deepest)] || plan.frames.iter().any(|&n| n > 1)
-        },
-        beside: &["touches.frames"],
-        reason: "every touch is one frame",
-        allowed: "touches.frames of 2 or more beside it, or no such key",
-    },
-    KeyUse {
-        keys: &["recognition.cv_folds"],
-        has_effect: |plan| plan.spec.recognition.is_open() || plan.spec.recognition.is_informed(),
-        beside: &[
-            "recognition.c_grid",
-            "recognition.gamma_grid",
-            "recognition.next_touch",
-        ],
-        reason: "nothing is chosen by folds",
-        allowed: "c_grid, gamma_grid or next_touch = \"most_informative\" beside it",
-    },
-    KeyUse {
-        keys: &["recognition.cv_touches"],
-        has_effect: |plan| plan.spec.recognition.is_open(),
-        beside: &["recognition.c_grid", "recognition.gamma_grid"],
-        reason: "nothing is chosen by folds",
-        allowed: "c_grid or gamma_grid beside it, or no such key",
-    },
-    KeyUse {
-        keys: &["recognition.readings_per_touch"],
-        has_effect: |plan| {
-            let mut conditions = plan.conditions().into_iter();
-            conditions.any(|condition| condition.is_random_by_reading())
-        },
-        beside: &["signal"],
-        reason: "all readings of a touch are equal",
-        allowed: "a signal.noise_std_full_scale above 0, drift or pink noise beside it",
-    },
-    KeyUse {
-        keys: &["recognition.next_touch"],
-        has_effect: |plan| {
-            let counts = plan.spec.recognition.touches_per_decision.values();
-            counts.into_iter().any(|k| k > 1)
-        },
-        beside: &["recognition.touches_per_decision"],
-        reason: "one touch has no next",
-        allowed: "a recognition.touches_per_decision of 2 or more beside it, or \"random\"",
-    },
-    KeyUse {
-        keys: &["recognition.group_by_mm"],
-        has_effect: |plan| groups_drawn(plan, |axis| !is_angle(axis)),
-        beside: &["touches", "recognition.group_by"],
-        reason: "no offset or depth that defines the groups is drawn",
-        allowed: DRAWN,
-    },
-    KeyUse {
-        keys: &["recognition.group_by_deg"],
-        has_effect: |plan| groups_drawn(plan, is_angle),
-        beside: &["touches", "recognition.group_by"],
-        reason: "no angle that defines the groups is drawn",
-        allowed: DRAWN,
-    },
-];
+key_uses! {
+    ["touches.slide_deg"] beside ["touches.slide_mm"] if |plan| slides(&plan.spec)
+        => "touches do not slide", "touches.slide_mm above 0 beside it, or no such key";
+    ["skin.curvature_radius_mm"] beside ["skin.layout"] if |plan| plan.spec.skin.layout.unwrap_or_default().is_curved()
+        => "the layout is flat", "no such key, or a curved skin.layout beside it";
+    ["skin.damping_n_s_per_m"] beside ["skin.sensed", "signal.steps"] if reads_force
+        => "no force is read", OF_FORCE;
+    ["skin.damping_n_s_per_m"] beside ["touches.speed_mm_per_s", "recorded.speed_mm_per_s"] if |plan| plan.speed > 0.0
+        => "every touch is read at rest", "a touches.speed_mm_per_s above 0 beside it";
+    ["skin.friction", "skin.shear_stiffness_n_per_m"] beside ["skin.sensed"] if reads_shear
+        => "the skin reads no shear", "skin.sensed = \"shear\" beside it, or no such key";
+    ["skin.friction", "skin.shear_stiffness_n_per_m"] beside ["touches.slide_mm", "skin.layout"] if |plan| is_recorded(plan) || rubs(&plan.spec)
+        => "tips stay where they first touch", "a touches.slide_mm above 0 or a curved skin.layout beside it";
+    ["skin.stiffness_n_per_m"] beside ["skin.sensed", "signal.steps"] if |plan| is_recorded(plan) || reads_force(plan)
+        => "no force is read", OF_FORCE;
+    ["touches.speed_mm_per_s"] beside ["skin.damping_n_s_per_m", "signal.steps"] if |plan| {
+        let needs_motion = |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().needs_motion);
+        let mut steps = plan.spec.signal.steps.iter();
+        plan.spec.skin.damping_n_s_per_m > 0.0 || steps.any(needs_motion)
+    } => "the skin has no damper and is not scanned", "a skin.damping_n_s_per_m above 0 or \"scan\" among signal.steps beside it";
+    ["signal.combine"] beside [] if |plan| {
+        let axes = plan.spec.signal.axes.given();
+        axes.filter(|(.., axis)| axis.values().len() > 1).count() > 1
+    } => "fewer than two keys of [signal] have several values", "no such key, or two axes in [signal]";
+    ["sensing.ratio", "sensing.measurements"] beside ["sensing.ensemble"] if |plan| {
+        let counts = plan.spec.sensing.measurements.iter().flat_map(Axis::values);
+        let is_all = |m: usize| plan.arrays.iter().all(|array| array.n_values() == m);
+        compresses(plan) || plan.spec.sensing.ratio.is_none() && counts.into_iter().all(is_all)
+    } => "every ensemble of the study measures all values of a frame", "no such key, or another sensing.ensemble beside it";
+    ["recognition.depth_window_full_scale", "recognition.tilt_augmentation"] beside ["recognition.features"] if has_images
+        => "no features of the study are of images", "features of images, or no such key";
+    ["recognition.tilt_augmentation_deg"] beside ["recognition.tilt_augmentation"] if |plan| plan.spec.recognition.has_copies()
+        => "no touch is copied", "a recognition.tilt_augmentation above 0 beside it";
+    ["recognition.temporal_features"] beside ["touches.frames"] if |plan| {
+        let values = Axis::optional_values(&plan.spec.recognition.temporal_features);
+        values != [Some(TemporalFeatures::Deepest)] || plan.frames.iter().any(|&n| n > 1)
+    } => "every touch is one frame", "touches.frames of 2 or more beside it, or no such key";
+    ["recognition.cv_folds"] beside ["recognition.c_grid", "recognition.gamma_grid", "recognition.next_touch"] if |plan| plan.spec.recognition.is_open() || plan.spec.recognition.is_informed()
+        => "nothing is chosen by folds", "c_grid, gamma_grid or next_touch = \"most_informative\" beside it";
+    ["recognition.cv_touches"] beside ["recognition.c_grid", "recognition.gamma_grid"] if |plan| plan.spec.recognition.is_open()
+        => "nothing is chosen by folds", "c_grid or gamma_grid beside it, or no such key";
+    ["recognition.readings_per_touch"] beside ["signal"] if |plan| {
+        let mut conditions = plan.conditions().into_iter();
+        conditions.any(|condition| condition.is_random_by_reading())
+    } => "all readings of a touch are equal", "a signal.noise_std_full_scale above 0, drift or pink noise beside it";
+    ["recognition.next_touch"] beside ["recognition.touches_per_decision"] if |plan| {
+        let counts = plan.spec.recognition.touches_per_decision.values();
+        counts.into_iter().any(|k| k > 1)
+    } => "one touch has no next", "a recognition.touches_per_decision of 2 or more beside it, or \"random\"";
+    ["recognition.group_by_mm"] beside ["touches", "recognition.group_by"] if |plan| groups_drawn(plan, |axis| !is_angle(axis))
+        => "no offset or depth that defines the groups is drawn", DRAWN;
+    ["recognition.group_by_deg"] beside ["touches", "recognition.group_by"] if |plan| groups_drawn(plan, is_angle)
+        => "no angle that defines the groups is drawn", DRAWN;
+}
 
 /// Returns whether the frames are recorded. Such a study may describe its skin completely.
 fn is_recorded(plan: &Plan) -> bool {

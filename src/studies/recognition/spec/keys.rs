@@ -4,7 +4,6 @@ use crate::inputs::keys::{AxisPlace, find};
 use crate::inputs::range::Range::{self, Between};
 use crate::inputs::toml_value::{is_at, table_of};
 use crate::studies::prelude::*;
-use crate::studies::recognition::plan::ONE_OF;
 use serde::Serialize;
 
 /// Maximum number of trials of a study, because the splits of all trials are kept in memory.
@@ -29,6 +28,15 @@ pub(super) const OVER_TIME: &[(&str, &str)] = &[
     ("summarised", "moments and course"),
 ];
 pub(super) const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
+
+/// Pairs of keys that exclude each other.
+const ONE_OF: [[&str; 2]; 5] = [
+    ["skin.size_mm", "skin.taxels"],
+    ["sensing.ratio", "sensing.measurements"],
+    ["recognition.c", "recognition.c_grid"],
+    ["recognition.gamma", "recognition.gamma_grid"],
+    ["recognition.test_fraction", "recognition.folds"],
+];
 
 /// Returns the descriptions of all keys of a recognition study.
 ///

@@ -16,7 +16,7 @@
 
 use crate::learning::data::split::Side;
 use crate::studies::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::cmp::Ordering;
 
 words! {
     /// Rule that selects the poses for testing and the poses for training.
@@ -149,32 +149,26 @@ impl PoseSplit {
             touch
                 .group(axes)
                 .map_err(|_| refused(format!("{words} spread uniformly")))?;
-            keys.push(axes.iter().map(|&axis| Value(touch.value(axis))).collect());
+            keys.push(
+                axes.iter()
+                    .map(|&axis| touch.value(axis))
+                    .collect::<Vec<f64>>(),
+            );
         }
-        let distinct: BTreeSet<&Vec<Value>> = keys.iter().collect();
-        let numbers: BTreeMap<&Vec<Value>, usize> = distinct.into_iter().zip(0..).collect();
-        match numbers.len() {
+        let by_size = |a: &Vec<f64>, b: &Vec<f64>| {
+            let mut orders = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
+            orders
+                .find(|order| order.is_ne())
+                .unwrap_or(Ordering::Equal)
+        };
+        let mut distinct = keys.clone();
+        distinct.sort_by(by_size);
+        distinct.dedup_by(|a, b| by_size(a, b).is_eq());
+        let place = |key: &Vec<f64>| distinct.partition_point(|other| by_size(other, key).is_lt());
+        match distinct.len() {
             0 | 1 => Err(refused(format!("one {words}"))),
-            n => Ok((keys.iter().map(|key| numbers[key]).collect(), n)),
+            n => Ok((keys.iter().map(place).collect(), n)),
         }
-    }
-}
-
-/// Listed value of a pose parameter, ordered by size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Value(f64);
-
-impl Eq for Value {}
-
-impl Ord for Value {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0)
-    }
-}
-
-impl PartialOrd for Value {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
     }
 }
 

@@ -274,6 +274,7 @@ mod tests {
     use super::*;
     use crate::inputs::sensor_errors::Strengths;
     use crate::learning::classifiers::foreign::Foreign;
+    use crate::world::ImageShape;
     use bubbletouch_sim::features::{Features, foreign};
 
     #[test]
@@ -285,7 +286,7 @@ mod tests {
         let rows = |version| {
             let own = foreign::Foreign::new("own_features", version).unwrap();
             identity(&RowInputs {
-                image_shapes: vec![(4, 4)],
+                image_shapes: vec![ImageShape { ny: 4, nx: 4 }],
                 measurements: 4,
                 frames: 1,
                 temporal_features: None,
