@@ -1,7 +1,7 @@
 //! Declarations of the keys of files: one declaration for each key.
 //!
 //! [`params!`](params) declares a table: for each key its meaning, type, default, range, role and place among the axes. The struct, its reader, the checks, the
-//! columns, the JSON Schema and the reference page follow from the declaration. [`words!`](words) declares an enum by its words, and [`variants!`](variants) a
+//! columns, the JSON Schema and the reference page follow from the declaration. [`words!`](words) declares an enum by its words, and `variants!` a
 //! value that has several forms.
 
 use crate::engine::axis::Axis;

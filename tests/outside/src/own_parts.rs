@@ -362,6 +362,6 @@ fn own_parts_of_recognition(program: &Program) -> Result<(), Box<dyn Error>> {
     let said = program.refuses("2", &run)?;
     assert!(said.contains("stripes@1"), "{said}");
     let said = program.refuses("none", &run)?;
-    assert!(said.contains("unknown variant `too_much`"), "{said}");
+    assert!(said.contains("unknown variant `nearest`"), "{said}");
     Ok(())
 }
