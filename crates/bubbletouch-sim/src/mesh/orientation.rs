@@ -8,7 +8,7 @@
 
 use super::crossings::winding;
 use super::welded::Joined;
-use super::{Bvh, Side, Triangle, TriangleMesh, Welded};
+use super::{Bvh, EdgeSide, Triangle, TriangleMesh, Welded};
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
 use std::collections::BTreeMap;
@@ -150,7 +150,7 @@ impl<'a> Parts<'a> {
     }
 
     /// Returns whether a side's triangle passes the edge forwards, after the triangle is turned if necessary.
-    fn is_forward(&self, side: &Side) -> bool {
+    fn is_forward(&self, side: &EdgeSide) -> bool {
         side.is_forward != self.is_turned[side.triangle as usize]
     }
 
@@ -159,7 +159,7 @@ impl<'a> Parts<'a> {
         // Triangles with a repeated corner have no edges of their own; they are parts that enclose nothing.
         let mut is_closed = vec![true; self.triangles.len()];
         for sides in self.welded.edges() {
-            let sign = |side: &Side| if self.is_forward(side) { 1 } else { -1 };
+            let sign = |side: &EdgeSide| if self.is_forward(side) { 1 } else { -1 };
             if sides.iter().map(sign).sum::<i32>() != 0 {
                 is_closed[self.part_of[sides[0].triangle as usize] as usize] = false;
             }
@@ -294,7 +294,7 @@ impl<'a> Parts<'a> {
         let bvh = Bvh::new(self.mesh);
         let size = bvh.bounds().size().length();
         let disagrees =
-            |sides: &[Side]| sides.len() == 2 && sides[0].is_forward == sides[1].is_forward;
+            |sides: &[EdgeSide]| sides.len() == 2 && sides[0].is_forward == sides[1].is_forward;
         let mut has_flipped = vec![false; self.triangles.len()];
         for sides in self.welded.edges().filter(|sides| disagrees(sides)) {
             has_flipped[self.part_of[sides[0].triangle as usize] as usize] = true;

@@ -38,7 +38,7 @@ use crate::table::{Column, Columns};
 use bubbletouch_sim::features::Features;
 use bubbletouch_svm::class_weight::ClassWeight;
 use bubbletouch_svm::scaling::Scaling;
-use bubbletouch_svm::{Multiclass, Solver};
+use bubbletouch_svm::{Multiclass, SvmSolver};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -148,7 +148,7 @@ params! {
         #[serde(skip_serializing_if = "is_default")]
         class_weight: ClassWeight = ClassWeight::default() => Any, Choice, Axes;
         /// Solver that trains SVMs: `smo` (default) or `coordinate_descent`.
-        solver: Solver = Solver::default() => Any, Choice, Axes;
+        solver: SvmSolver = SvmSolver::default() => Any, Choice, Axes;
         /// Scaling of the features, fitted to training rows: `standard` (default), `overall` or `none`.
         scaling: Scaling = Scaling::default() => Any, Choice, Axes;
         /// Axis: penalty C (positive) of classifiers with a penalty. Default: 1.
@@ -294,7 +294,7 @@ named!(
     Selection,
     Multiclass,
     ClassWeight,
-    Solver,
+    SvmSolver,
     Scaling
 );
 
