@@ -277,8 +277,7 @@ fn touch_to_answer(criterion: &mut Criterion) {
         let classifier = classifier
             .train(&set.training(None).unwrap(), &Seed::new(1))
             .unwrap();
-        let (mut press, mut scratch) =
-            (contact::Workspace::new(), SignalWorkspace::default());
+        let (mut press, mut scratch) = (contact::Workspace::new(), SignalWorkspace::default());
         let (mut workspace, mut frame) = (FeatureWorkspace::default(), vec![0.0; array.n_taxels()]);
         let mut row = Array2::zeros((1, join.n_values(array.shape())));
         let mut next = 0;
