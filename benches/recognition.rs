@@ -12,7 +12,7 @@ use bubbletouch::recognition::data::dataset::{Dataset, dataset};
 use bubbletouch::recognition::data::scaling::Scaling;
 use bubbletouch::recognition::data::split::stratified_k_fold;
 use bubbletouch::recognition::features::{
-    Cut, Features, ImageFeature, ImageFeatures, Join, Workspace,
+    Cut, FeatureWorkspace, Features, ImageFeature, ImageFeatures, Join,
 };
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose};
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
@@ -202,7 +202,8 @@ fn features(criterion: &mut Criterion) {
             nx: TAXELS,
         };
         let features = ImageFeatures::new(join, shape, 1.0, Cut::default());
-        let (mut workspace, mut out) = (Workspace::default(), vec![0.0; join.n_values(shape)]);
+        let (mut workspace, mut out) =
+            (FeatureWorkspace::default(), vec![0.0; join.n_values(shape)]);
         group.bench_function(BenchmarkId::new(join.to_string(), TAXELS), |bencher| {
             bencher.iter(|| features.write(&frame, &mut workspace, &mut out));
         });
@@ -277,7 +278,7 @@ fn touch_to_answer(criterion: &mut Criterion) {
             .train(&set.training(None).unwrap(), &Seed::new(1))
             .unwrap();
         let (mut press, mut scratch) = (contact::Workspace::new(), SignalWorkspace::default());
-        let (mut workspace, mut frame) = (Workspace::default(), vec![0.0; array.n_taxels()]);
+        let (mut workspace, mut frame) = (FeatureWorkspace::default(), vec![0.0; array.n_taxels()]);
         let mut row = Array2::zeros((1, join.n_values(array.shape())));
         let mut next = 0;
         let name = format!("{kind:?}, {multiclass:?}");

@@ -66,7 +66,7 @@ pub fn exception(error: Error) -> PyErr {
     match error {
         Error::Input { .. } => PyValueError::new_err(said),
         Error::Io { path, source, .. } => os_error(&path, &source, said),
-        Error::WorkItems { .. } => PyRuntimeError::new_err(said),
+        _ => PyRuntimeError::new_err(said),
     }
 }
 

@@ -17,7 +17,7 @@ use bubbletouch::recognition::statistics::grouped::{
 };
 use bubbletouch::recognition::svm::class_weight::ClassWeight;
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen};
-use bubbletouch::recognition::svm::{Multiclass, Solver};
+use bubbletouch::recognition::svm::{Multiclass, SvmSolver};
 use bubbletouch::recognition::{ClassifierKind, ModelFile};
 use bubbletouch::study::{
     CONFIDENCE, FeatureSet, KeyValue, NewRows, read_features, read_new_rows, write_npy, write_texts,
@@ -83,8 +83,8 @@ pub struct Args {
     #[arg(long, value_name = "HOW", value_parser = word::<ClassWeight>, help_heading = "Classifier")]
     class_weight: Option<ClassWeight>,
     /// Train an SVM by smo or coordinate_descent [default: smo]
-    #[arg(long, value_name = "NAME", value_parser = word::<Solver>, help_heading = "Classifier")]
-    solver: Option<Solver>,
+    #[arg(long, value_name = "NAME", value_parser = word::<SvmSolver>, help_heading = "Classifier")]
+    solver: Option<SvmSolver>,
     #[command(flatten)]
     parameters: ParameterOptions,
     /// Combine two-class SVMs by one_vs_one, one_vs_rest, … [default: one_vs_one]
@@ -156,7 +156,7 @@ struct Findings {
     /// Weights of the classes; `None` for classifiers without.
     class_weight: Option<ClassWeight>,
     /// Solver that trained the SVM; `None` for classifiers other than kernel SVMs.
-    solver: Option<Solver>,
+    solver: Option<SvmSolver>,
     /// Penalty C that was used; `None` for classifiers without C.
     c: Option<f64>,
     /// Result of the cross-validated choice of C and γ; `None` if both were given.

@@ -6,7 +6,7 @@ use crate::command::terminal::streams::say;
 use bubbletouch::Result;
 use bubbletouch::files::write_whole;
 use bubbletouch::objects::{Solid, SphereUnion, surface_error, write_spheres};
-use bubbletouch::packing::{PackingError, Spread, packing_error};
+use bubbletouch::packing::{DistanceStatistics, PackingError, packing_error};
 use bubbletouch::report::fit_picture::Original;
 use std::path::PathBuf;
 
@@ -64,7 +64,7 @@ fn describe_solid(solid: &Solid, spheres: &SphereUnion, tolerance: f64) -> Strin
 }
 
 fn describe(error: &PackingError) -> String {
-    let line = |spread: &Spread| {
+    let line = |spread: &DistanceStatistics| {
         let [mean, p95, max] = [spread.mean, spread.p95, spread.max].map(|length| length / MM);
         format!("mean {mean:.4}, 95 % {p95:.4}, max {max:.4} mm")
     };

@@ -1,7 +1,7 @@
 //! State of a scene at one time (frame), and interfaces of objects that receive frames.
 
 use crate::contact::Wrench;
-use crate::contact::equilibrium::{Equilibrium, Touch};
+use crate::contact::equilibrium::{Equilibrium, RigidContact};
 use crate::error::Result;
 use crate::geometry::Pose;
 use glam::DVec3;
@@ -16,7 +16,7 @@ pub struct Frame {
     /// Reading of each object, in the order of the plan.
     pub objects: Vec<ObjectReading>,
     /// Contacts of free objects with planes or with other objects. Planes and objects have their numbers in the plan.
-    pub touches: Vec<Touch>,
+    pub touches: Vec<RigidContact>,
 }
 
 /// Pose, deflections and forces of a patch of skin at one time.

@@ -7,7 +7,7 @@ use super::plan_patch::PlannedPatch;
 use super::skin_state::{OUT_OF_REACH, PlacedObjects, SkinState};
 use crate::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, Obstacle, Outcome, PlacedSkin,
-    TangentialSpring, TangentialSpringState, TaxelLoad, Touch, Touched,
+    RigidContact, TangentialSpring, TangentialSpringState, TaxelLoad, Touched,
 };
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::Result;
@@ -163,8 +163,8 @@ impl FreeObjects {
     }
 
     /// Returns the contacts of free objects with planes and with other objects, identified by their numbers in the scene.
-    pub fn touches(&self) -> impl Iterator<Item = Touch> {
-        self.balancer.touches().iter().map(|touch| Touch {
+    pub fn touches(&self) -> impl Iterator<Item = RigidContact> {
+        self.balancer.touches().iter().map(|touch| RigidContact {
             object: self.there[touch.object],
             other: match touch.other {
                 Touched::Obstacle(number, sphere) => {

@@ -8,7 +8,7 @@ use bubbletouch::recognition::data::scaling::Scaling;
 use bubbletouch::recognition::statistics::grouped::{
     GroupedTest, count_groups, interval_of_groups,
 };
-use bubbletouch::recognition::svm::{Multiclass, Solver};
+use bubbletouch::recognition::svm::{Multiclass, SvmSolver};
 use bubbletouch::recognition::{ClassifierKind, ModelFile};
 use bubbletouch::study::{KeyValue, write_texts};
 use ndarray::{Array1, Array2, Axis, array};
@@ -535,7 +535,7 @@ fn a_saved_classifier_predicts_what_it_predicted_before() {
     }
     classifiers.push(Classifier {
         multiclass: Multiclass::OneVsRest,
-        solver: Solver::CoordinateDescent,
+        solver: SvmSolver::CoordinateDescent,
         ..Classifier::new(ClassifierKind::LinearSvm)
     });
     for settings in classifiers {

@@ -1,7 +1,7 @@
 //! Image features in a study: their effect, their training data, and the inputs that they refuse.
 
 use crate::study::{Study, laid_out};
-use bubbletouch::recognition::features::{Cut, Features, ImageFeatures, Workspace};
+use bubbletouch::recognition::features::{Cut, FeatureWorkspace, Features, ImageFeatures};
 use bubbletouch::studies::recognition::charts::tables_of;
 use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
@@ -51,7 +51,7 @@ fn features_of_a_whole_frame_are_those_of_the_frame() {
     for (frame, row) in raw.outer_iter().zip(found.outer_iter()) {
         features.write(
             frame.as_slice().unwrap(),
-            &mut Workspace::default(),
+            &mut FeatureWorkspace::default(),
             &mut out,
         );
         assert_eq!(row.to_vec(), out);

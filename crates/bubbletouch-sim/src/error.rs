@@ -11,6 +11,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 ///
 /// A message has the form `<where>: <what was given>; <what is allowed>`.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// Invalid input. The command exits with code 2.
     #[error("{place}: {given}; {allowed}")]
@@ -32,6 +33,7 @@ pub enum Error {
         /// Error of the operating system.
         source: std::io::Error,
     },
+    #[doc(hidden)]
     /// Failure of some work items of a study; the results of all other work items are written. The command exits with code 1.
     #[error("{path}: {n_failed} of {n_all} work items failed; the file says why, and the same command tries them again{reason}", path = path.display(), reason = first_reason(first))]
     WorkItems {

@@ -20,10 +20,7 @@
 //! | module | contents |
 //! |---|---|
 //! | [`geometry`], [`random`], [`error`] | poses and boxes; named random streams; errors |
-//! | [`text`] | readers of numbers, names and TOML, whose errors contain the line |
 //! | [`statistics`] | quantiles, confidence intervals |
-//! | [`files`] | files that are complete or absent; paths in study files |
-//! | [`frame_coding`] | frames as bytes |
 //!
 //! # A touch
 //!
@@ -95,6 +92,7 @@
 #![warn(clippy::missing_errors_doc)]
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+#[doc(hidden)]
 pub mod audit;
 pub mod calibration;
 pub mod contact;
@@ -103,7 +101,9 @@ pub mod disjoint_sets;
 pub mod dynamics;
 pub mod error;
 pub mod features;
+#[doc(hidden)]
 pub mod files;
+#[doc(hidden)]
 pub mod frame_coding;
 pub mod geometry;
 pub mod mesh;
@@ -115,6 +115,7 @@ pub mod raster;
 pub mod sensing;
 pub mod signal;
 pub mod statistics;
+#[doc(hidden)]
 pub mod text;
 pub mod whole_body;
 pub mod world;

@@ -80,6 +80,7 @@ pub trait ClassModel: Debug + Send + Sync {
 /// Converts vote counts (one per row and class) to scores: `ln((votes + 1) / (total votes + n_classes))` (Laplace's rule of succession).
 ///
 /// A class without votes has a finite score; a score of −∞ would exclude the class in all further touches. Classes keep the order and the ties of their votes.
+#[doc(hidden)]
 pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     for mut row in votes.axis_iter_mut(Axis(0)) {
         let all = row.sum() + row.len() as f64;
@@ -89,6 +90,7 @@ pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
 }
 
 /// Returns the log-prior of each class: the logarithm of its fraction of the training rows.
+#[doc(hidden)]
 pub fn log_priors(labels: ArrayView1<usize>, classes: &[usize]) -> Array1<f64> {
     let share = |class: &usize| {
         let n_class = labels.iter().filter(|&label| label == class).count();

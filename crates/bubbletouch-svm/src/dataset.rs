@@ -23,6 +23,7 @@ pub fn dataset(features: Array2<f64>, labels: Array1<usize>) -> Result<Dataset> 
 ///
 /// # Errors
 /// If an index is beyond the last row.
+#[doc(hidden)]
 pub fn rows(data: &Dataset, indices: &[usize]) -> Result<Dataset> {
     if let Some(&row) = indices.iter().find(|&&row| row >= data.records.nrows()) {
         let last = data.records.nrows();
@@ -116,6 +117,7 @@ pub(crate) fn numbered<L: Label>(labels: ArrayView1<L>) -> (Vec<L>, Array1<usize
 ///
 /// # Errors
 /// If the features are empty, or one is NaN or infinite; the error names row and column.
+#[doc(hidden)]
 pub fn check_features(features: ArrayView2<f64>) -> Result<()> {
     let (n_rows, n_columns) = features.dim();
     if n_rows == 0 || n_columns == 0 {
@@ -149,6 +151,7 @@ pub fn check_features(features: ArrayView2<f64>) -> Result<()> {
 ///
 /// # Errors
 /// If a square overflows; the error names the row.
+#[doc(hidden)]
 pub fn squared_norms(features: ArrayView2<f64>) -> Result<Array1<f64>> {
     let norms = features.map_axis(Axis(1), |row| row.dot(&row));
     match norms.iter().position(|norm| !norm.is_finite()) {
@@ -163,6 +166,7 @@ pub fn squared_norms(features: ArrayView2<f64>) -> Result<Array1<f64>> {
 
 /// Returns whether all values are finite. The loop has no early exit, so that it runs in vector instructions.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+#[doc(hidden)]
 pub fn all_finite(values: &[f64]) -> bool {
     /// Bits of the exponent of an f64; all are 1 only in NaN and infinities.
     const EXPONENT: u64 = 0x7ff << 52;
@@ -177,6 +181,7 @@ pub fn all_finite(values: &[f64]) -> bool {
 ///
 /// # Errors
 /// If the number of labels differs from the number of rows.
+#[doc(hidden)]
 pub fn check_labels<L>(n_rows: usize, labels: ArrayView1<L>) -> Result<()> {
     if labels.len() == n_rows {
         return Ok(());
@@ -192,6 +197,7 @@ pub fn check_labels<L>(n_rows: usize, labels: ArrayView1<L>) -> Result<()> {
 ///
 /// # Errors
 /// If the number of columns differs from `width`, or a feature is NaN or infinite.
+#[doc(hidden)]
 pub fn check_width<D: Data<Elem = f64>>(features: &ArrayBase<D, Ix2>, width: usize) -> Result<()> {
     if features.ncols() != width {
         return Err(Error::input(
@@ -207,6 +213,7 @@ pub fn check_width<D: Data<Elem = f64>>(features: &ArrayBase<D, Ix2>, width: usi
 }
 
 /// Returns the distinct labels, ascending.
+#[doc(hidden)]
 pub fn distinct(labels: ArrayView1<usize>) -> Vec<usize> {
     let mut classes = labels.to_vec();
     classes.sort_unstable();
@@ -218,6 +225,7 @@ pub fn distinct(labels: ArrayView1<usize>) -> Vec<usize> {
 ///
 /// # Errors
 /// If the data are empty or have a single class, a feature is not finite, or the numbers of labels and rows differ.
+#[doc(hidden)]
 pub fn checked_classes(data: &Dataset) -> Result<Vec<usize>> {
     check_features(data.records.view())?;
     check_labels(data.records.nrows(), data.targets.view())?;
@@ -234,6 +242,7 @@ pub fn checked_classes(data: &Dataset) -> Result<Vec<usize>> {
 }
 
 /// Returns the position of each row's label in the ascending list `classes`, which contains all labels.
+#[doc(hidden)]
 pub fn positions(labels: ArrayView1<usize>, classes: &[usize]) -> Vec<usize> {
     labels
         .iter()

@@ -138,4 +138,4 @@ pub(crate) mod training;
 pub use binary_problem::BinaryProblem;
 pub use error::{Error, Result};
 pub use multiclass::Multiclass;
-pub use svm_params::{DEFAULT_MEMORY_BYTES, Solver, SvmParams};
+pub use svm_params::{DEFAULT_MEMORY_BYTES, SvmParams, SvmSolver};

@@ -22,6 +22,7 @@ use crate::linear_svm::LinearSvm;
 use crate::predict::svm_model::SvmModel;
 
 /// Version of the data. A change of the fields of a model needs another version, because older data cannot be read any more.
+#[doc(hidden)]
 pub const VERSION: u32 = 2;
 
 /// Checks the version of data that were read.

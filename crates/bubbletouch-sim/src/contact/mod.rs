@@ -58,14 +58,18 @@ mod workspace;
 mod wrench;
 
 pub use assigned_loads::{AssignedLoads, LoadRange, LoadedPatch, assign_loads};
-pub use damper::{DamperState, Relaxation, relaxation_factor};
+pub(crate) use damper::Relaxation;
+pub use damper::{DamperState, relaxation_factor};
 pub use friction::{ContactMode, ContactModeCounts, FrictionLoad, FrictionState, NormalForce};
-pub use grid::{Lines, Row};
+#[doc(hidden)]
+pub use grid::Lines;
+pub use grid::Row;
 pub use hold_force::{HeldForce, MovedObject};
 pub use instructions::Instructions;
 pub(crate) use instructions::for_instructions;
-pub use lanes_below::LanesBelow;
+pub(crate) use lanes_below::LanesBelow;
 pub use law::saturation_limit;
+#[doc(hidden)]
 pub use mesh::stopping_height;
 pub use point_loads::{
     CarriedLoad, LoadPart, LoadWorkspace, PointLoad, carry_loads, is_flat, share_friction,
@@ -77,7 +81,7 @@ pub use press::{
 };
 pub use press_summary::Contact;
 pub(crate) use root_search::{Sample, crossing};
-pub use simulate::{Recording, simulate};
+pub use simulate::{SimulatedRecording, simulate};
 pub use spring_load::{AxialLoad, SpringLoad, axial_load, spring_load};
 pub use taxel_contact::{GRAZING, TaxelContact};
 pub use tree::Approach;

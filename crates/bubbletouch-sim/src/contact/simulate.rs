@@ -11,7 +11,7 @@ use ndarray::{Array1, Array2, ArrayView1};
 
 /// Deflections and forces of a patch's taxels, recorded over time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Recording {
+pub struct SimulatedRecording {
     /// Time of each frame, seconds, shape (n_frames,).
     pub time: Array1<f64>,
     /// Deflections, metres, shape (n_frames, n_taxels).
@@ -37,10 +37,10 @@ pub fn simulate(
     world_from_objects: &[VelocityPlan],
     dt: f64,
     n_frames: usize,
-) -> Result<Recording> {
+) -> Result<SimulatedRecording> {
     positive("time step", dt, "s")?;
     let n_taxels = patch.n_taxels();
-    let mut recording = Recording {
+    let mut recording = SimulatedRecording {
         time: Array1::from_shape_fn(n_frames, |k| (k + 1) as f64 * dt),
         deflection: Array2::zeros((n_frames, n_taxels)),
         force: Array2::zeros((n_frames, n_taxels)),

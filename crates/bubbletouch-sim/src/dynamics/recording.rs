@@ -2,7 +2,7 @@
 
 use super::state::{Integrator, State};
 use super::system::System;
-use crate::contact::Recording;
+use crate::contact::SimulatedRecording;
 use crate::error::{Error, Result};
 use crate::text::in_range::positive;
 use ndarray::{Array1, Array2};
@@ -33,7 +33,7 @@ pub enum Divergence {
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicRecording {
     /// Frames of the skin. Deflections may be negative; forces act between object and taxels and include the forces at the end of the stroke.
-    pub recording: Recording,
+    pub recording: SimulatedRecording,
     /// Travel of the object in each frame, metres, shape (n_frames,).
     pub travel: Array1<f64>,
     /// Speed of the object in each frame, m/s, shape (n_frames,).
@@ -116,7 +116,7 @@ fn record(system: &System, kept: &[State]) -> DynamicRecording {
     let at_stroke = at_stroke.filter(|((_, taxel), d)| **d >= taxels.at(*taxel).stroke);
     let n_saturated = at_stroke.count();
     DynamicRecording {
-        recording: Recording {
+        recording: SimulatedRecording {
             time: kept.iter().map(|state| state.time).collect(),
             force: all(|state| &state.force),
             n_saturated,

@@ -11,7 +11,7 @@
 //!
 //! Source: Hu (1962), *Visual pattern recognition by moment invariants*, IRE Transactions on Information Theory 8, 179, section III.
 
-use super::feature::{Feature, FeatureAbout, Workspace};
+use super::feature::{Feature, FeatureAbout, FeatureWorkspace};
 use super::image::{Image, Touched};
 use crate::world::ImageShape;
 
@@ -28,7 +28,7 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
 struct Aligned;
 
 impl Feature for Aligned {
-    fn write(&self, image: &Image, _: &mut Workspace, out: &mut [f64]) {
+    fn write(&self, image: &Image, _: &mut FeatureWorkspace, out: &mut [f64]) {
         let (sine, cosine) = axis(image);
         let (x, y) = image.centroid;
         let (columns, rows) = (image.nx.div_ceil(STEP), image.ny.div_ceil(STEP));

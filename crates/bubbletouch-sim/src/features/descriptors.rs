@@ -16,7 +16,7 @@
 //! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179 (moments). Level sets and radial profiles are common in granulometry: Serra (1982), *Image
 //! Analysis and Mathematical Morphology*.
 
-use super::feature::{Feature, FeatureAbout, Workspace};
+use super::feature::{Feature, FeatureAbout, FeatureWorkspace};
 use super::image::{Image, Touched};
 use super::moments::{N_MOMENTS, Weight, moments};
 use multiversion::multiversion;
@@ -40,7 +40,7 @@ struct Descriptors {
 }
 
 impl Feature for Descriptors {
-    fn write(&self, image: &Image, _: &mut Workspace, out: &mut [f64]) {
+    fn write(&self, image: &Image, _: &mut FeatureWorkspace, out: &mut [f64]) {
         out.fill(0.0);
         let deepest = image.largest;
         if deepest == 0.0 {

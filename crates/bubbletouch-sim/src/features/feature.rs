@@ -20,12 +20,12 @@ pub struct FeatureAbout {
 /// Image feature, prepared for images of one size.
 pub trait Feature: Debug + Send + Sync {
     /// Writes the values of the feature for an image; zeros if no taxel is touched.
-    fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]);
+    fn write(&self, image: &Image, workspace: &mut FeatureWorkspace, out: &mut [f64]);
 }
 
 /// Scratch memory for image features: one instance per thread.
 #[derive(Clone, Debug, Default)]
-pub struct Workspace {
+pub struct FeatureWorkspace {
     pub(super) image: Image,
     pub(super) fourier: FourierWorkspace,
     pub(super) rings: RingWorkspace,

@@ -6,7 +6,7 @@
 //!
 //! Source: Casasent and Psaltis (1976), *Position, rotation, and scale invariant optical correlation*, Applied Optics 15, 1795.
 
-use super::feature::{Feature, FeatureAbout, Workspace};
+use super::feature::{Feature, FeatureAbout, FeatureWorkspace};
 use super::image::Image;
 use super::spectrum::Spectrum;
 use crate::world::ImageShape;
@@ -30,7 +30,7 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
 struct FourierMagnitude(Spectrum, usize);
 
 impl Feature for FourierMagnitude {
-    fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]) {
+    fn write(&self, image: &Image, workspace: &mut FeatureWorkspace, out: &mut [f64]) {
         let Self(spectrum, ny) = self;
         spectrum.transform(image, &mut workspace.fourier);
         let columns = workspace.fourier.magnitudes.chunks_exact(*ny);

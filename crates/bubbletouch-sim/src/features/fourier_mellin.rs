@@ -13,7 +13,7 @@
 //!
 //! Source: Sheng and Arsenault (1986), *Experiments on pattern recognition using invariant Fourier–Mellin descriptors*, JOSA A 3, 771.
 
-use super::feature::{Feature, FeatureAbout, Workspace};
+use super::feature::{Feature, FeatureAbout, FeatureWorkspace};
 use super::image::Image;
 use super::rings::{Rings, roots};
 use super::spectrum::Spectrum;
@@ -88,8 +88,8 @@ fn read((u, v): (f64, f64), spectrum: &Spectrum, ImageShape { ny, nx }: ImageSha
 }
 
 impl Feature for FourierMellin {
-    fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]) {
-        let Workspace { fourier, rings, .. } = workspace;
+    fn write(&self, image: &Image, workspace: &mut FeatureWorkspace, out: &mut [f64]) {
+        let FeatureWorkspace { fourier, rings, .. } = workspace;
         self.spectrum.transform(image, fourier);
         rings.values.resize(self.reads.len(), 0.0);
         write_reads(&self.reads, &fourier.magnitudes, &mut rings.values);

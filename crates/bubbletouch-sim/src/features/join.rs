@@ -1,7 +1,7 @@
 //! Joins: several image features, one after the other.
 
 use super::ImageFeature;
-use super::feature::{Feature, Workspace};
+use super::feature::{Feature, FeatureWorkspace};
 use super::image::Cut;
 use crate::error::{Error, Result};
 use crate::world::ImageShape;
@@ -98,7 +98,7 @@ impl ImageFeatures {
     ///
     /// # Panics
     /// If the length of `out` differs from the number of values of the join.
-    pub fn write(&self, frame: &[f64], workspace: &mut Workspace, out: &mut [f64]) {
+    pub fn write(&self, frame: &[f64], workspace: &mut FeatureWorkspace, out: &mut [f64]) {
         let mut image = std::mem::take(&mut workspace.image);
         image.read(frame, self.nx, self.cut);
         let mut out = out;

@@ -39,7 +39,7 @@ mod tilted;
 
 pub use chart::Chart;
 use feature::image_features;
-pub use feature::{Feature, FeatureAbout, Workspace};
+pub use feature::{Feature, FeatureAbout, FeatureWorkspace};
 pub use image::{Cut, Image, Touched};
 pub use join::{ImageFeatures, Join};
 pub use moments::{N_MOMENTS, Weight, moments};

@@ -10,7 +10,7 @@
 //!
 //! Source: the angular part of Sheng and Arsenault (1986), JOSA A 3, 771, without the transform before it.
 
-use super::feature::{Feature, FeatureAbout, Workspace};
+use super::feature::{Feature, FeatureAbout, FeatureWorkspace};
 use super::image::Image;
 use super::rings::{Rings, roots};
 use crate::world::ImageShape;
@@ -54,7 +54,7 @@ impl PolarHarmonics {
 }
 
 impl Feature for PolarHarmonics {
-    fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]) {
+    fn write(&self, image: &Image, workspace: &mut FeatureWorkspace, out: &mut [f64]) {
         image.write_at(&self.places, image.centroid, &mut workspace.rings.values);
         self.rings.write(&mut workspace.rings, out);
         roots(out);

@@ -33,7 +33,7 @@ fn written(join: Join, shape: ImageShape, frame: &[f64], level: f64) -> Vec<f64>
 fn cut_off(join: Join, shape: ImageShape, frame: &[f64], cut: Cut) -> Vec<f64> {
     let features = ImageFeatures::new(join, shape, 1.0, cut);
     let mut out = vec![f64::NAN; join.n_values(shape)];
-    features.write(frame, &mut Workspace::default(), &mut out);
+    features.write(frame, &mut FeatureWorkspace::default(), &mut out);
     out
 }
 

@@ -1,7 +1,7 @@
 //! Tree of bounding boxes over triangles, for nearest points and line intersections.
 
 use super::slab::{Slab, slabs};
-use super::{BoxTree, Feature, Triangle, TriangleMesh};
+use super::{BoxTree, MeshFeature, Triangle, TriangleMesh};
 use crate::geometry::Aabb;
 use glam::{DMat3, DVec3};
 use std::ops::Range;
@@ -28,12 +28,12 @@ pub struct Closest {
     /// Index of the triangle that contains the nearest point.
     pub triangle: usize,
     /// Part of the triangle that contains the nearest point.
-    pub feature: Feature,
+    pub feature: MeshFeature,
 }
 
 /// Intersection of a line and a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
+pub struct RayHit {
     /// Position of the intersection along the line, as a multiple of the line's direction vector.
     pub along: f64,
     /// Index of the intersected triangle in the mesh.
@@ -153,14 +153,14 @@ impl Bvh {
     }
 
     /// Returns the first triangle that the line `origin + along · direction` crosses, for values of `along` in a range.
-    pub fn first_hit(&self, origin: DVec3, direction: DVec3, range: Range<f64>) -> Option<Hit> {
+    pub fn first_hit(&self, origin: DVec3, direction: DVec3, range: Range<f64>) -> Option<RayHit> {
         let mut found = None;
         self.search(
             range.end,
             |bounds| bounds.entry(origin, direction, range.start),
             |triangle_number, triangle, limit| match triangle.crossed_at(origin, direction) {
                 Some(along) if along >= range.start && along < limit => {
-                    found = Some(Hit {
+                    found = Some(RayHit {
                         along,
                         triangle: triangle_number,
                     });
@@ -174,13 +174,13 @@ impl Bvh {
 
     /// Visits every triangle that the infinite line through `origin` along `direction` crosses, in the order of the tree. A line through an edge may cross
     /// both triangles or, due to rounding, none.
-    pub fn each_hit(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(Hit)) {
+    pub fn each_hit(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(RayHit)) {
         self.search(
             f64::INFINITY,
             |bounds| bounds.entry(origin, direction, f64::NEG_INFINITY),
             |triangle_number, triangle, limit| {
                 if let Some(along) = triangle.crossed_at(origin, direction) {
-                    visit(Hit {
+                    visit(RayHit {
                         along,
                         triangle: triangle_number,
                     });

@@ -13,7 +13,7 @@
 use super::crossings::winding;
 use super::pseudonormals::Pseudonormals;
 use super::welded::{Welded, has_equal};
-use super::{Bvh, Closest, Feature, TriangleMesh};
+use super::{Bvh, Closest, MeshFeature, TriangleMesh};
 use crate::disjoint_sets::DisjointSets;
 use glam::{DMat3, DVec3};
 use std::ops::Range;
@@ -265,13 +265,13 @@ impl MeshFeatures {
     pub fn part_of(&self, closest: &Closest) -> u32 {
         let face = &self.faces[closest.triangle];
         match closest.feature {
-            Feature::Face => self.face_number(closest.triangle),
+            MeshFeature::Face => self.face_number(closest.triangle),
             // A triangle with two equal corners has sides that are no edges.
-            Feature::Edge(k) => match face.edges[usize::from(k)] {
+            MeshFeature::Edge(k) => match face.edges[usize::from(k)] {
                 u32::MAX => face.corner_numbers[usize::from(k)],
                 edge => self.edge_number(edge as usize),
             },
-            Feature::Vertex(k) => face.corner_numbers[usize::from(k)],
+            MeshFeature::Vertex(k) => face.corner_numbers[usize::from(k)],
         }
     }
 
@@ -286,15 +286,15 @@ impl MeshFeatures {
         let of = &self.faces[closest.triangle].corner_numbers;
         let has = |k: usize| self.faces[triangle].corner_numbers.contains(&of[k % 3]);
         match closest.feature {
-            Feature::Face => triangle == closest.triangle,
-            Feature::Edge(k) => has(usize::from(k)) && has(usize::from(k) + 1),
-            Feature::Vertex(k) => has(usize::from(k)),
+            MeshFeature::Face => triangle == closest.triangle,
+            MeshFeature::Edge(k) => has(usize::from(k)) && has(usize::from(k) + 1),
+            MeshFeature::Vertex(k) => has(usize::from(k)),
         }
     }
 
     /// Returns whether a point is inside the solid of the mesh, given the nearest point of the mesh. `bvh` is the tree of the mesh's triangles.
     pub fn is_inside(&self, bvh: &Bvh, point: DVec3, closest: &Closest) -> bool {
-        let by_normal = match self.is_closed || closest.feature == Feature::Face {
+        let by_normal = match self.is_closed || closest.feature == MeshFeature::Face {
             true => self.normals.is_outside(point, closest),
             false => None,
         };

@@ -50,19 +50,20 @@ mod triangle_mesh;
 mod welded;
 mod winding;
 
+#[doc(hidden)]
 pub use box_tree::BoxTree;
-pub use bvh::{Bvh, Closest, Hit};
+pub use bvh::{Bvh, Closest, RayHit};
 pub(crate) use features::CREASE;
 pub use features::{Edge, Face, MeshFeatures};
-pub use formats::{
-    LengthUnit, MeshFormat, obj_group, read_collada, read_gltf, read_obj, read_ply, read_stl,
-};
+pub use formats::{LengthUnit, MeshFormat, obj_group};
+#[doc(hidden)]
+pub use formats::{read_collada, read_gltf, read_obj, read_ply, read_stl};
 pub use holes::{ClosedHoles, Hole};
 pub use mesh_file::MeshFile;
 pub use orientation::Orientation;
 pub use report::MeshReport;
 pub use size_limits::SizeLimits;
 pub use surface::Surface;
-pub use triangle::{Feature, Triangle};
+pub use triangle::{MeshFeature, Triangle};
 pub use triangle_mesh::TriangleMesh;
-pub use welded::{Side, Welded};
+pub use welded::{EdgeSide, Welded};

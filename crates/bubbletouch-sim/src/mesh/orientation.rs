@@ -7,7 +7,7 @@
 //! its cavity.
 
 use super::crossings::winding;
-use super::{Bvh, Side, Triangle, TriangleMesh, Welded};
+use super::{Bvh, EdgeSide, Triangle, TriangleMesh, Welded};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
@@ -152,7 +152,7 @@ impl<'a> Parts<'a> {
     }
 
     /// Returns whether a side's triangle passes the edge forwards, after the triangle is turned if necessary.
-    fn is_forward(&self, side: &Side) -> bool {
+    fn is_forward(&self, side: &EdgeSide) -> bool {
         side.is_forward != self.is_turned[side.triangle as usize]
     }
 
@@ -161,7 +161,7 @@ impl<'a> Parts<'a> {
         // Triangles with a repeated corner have no edges of their own; they are parts that enclose nothing.
         let mut is_closed = vec![true; self.triangles.len()];
         for sides in self.welded.edges() {
-            let sign = |side: &Side| if self.is_forward(side) { 1 } else { -1 };
+            let sign = |side: &EdgeSide| if self.is_forward(side) { 1 } else { -1 };
             if sides.iter().map(sign).sum::<i32>() != 0 {
                 is_closed[self.part_of[sides[0].triangle as usize] as usize] = false;
             }
@@ -296,7 +296,7 @@ impl<'a> Parts<'a> {
         let bvh = Bvh::new(self.mesh);
         let size = bvh.bounds().size().length();
         let disagrees =
-            |sides: &[Side]| sides.len() == 2 && sides[0].is_forward == sides[1].is_forward;
+            |sides: &[EdgeSide]| sides.len() == 2 && sides[0].is_forward == sides[1].is_forward;
         let mut has_flipped = vec![false; self.triangles.len()];
         for sides in self.welded.edges().filter(|sides| disagrees(sides)) {
             has_flipped[self.part_of[sides[0].triangle as usize] as usize] = true;

@@ -1,7 +1,7 @@
 //! Pseudonormals of faces, edges and corners, which distinguish inside from outside \[BA\].
 
 use super::welded::Welded;
-use super::{Closest, Feature, TriangleMesh};
+use super::{Closest, MeshFeature, TriangleMesh};
 use glam::DVec3;
 
 /// Smallest cosine between a pseudonormal and the direction to the query point for which the pseudonormal determines inside or outside. Below this cosine the
@@ -54,11 +54,11 @@ impl Pseudonormals {
     }
 
     /// Returns the pseudonormal of a face, edge or corner of a triangle. The vector points outwards; its length has no meaning.
-    pub fn at(&self, triangle: usize, feature: Feature) -> DVec3 {
+    pub fn at(&self, triangle: usize, feature: MeshFeature) -> DVec3 {
         match feature {
-            Feature::Face => self.faces[triangle],
-            Feature::Edge(k) => self.edges[triangle][usize::from(k)],
-            Feature::Vertex(k) => self.corners[triangle][usize::from(k)],
+            MeshFeature::Face => self.faces[triangle],
+            MeshFeature::Edge(k) => self.edges[triangle][usize::from(k)],
+            MeshFeature::Vertex(k) => self.corners[triangle][usize::from(k)],
         }
     }
 

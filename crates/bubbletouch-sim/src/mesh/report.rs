@@ -1,7 +1,7 @@
 //! Report of the faults and measures of a mesh, which itself stays unchanged.
 
 use super::welded::has_equal;
-use super::{Hole, Side, TriangleMesh, Welded};
+use super::{EdgeSide, Hole, TriangleMesh, Welded};
 use crate::disjoint_sets::DisjointSets;
 use crate::geometry::Aabb;
 use std::collections::BTreeMap;
@@ -52,7 +52,7 @@ impl MeshReport {
         used.sort_unstable();
         used.dedup();
         let is_flipped =
-            |sides: &&[Side]| sides.len() == 2 && sides[0].is_forward == sides[1].is_forward;
+            |sides: &&[EdgeSide]| sides.len() == 2 && sides[0].is_forward == sides[1].is_forward;
         Self {
             n_vertices: used.len(),
             n_triangles: mesh.n_triangles(),
@@ -192,7 +192,7 @@ fn n_duplicates(welded: &Welded) -> usize {
 fn n_pinched(welded: &Welded) -> usize {
     // One element per corner of each triangle: 3 · triangle + corner.
     let mut joined = DisjointSets::new(3 * welded.corners.len());
-    let at = |side: &Side, vertex: u32| {
+    let at = |side: &EdgeSide, vertex: u32| {
         let corners = welded.corners[side.triangle as usize];
         let place = corners.iter().position(|&corner| corner == vertex);
         3 * side.triangle as usize + place.unwrap_or(0)

@@ -9,7 +9,7 @@ pub struct Triangle(pub [DVec3; 3]);
 
 /// Part of a triangle on which a point lies: the face, an edge or a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Feature {
+pub enum MeshFeature {
     /// Interior of the triangle.
     Face,
     /// Edge from corner k (0, 1 or 2) to the next corner.
@@ -84,12 +84,12 @@ impl Triangle {
     }
 
     /// Returns the point of the triangle nearest to `point`, and the part of the triangle on which the nearest point lies.
-    pub fn closest(&self, point: DVec3) -> (DVec3, Feature) {
+    pub fn closest(&self, point: DVec3) -> (DVec3, MeshFeature) {
         let [a, b, c] = self.0;
         let n = self.double_area();
         let n2 = n.length_squared();
         let is_sliver = n2 <= (SLIVER * self.longest_edge_squared()).powi(2);
-        let mut nearest = (a, Feature::Face);
+        let mut nearest = (a, MeshFeature::Face);
         let mut best = f64::INFINITY;
         // The nearest point lies on an edge that has the point on its outer side, or in the interior if no edge has.
         for (k, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
@@ -106,7 +106,7 @@ impl Triangle {
         if best.is_finite() {
             return nearest;
         }
-        (point - n * ((point - a).dot(n) / n2), Feature::Face)
+        (point - n * ((point - a).dot(n) / n2), MeshFeature::Face)
     }
 
     /// Returns the position `along` at which the line `origin + along · direction` crosses the triangle. Returns `None` if the line misses the triangle or is
@@ -126,15 +126,15 @@ impl Triangle {
 }
 
 /// Returns the point nearest to `point` on the edge between two corners, where `k` is the index of the edge.
-fn closest_on_edge(from: DVec3, to: DVec3, k: u8, point: DVec3) -> (DVec3, Feature) {
+fn closest_on_edge(from: DVec3, to: DVec3, k: u8, point: DVec3) -> (DVec3, MeshFeature) {
     let along = to - from;
     let t = (point - from).dot(along);
     let length2 = along.length_squared();
     if t <= 0.0 {
-        return (from, Feature::Vertex(k));
+        return (from, MeshFeature::Vertex(k));
     }
     if t >= length2 {
-        return (to, Feature::Vertex((k + 1) % 3));
+        return (to, MeshFeature::Vertex((k + 1) % 3));
     }
-    (from + along * (t / length2), Feature::Edge(k))
+    (from + along * (t / length2), MeshFeature::Edge(k))
 }

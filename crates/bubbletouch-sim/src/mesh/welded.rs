@@ -10,12 +10,12 @@ pub struct Welded {
     /// Corners of each triangle. Vertices with equal coordinates share the index of the first of these vertices.
     pub corners: Vec<[u32; 3]>,
     /// Sides of all triangles with three different corners, sorted by edge.
-    pub sides: Vec<Side>,
+    pub sides: Vec<EdgeSide>,
 }
 
 /// Side of a triangle, with the edge of the mesh on which it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Side {
+pub struct EdgeSide {
     /// Corners of the edge, the smaller index first.
     pub edge: [u32; 2],
     /// Index of the triangle that has this side.
@@ -42,7 +42,7 @@ impl Welded {
             }
             for side in 0..3 {
                 let (from, to) = (corners[side], corners[(side + 1) % 3]);
-                sides.push(Side {
+                sides.push(EdgeSide {
                     edge: [from.min(to), from.max(to)],
                     triangle: triangle as u32,
                     side: side as u8,
@@ -55,22 +55,22 @@ impl Welded {
     }
 
     /// Returns groups of sides, one group for each edge of the mesh.
-    pub fn edges(&self) -> impl Iterator<Item = &[Side]> {
+    pub fn edges(&self) -> impl Iterator<Item = &[EdgeSide]> {
         self.sides.chunk_by(|a, b| a.edge == b.edge)
     }
 
     /// Returns the number of edges along which the numbers of triangles in the two directions differ. These edges occur at holes and between inconsistently
     /// oriented faces.
     pub fn n_unbalanced(&self) -> usize {
-        let sign = |side: &Side| if side.is_forward { 1 } else { -1 };
-        let is_unbalanced = |sides: &&[Side]| sides.iter().map(sign).sum::<i32>() != 0;
+        let sign = |side: &EdgeSide| if side.is_forward { 1 } else { -1 };
+        let is_unbalanced = |sides: &&[EdgeSide]| sides.iter().map(sign).sum::<i32>() != 0;
         self.edges().filter(is_unbalanced).count()
     }
 
     /// Returns whether every edge has exactly two sides in opposite directions, so that the mesh is closed and consistently oriented.
     pub fn is_closed(&self) -> bool {
         let closed =
-            |sides: &[Side]| sides.len() == 2 && sides[0].is_forward != sides[1].is_forward;
+            |sides: &[EdgeSide]| sides.len() == 2 && sides[0].is_forward != sides[1].is_forward;
         !self.sides.is_empty() && self.edges().all(closed)
     }
 }

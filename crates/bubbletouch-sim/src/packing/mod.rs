@@ -74,5 +74,5 @@ mod target;
 pub use detail_chain::DetailChain;
 pub use medial_spheres::medial_spheres;
 pub use pack::{Packing, error_of_file, pack_mesh, pack_mesh_watched, slow_packing};
-pub use packing_error::{PackingError, Spread, packing_error};
+pub use packing_error::{DistanceStatistics, PackingError, packing_error};
 pub use target::Body;

@@ -10,7 +10,7 @@ use rand::Rng;
 
 /// Mean, 95th percentile and maximum of the distances at many points, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spread {
+pub struct DistanceStatistics {
     /// Mean distance over all points, zeros included, metres.
     pub mean: f64,
     /// 95th percentile of the distances over all points, metres.
@@ -23,9 +23,9 @@ pub struct Spread {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PackingError {
     /// Height of the spheres' surface above the mesh, along the normal of the mesh; 0 where the spheres' surface lies inside the mesh.
-    pub protrusion: Spread,
+    pub protrusion: DistanceStatistics,
     /// Distance from the mesh's surface to the spheres; 0 where the mesh's surface lies inside the spheres.
-    pub gap: Spread,
+    pub gap: DistanceStatistics,
     /// Number of tested points on the outer surface of the mesh.
     pub n_points: usize,
     /// Fraction of all points that are not on the outer surface, because they lie inside other parts of the mesh.
@@ -105,13 +105,13 @@ fn point_in(triangle: &Triangle, rng: &mut impl Rng) -> DVec3 {
     a + u * (b - a) + v * (c - a)
 }
 
-fn spread(mut values: Vec<f64>) -> Spread {
+fn spread(mut values: Vec<f64>) -> DistanceStatistics {
     if values.is_empty() {
-        return Spread::default();
+        return DistanceStatistics::default();
     }
     values.sort_by(f64::total_cmp);
     let n = values.len();
-    Spread {
+    DistanceStatistics {
         mean: values.iter().sum::<f64>() / n as f64,
         p95: values[((0.95 * n as f64).ceil() as usize).clamp(1, n) - 1],
         max: values[n - 1],

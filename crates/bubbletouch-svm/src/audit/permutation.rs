@@ -138,6 +138,7 @@ impl Units {
 }
 
 /// Exchanges values among rows of one label, such as their folds.
+#[doc(hidden)]
 pub fn exchange_within(labels: &[usize], values: &mut [usize], rng: &mut ChaCha8Rng) {
     let mut rows = BTreeMap::<usize, Vec<usize>>::new();
     for (row, &label) in labels.iter().enumerate() {
@@ -153,6 +154,7 @@ pub fn exchange_within(labels: &[usize], values: &mut [usize], rng: &mut ChaCha8
 }
 
 /// Returns the random generator of a test.
+#[doc(hidden)]
 pub fn generator(seed: &dyn Streams) -> ChaCha8Rng {
     seed.named("permutations").rng()
 }

@@ -26,7 +26,7 @@ use crate::scaling::{FittedScaling, Scaling};
 use crate::split::Split;
 use crate::split::stratified_k_fold;
 use crate::streams::Streams;
-use crate::{DEFAULT_MEMORY_BYTES, Multiclass, Solver, SvmParams};
+use crate::{DEFAULT_MEMORY_BYTES, Multiclass, SvmParams, SvmSolver};
 use crate::{Error, Result};
 
 pub use crate::classifiers::trained_classifier::TrainedClassifier;
@@ -57,7 +57,7 @@ pub struct Classifier {
     /// Strategy that combines binary SVMs into a multi-class classifier.
     pub multiclass: Multiclass,
     /// Solver that trains an SVM.
-    pub solver: Solver,
+    pub solver: SvmSolver,
     /// Penalty C: a fixed value, or candidate values from which it is chosen.
     pub c: Cost,
     /// Weights of the classes in training; SVMs, logistic regression and random forests have them.
@@ -94,7 +94,7 @@ impl Classifier {
             kind,
             scaling: Scaling::Standard,
             multiclass: Multiclass::OneVsOne,
-            solver: Solver::Smo,
+            solver: SvmSolver::Smo,
             c: Cost::Fixed(1.0),
             class_weight: ClassWeight::Uniform,
             parameters: Parameters::new(kind),
@@ -301,7 +301,7 @@ impl Classifier {
     /// Returns the parameters of the kernel SVM; `None` if the classifier is not a kernel SVM or uses coordinate descent.
     fn kernel_svm(&self, c: f64) -> Option<SvmParams> {
         let kernel = self.kind.about().kernel?(&self.parameters);
-        (self.solver != Solver::CoordinateDescent).then_some(SvmParams {
+        (self.solver != SvmSolver::CoordinateDescent).then_some(SvmParams {
             kernel,
             multiclass: self.multiclass,
             c,
@@ -353,7 +353,7 @@ impl Classifier {
         let is_linear = self.kind == ClassifierKind::LinearSvm;
         let is_possible = is_linear && self.multiclass == Multiclass::OneVsRest;
         let is_svm = self.kind.is_kernel_svm();
-        if self.solver != Solver::CoordinateDescent || !is_svm || is_possible {
+        if self.solver != SvmSolver::CoordinateDescent || !is_svm || is_possible {
             return Ok(());
         }
         let (kind, multiclass) = (self.kind, self.multiclass);

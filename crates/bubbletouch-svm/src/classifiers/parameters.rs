@@ -6,6 +6,7 @@ use crate::{Error, Result};
 use std::collections::BTreeMap;
 
 /// Largest allowed value of integer parameters. Larger counts exceed memory or take too long.
+#[doc(hidden)]
 pub const MAX_COUNT: f64 = 1e8;
 
 /// Declaration of a numeric parameter of a classifier.
@@ -215,6 +216,7 @@ const SHARED: [(&str, Uses); 8] = [
 ];
 
 /// Returns all parameters that classifiers declare, without repetitions, in the order of the classifiers.
+#[doc(hidden)]
 pub fn declared() -> impl Iterator<Item = &'static Parameter> {
     let of = |kind: &ClassifierKind| kind.about().parameters.iter();
     let all = move || ClassifierKind::ALL.iter().flat_map(of);
@@ -226,6 +228,7 @@ pub fn declared() -> impl Iterator<Item = &'static Parameter> {
 }
 
 /// Returns the keys of `[recognition]` that only some classifiers use. A study or a command with such a key needs one of these classifiers.
+#[doc(hidden)]
 pub fn keys() -> impl Iterator<Item = &'static str> {
     let shared = SHARED.iter().map(|(key, _)| *key);
     shared.chain(declared().map(|parameter| parameter.key))
@@ -241,6 +244,7 @@ impl ClassifierKind {
 }
 
 /// Returns a list of the classifiers that use a key, by their names in studies, such as `linear_svm or rbf_svm`.
+#[doc(hidden)]
 pub fn users(key: &str) -> String {
     let all = ClassifierKind::ALL.iter().zip(ClassifierKind::NAMES);
     let users = all.filter(|(kind, _)| kind.uses(key));

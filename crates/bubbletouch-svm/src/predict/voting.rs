@@ -160,6 +160,7 @@ fn count(values: ArrayView1<f64>, votes: &mut [u32]) {
 }
 
 /// Returns the index of the largest value; the first index if several values are equal.
+#[doc(hidden)]
 pub fn first_maximum<V: PartialOrd>(values: impl IntoIterator<Item = V>) -> usize {
     let values = values.into_iter().enumerate();
     let best = values.reduce(|best, next| if next.1 > best.1 { next } else { best });

@@ -4,7 +4,7 @@ use crate::drawn;
 use bubbletouch_svm::classifiers::ClassifierKind;
 use bubbletouch_svm::classifiers::classifier::{Classifier, Cost};
 use bubbletouch_svm::dataset::{Dataset, dataset};
-use bubbletouch_svm::{Multiclass, Solver};
+use bubbletouch_svm::{Multiclass, SvmSolver};
 use ndarray::{Array1, Array2, Axis, ShapeBuilder, concatenate, s};
 use rand::Rng;
 
@@ -17,7 +17,7 @@ fn classifiers() -> Vec<(String, Classifier)> {
         ..Classifier::new(ClassifierKind::LinearSvm)
     };
     let descent = Classifier {
-        solver: Solver::CoordinateDescent,
+        solver: SvmSolver::CoordinateDescent,
         ..linear.clone()
     };
     all.push(("one-vs-rest".to_owned(), linear));

@@ -13,7 +13,7 @@ use bubbletouch_svm::cross_validation::choice::Candidates;
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
 use bubbletouch_svm::kernel::{Gamma, Kernel};
 use bubbletouch_svm::linear_svm::{LinearSvm, LinearSvmParams};
-use bubbletouch_svm::{Multiclass, Solver, SvmParams};
+use bubbletouch_svm::{Multiclass, SvmParams, SvmSolver};
 use linfa::traits::Fit;
 use ndarray::{Array1, Array2, s};
 use rand::Rng;
@@ -362,7 +362,7 @@ fn logistic_regression_on_separable_rows_stays_right() {
 fn the_choice_of_solver_and_margin_is_kept() {
     let data = clusters(120, 6, 3, 4);
     let linear = Classifier {
-        solver: Solver::CoordinateDescent,
+        solver: SvmSolver::CoordinateDescent,
         multiclass: Multiclass::OneVsRest,
         c: Cost::Chosen(Candidates {
             c: vec![1e-6, 0.1],

@@ -6,7 +6,7 @@ use crate::studies::recognition::measurements::CopyInputs;
 use crate::studies::recognition::plan::SensorImage;
 use crate::studies::recognition::rows::{FeaturesOfImages, join_values};
 use crate::studies::recognition::sweep::{LEARNED_FRAMES, WITH_COPIES};
-use bubbletouch_sim::features::{Cut, ImageFeatures, Workspace, tilt_frame};
+use bubbletouch_sim::features::{Cut, FeatureWorkspace, ImageFeatures, tilt_frame};
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rand::Rng;
 use rayon::prelude::*;
@@ -98,36 +98,42 @@ impl Images {
             let parts = rows.into_iter().map(|r| r.split_at(Axis(0), n_touches));
             let (rows, of_copies): (Vec<_>, Vec<_>) = parts.unzip();
             let blocks = blocks(rows, n_touches, 1).into_par_iter();
-            blocks.for_each_init(Workspace::default, |workspace, (touches, mut rows)| {
-                let frames = touches.start * n_frames..touches.end * n_frames;
-                let images = self.images(estimate, values.slice(s![frames, ..*m]));
-                for row in 0..touches.len() {
-                    let images = of_touch(&images, row, n_frames);
-                    write(&features, &images, workspace, (&mut rows, row));
-                }
-            });
+            blocks.for_each_init(
+                FeatureWorkspace::default,
+                |workspace, (touches, mut rows)| {
+                    let frames = touches.start * n_frames..touches.end * n_frames;
+                    let images = self.images(estimate, values.slice(s![frames, ..*m]));
+                    for row in 0..touches.len() {
+                        let images = of_touch(&images, row, n_frames);
+                        write(&features, &images, workspace, (&mut rows, row));
+                    }
+                },
+            );
             let Some(copies) = copies else {
                 continue;
             };
             let (touches, n_copies) = (&copies.touches, copies.n_copies);
             let blocks = self::blocks(of_copies, touches.len(), n_copies).into_par_iter();
-            blocks.for_each_init(Workspace::default, |workspace, (places, mut rows)| {
-                let (first, places_len) = (places.start * n_copies, places.len());
-                let frames = touches[places].iter();
-                let frames = frames.flat_map(|touch| touch * n_frames..(touch + 1) * n_frames);
-                let measured = values.select(Axis(0), &frames.collect::<Vec<usize>>());
-                let images = self.images(estimate, measured.slice(s![.., ..*m]));
-                for place in 0..places_len {
-                    let images = of_touch(&images, place, n_frames);
-                    for copy in 0..n_copies {
-                        let row = place * n_copies + copy;
-                        let slope = copies.slopes[first + row];
-                        let tilted = self.tilted(&images, slope, estimate);
-                        let tilted: Vec<_> = tilted.iter().map(Array2::view).collect();
-                        write(&features, &tilted, workspace, (&mut rows, row));
+            blocks.for_each_init(
+                FeatureWorkspace::default,
+                |workspace, (places, mut rows)| {
+                    let (first, places_len) = (places.start * n_copies, places.len());
+                    let frames = touches[places].iter();
+                    let frames = frames.flat_map(|touch| touch * n_frames..(touch + 1) * n_frames);
+                    let measured = values.select(Axis(0), &frames.collect::<Vec<usize>>());
+                    let images = self.images(estimate, measured.slice(s![.., ..*m]));
+                    for place in 0..places_len {
+                        let images = of_touch(&images, place, n_frames);
+                        for copy in 0..n_copies {
+                            let row = place * n_copies + copy;
+                            let slope = copies.slopes[first + row];
+                            let tilted = self.tilted(&images, slope, estimate);
+                            let tilted: Vec<_> = tilted.iter().map(Array2::view).collect();
+                            write(&features, &tilted, workspace, (&mut rows, row));
+                        }
                     }
-                }
-            });
+                },
+            );
         }
         all
     }
@@ -221,7 +227,7 @@ fn blocks(
 fn write(
     features: &[Vec<Prepared>],
     images: &[ArrayView2<f64>],
-    workspace: &mut Workspace,
+    workspace: &mut FeatureWorkspace,
     (rows, row): (&mut [ArrayViewMut2<f64>], usize),
 ) {
     let n_frames = images[0].nrows();

@@ -30,7 +30,7 @@ use crate::table::{Column, Columns};
 use bubbletouch_sim::features::Features;
 use bubbletouch_svm::class_weight::ClassWeight;
 use bubbletouch_svm::scaling::Scaling;
-use bubbletouch_svm::{DEFAULT_MEMORY_BYTES, Multiclass, Solver};
+use bubbletouch_svm::{DEFAULT_MEMORY_BYTES, Multiclass, SvmSolver};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -149,7 +149,7 @@ params! {
         #[serde(skip_serializing_if = "is_default")]
         class_weight: ClassWeight = ClassWeight::default() => Any, Choice, Axes;
         /// Solver that trains SVMs: `smo` (default) or `coordinate_descent`.
-        solver: Solver = Solver::default() => Any, Choice, Axes;
+        solver: SvmSolver = SvmSolver::default() => Any, Choice, Axes;
         /// Scaling of the features, fitted to training rows: `standard` (default), `overall` or `none`.
         scaling: Scaling = Scaling::default() => Any, Choice, Axes;
         /// Axis: penalty C (positive) of classifiers with a penalty. Default: 1.
@@ -295,7 +295,7 @@ named!(
     Selection,
     Multiclass,
     ClassWeight,
-    Solver,
+    SvmSolver,
     Scaling
 );
 

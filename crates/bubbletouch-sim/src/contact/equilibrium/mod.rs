@@ -59,7 +59,7 @@ mod tilted_bed;
 pub use super::friction::{TangentialSpring, TangentialSpringState};
 pub use free_object::{FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin};
 pub use meshes::overlap;
-pub use reports::{TaxelLoad, Touch};
+pub use reports::{RigidContact, TaxelLoad};
 pub use rigid_contact::Touched;
 pub use rigid_shape::RigidShape;
 pub use solver::{Equilibrium, EquilibriumSolver, Outcome};

@@ -32,7 +32,7 @@ pub struct TaxelLoad {
 
 /// Contact load between one part of a free object and a rigid counterpart.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
+pub struct RigidContact {
     /// Index of the object in the list passed to the solver.
     pub object: usize,
     /// Index of the sphere in its object, or number of the part in its mesh ([`MeshFeatures`](crate::mesh::MeshFeatures)).
@@ -69,7 +69,7 @@ impl TaxelLoad {
     }
 }
 
-impl Touch {
+impl RigidContact {
     /// Creates the report of a rigid contact; the function `of_body` maps the index of a body to the index of its object.
     pub(super) fn new(
         pair: &Pair,

@@ -6,7 +6,7 @@ use super::energy::{PairLoad, wrenches};
 use super::free_object::{FreeObject, Ground, PlacedSkin};
 use super::loads::Multipliers;
 use super::pair::Key;
-use super::reports::{TaxelLoad, Touch};
+use super::reports::{RigidContact, TaxelLoad};
 use crate::contact::friction::TangentialSpringState;
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, check_poses};
@@ -61,7 +61,7 @@ impl Equilibrium {
 pub struct EquilibriumSolver {
     workspace: DescentWorkspace,
     loads: Vec<TaxelLoad>,
-    touches: Vec<Touch>,
+    touches: Vec<RigidContact>,
     tangential_springs: Vec<TangentialSpringState>,
     /// Indices of the objects to which the Lagrange multipliers belong.
     numbers: Vec<usize>,
@@ -85,7 +85,7 @@ impl EquilibriumSolver {
     }
 
     /// Returns the rigid contacts in the last solution.
-    pub fn touches(&self) -> &[Touch] {
+    pub fn touches(&self) -> &[RigidContact] {
         &self.touches
     }
 
@@ -261,7 +261,7 @@ impl EquilibriumSolver {
                 }
                 Key::Rigid(_, touched) => {
                     self.touches
-                        .push(Touch::new(pair, touched, load, body, number));
+                        .push(RigidContact::new(pair, touched, load, body, number));
                 }
             }
         }

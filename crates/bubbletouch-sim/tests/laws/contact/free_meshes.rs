@@ -2,7 +2,7 @@
 
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, HalfSpace, Obstacle, Outcome, PlacedSkin,
-    TaxelLoad, Touch, Touched, overlap,
+    RigidContact, TaxelLoad, Touched, overlap,
 };
 use bubbletouch_sim::contact::{Workspace, press_with_contacts};
 use bubbletouch_sim::geometry::Pose;
@@ -91,7 +91,7 @@ impl Free {
 
 pub(super) struct Rest {
     pub solutions: Vec<Equilibrium>,
-    pub touches: Vec<Touch>,
+    pub touches: Vec<RigidContact>,
     pub loads: Vec<TaxelLoad>,
 }
 

@@ -1,7 +1,7 @@
 //! Nearest points, signed distances and winding numbers of meshes: comparison with closed forms and with exhaustive search.
 
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::mesh::{Bvh, Feature, LengthUnit, Surface, Triangle, TriangleMesh};
+use bubbletouch_sim::mesh::{Bvh, LengthUnit, MeshFeature, Surface, Triangle, TriangleMesh};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
@@ -71,13 +71,13 @@ fn the_nearest_point_of_a_triangle_is_what_a_search_finds() {
 fn features_are_where_the_point_says() {
     let triangle = Triangle([DVec3::ZERO, DVec3::X, DVec3::Y]);
     let cases = [
-        (DVec3::new(0.2, 0.2, 1.0), Feature::Face),
-        (DVec3::new(0.5, -1.0, 1.0), Feature::Edge(0)),
-        (DVec3::new(1.0, 1.0, 0.0), Feature::Edge(1)),
-        (DVec3::new(-1.0, 0.5, 0.0), Feature::Edge(2)),
-        (DVec3::new(-1.0, -1.0, 0.0), Feature::Vertex(0)),
-        (DVec3::new(3.0, 0.0, 0.0), Feature::Vertex(1)),
-        (DVec3::new(0.0, 3.0, -1.0), Feature::Vertex(2)),
+        (DVec3::new(0.2, 0.2, 1.0), MeshFeature::Face),
+        (DVec3::new(0.5, -1.0, 1.0), MeshFeature::Edge(0)),
+        (DVec3::new(1.0, 1.0, 0.0), MeshFeature::Edge(1)),
+        (DVec3::new(-1.0, 0.5, 0.0), MeshFeature::Edge(2)),
+        (DVec3::new(-1.0, -1.0, 0.0), MeshFeature::Vertex(0)),
+        (DVec3::new(3.0, 0.0, 0.0), MeshFeature::Vertex(1)),
+        (DVec3::new(0.0, 3.0, -1.0), MeshFeature::Vertex(2)),
     ];
     for (point, feature) in cases {
         assert_eq!(triangle.closest(point).1, feature, "{point}");

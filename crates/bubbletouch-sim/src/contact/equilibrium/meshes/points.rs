@@ -21,7 +21,7 @@ use super::super::rigid_shape::RigidShape;
 use super::algebra::{cross_matrix, outer};
 use super::found::{Found, MISS, Placed, Range};
 use crate::geometry::Pose;
-use crate::mesh::{CREASE, Closest, Feature, MeshFeatures};
+use crate::mesh::{CREASE, Closest, MeshFeature, MeshFeatures};
 use crate::objects::MeshModel;
 use glam::{DMat3, DVec3};
 
@@ -182,7 +182,7 @@ impl Points {
                     bending: DMat3::ZERO,
                 };
                 let is_nearest = features.has_nearest(triangle, nearest);
-                if is_nearest && (is_inside || nearest.feature == Feature::Face) {
+                if is_nearest && (is_inside || nearest.feature == MeshFeature::Face) {
                     self.found.push(on);
                     return limit;
                 }
