@@ -609,14 +609,14 @@ fn a_saved_classifier_refuses_touches_whose_columns_have_another_order() {
         format!("{}\n{lines}", names.join(","))
     };
     std::fs::remove_file(case.path("features.npy")).unwrap();
-    case.file("features.csv", &table(["pressure", "shear"]));
+    case.file("features.csv", table(["pressure", "shear"]));
     json(
         &case,
         &["--classifier", "k_nearest", "--save", "model.json"],
     );
     let apply = words("classify . --model model.json");
     assert_eq!(case.run(&apply).status.code(), Some(0));
-    case.file("features.csv", &table(["shear", "pressure"]));
+    case.file("features.csv", table(["shear", "pressure"]));
     says(
         &case.refuses(&apply),
         &[
