@@ -7,7 +7,7 @@ use crate::command::options::unused::check_used;
 use crate::command::options::which_object::catalogue;
 use crate::command::terminal::output::terminal_width;
 use crate::command::terminal::streams::{note, write_out};
-use bubbletouch::contact::{self, Goal, Workspace};
+use bubbletouch::contact::{self, Contact, Goal, Workspace};
 use bubbletouch::files::check_single_output;
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, SizeLimits};
@@ -143,7 +143,9 @@ pub fn press(args: &Args) -> Result<()> {
     }
     let mut workspace = Workspace::new();
     let contact = contact::press(&patch, &objects, &[pose], goal, &mut workspace)?;
-    let contact = contact.ok_or_else(|| {
+    // An object that is not moved may be clear of the array.
+    let untouched = (goal == Goal::Pose).then(Contact::default);
+    let contact = contact.or(untouched).ok_or_else(|| {
         let allowed = "an offset that brings some of it over a taxel";
         Error::input("press", "the object is not over the array", allowed)
     })?;
