@@ -8,6 +8,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 /// The message has the form `<place>: <given>; <allowed>`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {given}; {allowed}")]
+#[non_exhaustive]
 pub struct Error {
     /// Name of the parameter, or row and column of the data.
     pub place: String,

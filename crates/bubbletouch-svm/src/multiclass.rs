@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Multiclass {
     /// One binary classifier per pair of classes; the class with the most votes is predicted. On a tie, the lowest class index is predicted (LIBSVM's rule).
     #[default]

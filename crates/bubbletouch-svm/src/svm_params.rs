@@ -26,6 +26,7 @@ use crate::{Error, Result};
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum SvmSolver {
     /// Sequential minimal optimisation on shared Gram matrices.
     #[default]

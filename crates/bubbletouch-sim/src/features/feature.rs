@@ -38,6 +38,7 @@ macro_rules! image_features {
 
         /// Feature that is computed from an image of a frame.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[non_exhaustive]
         pub enum ImageFeature {
             $(#[doc = $doc] $name,)*
         }

@@ -171,6 +171,7 @@ macro_rules! sensor_errors {
 
         /// Sensor errors of real skins and their electronics.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[non_exhaustive]
         pub enum SensorError {
             $(#[doc = $doc] $name,)*
             /// Sensor error from outside of this crate; see [`register`](Self::register).

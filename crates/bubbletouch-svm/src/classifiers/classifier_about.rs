@@ -93,6 +93,7 @@ macro_rules! classifiers {
         /// Kind of classifier, for example a linear SVM; studies may compare several kinds.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
         #[serde(rename_all = "snake_case")]
+        #[non_exhaustive]
         pub enum ClassifierKind {
             $($(#[$cfg])? #[doc = $doc] $name,)*
             /// Classifier from outside of this crate; see [foreign].

@@ -15,6 +15,7 @@ use std::path::Path;
 
 /// Mesh file formats that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum MeshFormat {
     /// Polygon file format, ascii or binary.
     Ply,

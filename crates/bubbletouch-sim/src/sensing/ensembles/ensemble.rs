@@ -225,6 +225,7 @@ macro_rules! ensembles {
         /// Family of linear maps that compress a frame to measurements.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
         #[serde(rename_all = "snake_case")]
+        #[non_exhaustive]
         pub enum Ensemble {
             $(#[doc = $doc] $name,)*
             /// Ensemble from outside of this crate; see [`register`](Self::register).

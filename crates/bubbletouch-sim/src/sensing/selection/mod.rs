@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 /// Method that selects the taxels to read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Selection {
     /// Forward selection. Each step adds the taxel with which a nearest-neighbour classifier recognises most training touches. Each touch is compared with the
     /// touches of other groups.

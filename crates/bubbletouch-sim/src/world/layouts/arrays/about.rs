@@ -57,6 +57,7 @@ macro_rules! array_layouts {
         /// Layout of the taxels of an array.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
+        #[non_exhaustive]
         pub enum ArrayLayout {
             $(#[doc = $doc] $name,)*
         }
