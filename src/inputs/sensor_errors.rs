@@ -33,10 +33,14 @@ const N_STRENGTHS: usize = {
 
 /// Returns the strengths (parameters) of all sensor errors in the order of table columns, from the material to the electronics.
 pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)> {
-    SensorError::all().flat_map(|error| {
-        let strengths = error.about().strengths.iter();
-        strengths.map(move |strength| (error, strength))
-    })
+    static ALL: LazyLock<Vec<(SensorError, &Strength)>> = LazyLock::new(|| {
+        let of_error = |error: SensorError| {
+            let strengths = error.about().strengths.iter();
+            strengths.map(move |strength| (error, strength))
+        };
+        SensorError::all().flat_map(of_error).collect()
+    });
+    ALL.iter().copied()
 }
 
 /// Returns descriptions of the study keys that set the strengths of sensor errors, in the order of [`all_strengths`].
@@ -79,12 +83,29 @@ pub fn strength_columns() -> &'static [Column] {
     &COLUMNS
 }
 
-/// Strengths of all sensor errors in the units of their keys; `None` for strengths that a study does not set.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Strengths {
-    built_in: [Option<f64>; N_STRENGTHS],
-    /// Strengths of the errors that the program has registered.
-    own: [Option<f64>; MAX_OWN_STRENGTHS],
+/// Strengths of all sensor errors in the units of their keys, in the order of [`all_strengths`]. A configuration has one copy, so a strength takes 8 bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strengths([Slot; N_STRENGTHS + MAX_OWN_STRENGTHS]);
+
+/// Bits of a strength; those of NaN for a strength that a study does not set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Slot(u64);
+
+impl Slot {
+    fn new(value: Option<f64>) -> Self {
+        // Adding 0 makes a negative zero positive.
+        Self(value.map_or(f64::NAN, |value| value + 0.0).to_bits())
+    }
+
+    fn value(self) -> Option<f64> {
+        Some(f64::from_bits(self.0)).filter(|value| !value.is_nan())
+    }
+}
+
+impl Default for Strengths {
+    fn default() -> Self {
+        Self([Slot::new(None); N_STRENGTHS + MAX_OWN_STRENGTHS])
+    }
 }
 
 /// Writes the strengths that are not zero, by their keys: a strength that a study does not set equals zero.
@@ -106,19 +127,17 @@ impl Strengths {
 
     /// Returns a copy in which the strength with this key has a different value.
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
-        let slots = self.built_in.iter_mut().chain(&mut self.own);
-        let mut slots = all_strengths().zip(slots);
+        let mut slots = all_strengths().zip(&mut self.0);
         if let Some((_, slot)) = slots.find(|((_, strength), _)| strength.key == key) {
-            *slot = value;
+            *slot = Slot::new(value);
         }
         self
     }
 
     /// Returns the strengths of sensor errors that the study sets.
     pub fn given(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
-        let values = self.built_in.into_iter().chain(self.own);
-        let all = all_strengths().zip(values);
-        all.filter_map(|((error, strength), value)| Some((error, strength, value?)))
+        let all = all_strengths().zip(self.0);
+        all.filter_map(|((error, strength), slot)| Some((error, strength, slot.value()?)))
     }
 
     /// Returns the strengths of sensor errors that are not zero.

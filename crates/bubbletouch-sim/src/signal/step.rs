@@ -9,7 +9,7 @@ use crate::random::Seed;
 static OWN: Registry<ErrorAbout> = Registry::new("sensor error");
 
 /// Maximum number of strengths of all registered sensor errors together. A larger value makes each signal condition of a study larger.
-pub const MAX_OWN_STRENGTHS: usize = 16;
+pub const MAX_OWN_STRENGTHS: usize = 8;
 
 /// Words of the table `[signal]` of a study that belong to no sensor error.
 const RESERVED: [&str; 10] = [
