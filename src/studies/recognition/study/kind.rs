@@ -12,6 +12,7 @@ use crate::studies::recognition::sweep::StudyPart;
 use crate::studies::recognition::training::FamilyInputs;
 use crate::studies::study::settings_words;
 use crate::world::ImageShape;
+use rayon::prelude::*;
 use std::collections::HashSet;
 
 /// Names of the tables and columns that contain the intervals of accuracies.
@@ -112,7 +113,7 @@ impl Study for RecognitionStudy {
             let inputs = FamilyInputs::new(&part.plan, &part.sweep, configurations);
             identity(&(touches, alone.inputs(&part.plan), inputs))
         };
-        let families: Vec<String> = families.map(of_family).collect();
+        let families: Vec<String> = families.into_par_iter().map(of_family).collect();
         let mut items = Vec::with_capacity(self.n_trials() * families.len());
         for trial in 0..self.n_trials() {
             let of_part = |StudyPart { plan, sweep, .. }: &StudyPart| {
