@@ -128,6 +128,7 @@ impl Ensemble {
     /// ```
     /// use bubbletouch_sim::random::Seed;
     /// use bubbletouch_sim::sensing::{Ensemble, EnsembleAbout, Operator, Projection};
+    /// use bubbletouch_sim::world::ImageShape;
     /// use ndarray::{ArrayView2, ArrayViewMut2, array, s};
     ///
     /// /// Reads the first m taxels.
@@ -150,7 +151,7 @@ impl Ensemble {
     ///
     /// let about = EnsembleAbout::new("first taxels", |_, m, _| Box::new(First(m)));
     /// let first = Ensemble::register("first", "1", about)?;
-    /// let projection = Projection::new(first, (1, 4), 2, &Seed::new(1))?;
+    /// let projection = Projection::new(first, ImageShape { ny: 1, nx: 4 }, 2, &Seed::new(1))?;
     /// assert_eq!(projection.measure(array![[1.0, 2.0, 3.0, 4.0]].view()), array![[1.0, 2.0]]);
     /// # Ok::<(), bubbletouch_sim::Error>(())
     /// ```
