@@ -178,7 +178,7 @@ macro_rules! params {
     (@about $type:ty, $path:ident, $name:expr, $keys:ident, [$($default:expr)?], $range:expr) => {};
     (@about $type:ty, $path:ident, $name:expr, $keys:ident, [$($default:expr)?], $range:expr, $role:ident, $place:ident $(, $field:ident: $value:expr)*) => {
         $keys.push($crate::inputs::keys::KeyAbout {
-            $(usual: Some(|| toml::Value::try_from::<$type>($default).expect("a default has a TOML form")),)?
+            $(usual: Some(|| $crate::inputs::params::usual_of::<$type>($default)),)?
             $($field: Some($value),)*
             ..$crate::inputs::keys::KeyAbout::new(
                 $crate::inputs::params::joined($path, $name).leak(),
@@ -332,6 +332,15 @@ pub fn own_or_inner(name: &'static str, inner: &'static [&'static str]) -> Vec<&
 #[doc(hidden)]
 pub fn required<T, E: serde::de::Error>(name: &'static str, absent: Option<T>) -> Result<T, E> {
     absent.ok_or_else(|| E::missing_field(name))
+}
+
+/// Returns a default as a value of a file.
+///
+/// # Panics
+/// If the default has no TOML form.
+#[doc(hidden)]
+pub fn usual_of<T: serde::Serialize>(default: T) -> toml::Value {
+    toml::Value::try_from(default).expect("a default has a TOML form")
 }
 
 /// Returns the table without a given key.

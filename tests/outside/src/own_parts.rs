@@ -66,8 +66,8 @@ impl Operator for Stripes {
 
 const STRIPES: EnsembleAbout = EnsembleAbout {
     is_prefix_nested: false,
-    ..EnsembleAbout::new("stripes", |(ny, nx), m, _| {
-        let n_taxels = ny * nx;
+    ..EnsembleAbout::new("stripes", |shape, m, _| {
+        let n_taxels = shape.n_values();
         Box::new(Stripes { m, n_taxels })
     })
 };

@@ -127,7 +127,7 @@ impl Study for TransmissionStudy {
                 let strengths: Vec<f64> = axes
                     .map(|axis| axis.map_or(0.0, |axis| axis.values()[0]))
                     .collect();
-                steps.push(error.step(&strengths, seed));
+                steps.push(error.step(&strengths, seed)?);
             }
         }
         let chain = Chain::new(&steps, patch)?;
