@@ -40,7 +40,12 @@ impl TriangleMesh {
             [4, 5, 7, 6],
         ];
         let halves = faces.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        Self::new(place, (0..8).map(corner).collect(), halves.concat())
+        Self::in_unit(
+            place,
+            LengthUnit::Metre,
+            (0..8).map(corner).collect(),
+            halves.concat(),
+        )
     }
 
     /// Creates a cylinder about the origin along z. All lengths are in metres.
