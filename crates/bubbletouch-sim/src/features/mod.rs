@@ -38,8 +38,10 @@ mod spectrum;
 mod tilted;
 
 pub use chart::Chart;
+pub use feature::FeatureWorkspace;
 use feature::image_features;
-pub use feature::{Feature, FeatureAbout, FeatureWorkspace};
+#[doc(hidden)]
+pub use feature::{Feature, FeatureAbout};
 pub use image::{Cut, Image, Touched};
 pub use join::{ImageFeatures, Join};
 pub use moments::{N_MOMENTS, Weight, moments};
