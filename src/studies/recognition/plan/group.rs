@@ -27,14 +27,16 @@ impl MeasurementGroup {
     /// Returns the configurations of the group, divided into families. The configurations of a family use the same rows of features. Configurations of a family
     /// differ only in the penalty C, the number of touches per decision, and the choice of the next touch. Configurations with equal C are adjacent.
     pub fn families(&self) -> impl Iterator<Item = &[Configuration]> {
-        let family = |configuration: &Configuration| Configuration {
-            configuration: 0,
-            c: None,
-            touches_per_decision: 1,
-            next_touch: None,
-            ..configuration.clone()
+        let is_same = |a: &Configuration, b: &Configuration| {
+            let alike = Configuration {
+                configuration: a.configuration,
+                c: a.c,
+                touches_per_decision: a.touches_per_decision,
+                next_touch: a.next_touch,
+                ..b.clone()
+            };
+            alike == *a
         };
-        let is_same = move |a: &Configuration, b: &Configuration| family(a) == family(b);
         self.configurations.chunk_by(is_same)
     }
 
