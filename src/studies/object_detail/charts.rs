@@ -2,7 +2,8 @@
 
 use crate::studies::object_detail::measured::within;
 use crate::studies::object_detail::rows::RECOGNITION;
-use crate::table::{ChartSpec, Table, short_number};
+use crate::studies::prelude::*;
+use crate::table::short_number;
 
 /// Charts of the models: file name, column along y and column along x.
 const OF_MODELS: [[&str; 3]; 6] = {

@@ -1,17 +1,15 @@
 //! Models of an object's mesh, and their measurements: surface deviation, deflection error, and computing time per touch.
 
-use crate::error::Result;
 use crate::geometry::distinct_places;
 use crate::inputs::object_files::NamedMesh;
 use crate::inputs::packings::pack_within;
-use crate::inputs::units::MM;
 use crate::mesh::Surface;
-use crate::objects::{MeshModel, Model, vertex_spheres};
+use crate::objects::{MeshModel, vertex_spheres};
 use crate::packing::{Body, medial_spheres, packing_error};
-use crate::random::Seed;
 use crate::studies::object_detail::deflection::{Truth, in_mm};
 use crate::studies::object_detail::plan::{DetailMethod, ObjectDetailPlan};
 use crate::studies::object_detail::rows::{DetailConfiguration, DetailScore, DetailTime};
+use crate::studies::prelude::*;
 use glam::DVec3;
 use std::path::Path;
 use std::time::Instant;

@@ -1,11 +1,6 @@
 //! Keys of an object-detail study, and its plan: the checked values in SI units.
 
-use crate::inputs::range::Range::{Any, Count};
-use crate::inputs::range::{SURFACE_ERROR, TOUCHES};
-use crate::learning::classifiers::ClassifierKind;
-use crate::sensing::Ensemble;
 use crate::studies::prelude::*;
-use crate::world::Placement;
 use std::path::PathBuf;
 
 study_file! {

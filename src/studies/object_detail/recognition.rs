@@ -2,19 +2,13 @@
 //!
 //! All models of an object are touched in the same poses and to the same depth past their own first contact, as in other studies.
 
-use crate::engine::progress::Silent;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
-use crate::objects::Object;
-use crate::quantile::quantile;
-use crate::sensing::Projection;
 use crate::studies::model_recognition::{accuracy, touches_of};
 use crate::studies::object_detail::measured::{Level, Measured, Variant, levels, within};
 use crate::studies::object_detail::plan::{DetailRecognitionSpec, ObjectDetailPlan};
 use crate::studies::object_detail::rows::DetailRecognition;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::pressed_objects::simulate_array;
-use crate::world::Placement;
 use ndarray::Array2;
 use std::ops::Range;
 

@@ -1,6 +1,5 @@
 //! Rows of the result tables of an object-detail study: one plain struct for each kind of row, with one field per column.
 
-use crate::learning::classifiers::ClassifierKind;
 use crate::studies::object_detail::plan::DetailMethod;
 use crate::studies::prelude::*;
 

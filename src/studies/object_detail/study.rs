@@ -1,10 +1,7 @@
 //! Object-detail study: computes models and their errors on all threads, and then computing times on one thread. A summary covers all objects.
 
-use crate::engine::work_items::scale::Stage;
 use crate::inputs::object_files::{NamedMesh, load_named_meshes};
 use crate::inputs::packings::packing_path;
-use crate::inputs::units::MM;
-use crate::quantile::quantile;
 use crate::studies::grouped;
 use crate::studies::model_recognition::check_apart;
 use crate::studies::object_detail::charts::{answers, charts};

@@ -1,6 +1,6 @@
 //! Reconstruction of frames by all configurations that use equal measurements.
 
-use crate::sensing::{Basis, Extremes, Reconstructor, SensedDictionary};
+use crate::sensing::{Extremes, Reconstructor, SensedDictionary};
 use crate::studies::prelude::*;
 use crate::studies::reconstruction::plan::ReconstructionPlan;
 use crate::studies::reconstruction::rows::{

@@ -2,17 +2,13 @@
 
 use crate::engine::axes::CombineSpec;
 use crate::inputs::params::named;
-use crate::inputs::range::COUNT;
-use crate::inputs::range::Range::{Any, Count, Part, Positive};
-use crate::inputs::units::MM;
-use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
+use crate::sensing::{Dictionary, Effort, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::studies::prelude::*;
-use crate::studies::recognition::spec::signal::{SignalSpec, StepSpec};
+use crate::studies::recognition::spec::signal::SignalSpec;
 use crate::studies::recognition::spec::study::SensingSpec;
 use crate::studies::reconstruction::rows::ReconstructionConfiguration;
-use crate::world::ImageShape;
-use crate::world::{Grid, Placement};
+use crate::world::Grid;
 
 study_file! {
 pub struct ReconstructionStudySpec {

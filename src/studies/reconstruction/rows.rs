@@ -1,6 +1,6 @@
 //! Rows of the result tables of a reconstruction study: one plain struct for each kind of row, with one field per column.
 
-use crate::sensing::{Basis, Ensemble, Solver};
+use crate::sensing::Solver;
 use crate::signal::NoiseUnit;
 use crate::studies::prelude::*;
 

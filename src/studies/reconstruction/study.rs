@@ -1,10 +1,7 @@
 //! Reconstruction study: simulates touches and computes dictionaries once, then reconstructs frames with every configuration. Its memory is estimated before.
 
-use crate::engine::progress::Progress;
-use crate::engine::work_items::scale::Stage;
 use crate::inputs::sensor_errors::NOISES;
-use crate::report::study_content::Beyond;
-use crate::sensing::{Basis, PCA_ATOMS, Solver};
+use crate::sensing::{PCA_ATOMS, Solver};
 use crate::studies::found_and_cost;
 use crate::studies::prelude::*;
 use crate::studies::recognition::spec::keys::keys_without_axes;

@@ -1,8 +1,7 @@
 //! Frames of all touches, divided into training and test frames, with and without noise. Dictionaries and the errors of reconstructed frames are computed from them.
 
-use crate::engine::progress::Progress;
 use crate::learning::data::split::stratified_hold_out;
-use crate::sensing::{Basis, Dictionary, Ensemble};
+use crate::sensing::Dictionary;
 use crate::signal::{Chain, Noise, NoiseUnit};
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::frame_store::Frames;

@@ -4,7 +4,6 @@
 //! half of the scenes is not compared.
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
-use crate::quantile::quantile;
 use crate::studies::prelude::*;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{CommonScene, MethodScore};

@@ -7,15 +7,14 @@ use crate::contact::{Approach, DamperState, Workspace, press_at_pose, spring_loa
 use crate::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, Steps, System, run,
 };
-use crate::error::Result;
-use crate::geometry::Pose;
 use crate::studies::median_time::median_s;
+use crate::studies::prelude::*;
+use crate::studies::stability::plan::{ContactMethod, StabilityScene};
 use crate::studies::stability::rows::{
     Outcome, StabilityConfiguration, StabilityScore, StabilityTime, TOLERANCE,
 };
 use crate::studies::stability::scene::{ConfigurationScene, GRAVITY};
-use crate::studies::stability::spec::{ContactMethod, StabilityScene};
-use crate::world::{Taxel, VelocityPlan};
+use crate::world::VelocityPlan;
 use glam::DVec3;
 use std::slice::from_ref;
 use std::time::Instant;

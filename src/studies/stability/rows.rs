@@ -2,8 +2,7 @@
 
 use crate::engine::work_items::any_number;
 use crate::studies::prelude::*;
-use crate::studies::stability::spec::{ContactMethod, StabilityScene};
-use serde::{Deserialize, Serialize};
+use crate::studies::stability::plan::{ContactMethod, StabilityScene};
 
 /// Display names of the simulation methods.
 const METHODS: &[(&str, &str)] = &[

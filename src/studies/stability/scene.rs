@@ -2,12 +2,11 @@
 
 use crate::contact::equilibrium::HalfSpace;
 use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
-use crate::error::Result;
-use crate::geometry::Pose;
-use crate::objects::{Model, Sphere, SphereUnion};
+use crate::objects::{Sphere, SphereUnion};
+use crate::studies::prelude::*;
+use crate::studies::stability::plan::StabilityScene;
 use crate::studies::stability::rows::StabilityConfiguration;
-use crate::studies::stability::spec::StabilityScene;
-use crate::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
+use crate::world::{Grid, Layout, Patch, Phase, Taxels, VelocityPlan};
 use glam::DVec3;
 
 /// Gravity g, m/s².
@@ -266,7 +265,7 @@ pub const LEAST_STEPS: f64 = 50.0;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studies::stability::spec::ContactMethod;
+    use crate::studies::stability::plan::ContactMethod;
 
     #[test]
     fn the_ball_meets_the_innermost_taxels_where_it_starts_and_all_within_a_quarter_of_the_stroke()

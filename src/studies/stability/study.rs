@@ -1,17 +1,14 @@
 //! Stability study: simulates all configurations, reads the results of other programs for these configurations, and computes the result tables.
 
-use crate::engine::work_items::scale::Stage;
-use crate::inputs::units::MM;
 use crate::report::csv_tables::read_rows;
 use crate::studies::prelude::*;
 use crate::studies::stability::charts::{answers, charts, with_common};
 use crate::studies::stability::configuration::measure;
-use crate::studies::stability::plan::StabilityPlan;
+use crate::studies::stability::plan::{StabilityPlan, StabilityScene, StabilityStudySpec};
 use crate::studies::stability::rows::{
     Joints, Outcome, PeerScene, PeerSource, StabilityConfiguration, StabilityRow, StabilityScore,
     StabilitySummary, StabilityTime,
 };
-use crate::studies::stability::spec::{StabilityScene, StabilityStudySpec};
 use crate::studies::{found_and_cost, grouped};
 use crate::table::csv_place;
 use std::collections::{BTreeMap, BTreeSet};

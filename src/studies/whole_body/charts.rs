@@ -1,7 +1,16 @@
-//! Charts and answers of a whole-body study.
+//! Charts, answers and the picture of a whole-body study.
 
+use crate::objects::Sphere;
+use crate::report::pictures::colours::{PAINT, Rgb, tint};
+use crate::report::pictures::drawing::{Align, Area, Drawing, TextStyle};
+use crate::report::pictures::picture::Picture;
+use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
 use crate::studies::prelude::*;
+use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
 use crate::table::{Along, Rule, Shown, short_number};
+use bubbletouch_sim::raster::{Canvas, Hit, Lighting, view_from};
+use glam::{DQuat, DVec2, DVec3};
+use std::f64::consts::FRAC_PI_2;
 
 /// Returns charts of the computing time per step. Some show it by the number of taxels, of touched taxels and of spheres; others show the time of each
 /// stage in each scene.
@@ -88,4 +97,157 @@ fn memory_chart(recognition: &Table) -> Option<ChartSpec> {
             ("accuracy", "bytes_per_taxel"),
         )
     })
+}
+
+/// Contents of the picture of a scene, with all positions in the world frame.
+struct SceneView {
+    /// Points on the skin with a spacing of a few millimetres, metres. Each point has the mean pressure on its patch (force divided by area), Pa.
+    skin: Vec<(DVec3, f64)>,
+    /// Positions of all touched taxels, metres.
+    touched: Vec<DVec3>,
+    /// Spheres of the object that touches the robot, metres.
+    object: Vec<Sphere>,
+}
+
+/// Distance between neighbouring points of the skin in the picture, metres.
+const PICTURE_PITCH: f64 = 4e-3;
+/// Width and height of each panel of the picture, pixels.
+const PANEL: [usize; 2] = [600, 900];
+/// Colour of untouched skin, as red, green and blue.
+const BARE: [u8; 3] = [226, 214, 200];
+/// Colour of touched taxels, as red, green and blue.
+const TOUCHED: [u8; 3] = [0xd5, 0x5e, 0x00];
+/// Radius of a drawn point of the skin, metres; neighbouring points overlap. Touched taxels are drawn slightly above the skin.
+const SKIN_RADIUS: f64 = 3.4e-3;
+const TOUCHED_RADIUS: f64 = 3.8e-3;
+/// Azimuth of the camera, measured from the robot's front to the right, radians.
+const AZIMUTH: f64 = 0.7;
+/// Elevation of the viewing direction above the horizontal plane, radians.
+const ELEVATION: f64 = 0.3;
+
+/// Returns the picture of the scene with the most touched patches; the last scene if several have equally many. Returns `None` if no scene has a touched taxel.
+///
+/// # Errors
+/// If the scene cannot be simulated.
+pub(super) fn picture_of_body(plan: &WholeBodyPlan, cases: &Table) -> Result<Option<NamedPicture>> {
+    let patches = |row: &usize| cases.number("patches_touched_mean", *row);
+    let most = (0..cases.n_rows)
+        .filter(|&row| cases.word("series", row) == "scene")
+        .filter(|&row| cases.number("touched_max", row) > 0.0)
+        .max_by(|a, b| patches(a).total_cmp(&patches(b)));
+    let name = most.map(|row| cases.word("name", row));
+    let mut scenes = plan.scenes.iter();
+    let Some(scene) = scenes.find(|scene| Some(scene.spec.name.as_str()) == name) else {
+        return Ok(None);
+    };
+    let name = &scene.spec.name;
+    let drawn = draw(name, &view(plan, scene)?)?;
+    Ok(Some(NamedPicture {
+        name: "touched".to_owned(),
+        title: format!("The scene {name}, and the pressure on each patch"),
+        png: drawn.png()?,
+        size: (drawn.width, drawn.height),
+    }))
+}
+
+fn view(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SceneView> {
+    let covered = plan.cover(plan.pitch)?;
+    let poses = plan.posture(&covered, &scene.positions)?.patches;
+    let (mut drive, object) = plan.begin(scene, &covered)?;
+    drive.probe(drive.path)?;
+    let felt: Vec<(usize, f64)> = drive.touched().collect();
+    let (mut pressures, mut touched) = (Vec::new(), Vec::new());
+    let body = covered.body();
+    for ((patch, pose), &first) in body.patches().iter().zip(&poses).zip(body.firsts()) {
+        let taxels = first..first + patch.n_taxels();
+        let of_patch = felt.iter().filter(|(taxel, _)| taxels.contains(taxel));
+        let of_patch: Vec<&(usize, f64)> = of_patch.collect();
+        let forces = of_patch.iter().map(|(_, d)| plan.taxel.stiffness * d);
+        let force: f64 = forces.sum();
+        pressures.push(force / (patch.n_taxels() as f64 * plan.pitch * plan.pitch));
+        if !of_patch.is_empty() {
+            let layout = patch.layout();
+            let centers = of_patch
+                .iter()
+                .map(|(taxel, _)| layout.centers()[taxel - first]);
+            touched.extend(centers.map(|center| pose.transform_point(center)));
+        }
+    }
+    let coarse = plan.cover(PICTURE_PITCH.max(plan.pitch))?;
+    let patches = coarse.body().patches().iter().zip(&poses).zip(&pressures);
+    let mut skin = Vec::new();
+    for ((patch, pose), &pressure) in patches {
+        let layout = patch.layout();
+        let centers = layout.centers().iter();
+        skin.extend(centers.map(|&center| (pose.transform_point(center), pressure)));
+    }
+    Ok(SceneView {
+        skin,
+        touched,
+        object: object.moved(&drive.path.at(0.0)).spheres().to_vec(),
+    })
+}
+
+/// Draws two panels: the robot with the object, and the robot alone. A higher mean pressure on a patch is drawn in a deeper blue; touched taxels are orange.
+/// Equal inputs give pictures with equal bytes.
+fn draw(name: &str, scene: &SceneView) -> Result<Picture> {
+    let turn = DQuat::from_rotation_z(-FRAC_PI_2);
+    let sphere = |center: DVec3, radius| Sphere {
+        center: turn * center,
+        radius,
+    };
+    let skin = scene.skin.iter().map(|place| sphere(place.0, SKIN_RADIUS));
+    let touched = scene.touched.iter().map(|&at| sphere(at, TOUCHED_RADIUS));
+    let alone: Vec<Sphere> = skin.chain(touched).collect();
+    let object = scene.object.iter().map(|s| sphere(s.center, s.radius));
+    let both: Vec<Sphere> = alone.iter().copied().chain(object).collect();
+    let [width, height] = PANEL.map(|side| side as f64);
+    let room = DVec2::new(0.62 * width, height - 150.0);
+    let canvas = Canvas::new(view_from(AZIMUTH, ELEVATION), &both, PANEL, room);
+    let highest = scene.skin.iter().map(|place| place.1).fold(0.0, f64::max);
+    let pressures = scene.skin.iter().map(|&(_, pressure)| match pressure {
+        pressure if pressure > 0.0 => tint(pressure / highest),
+        _ => BARE,
+    });
+    let touched = scene.touched.iter().map(|_| TOUCHED);
+    let object = scene.object.iter().map(|_| PAINT);
+    let bare = scene.skin.iter().map(|_| BARE);
+    let left: Vec<Rgb> = bare.chain(touched.clone()).chain(object).collect();
+    let right: Vec<Rgb> = pressures.chain(touched).collect();
+    let mut picture = Picture::blank(2 * PANEL[0], PANEL[1])?;
+    for (spheres, colours, corner) in [(&both, left, 0), (&alone, right, PANEL[0])] {
+        let colour = |_: usize, hit: &Hit| colours[hit.part];
+        let hits = canvas.hits(spheres);
+        picture.paint(&canvas, [corner, 0], &hits, Lighting::Smoothed, &colour);
+    }
+
+    let mut drawing = Drawing::new(2.0 * width, height);
+    let style = |size| TextStyle::new(size).align(Align::Middle);
+    let touched = format!("{} touched taxels in orange", scene.touched.len());
+    drawing.text((0.5 * width, 30.0), name, style(16));
+    drawing.text(
+        (1.5 * width, 30.0),
+        "mean pressure on each patch",
+        style(16),
+    );
+    drawing.text((1.5 * width, 50.0), &touched, style(13));
+    let below = (0.5 * width, height - 24.0);
+    draw_scale_bar(&mut drawing, below, canvas.pixels_per_metre(), 0.22 * width);
+    let bar = Area {
+        x: 1.25 * width,
+        y: height - 40.0,
+        width: 0.5 * width,
+        height: 12.0,
+    };
+    draw_colours(&mut drawing, bar, tint);
+    for part in [0.0, 0.5, 1.0] {
+        let (x, y) = bar.at(part, 0.0);
+        let kilopascals = format!(
+            "{} kPa",
+            short_number((0.1 * part * highest).round() / 100.0)
+        );
+        drawing.text((x, y + 16.0), &kilopascals, style(12));
+    }
+    picture.print(&drawing)?;
+    Ok(picture)
 }

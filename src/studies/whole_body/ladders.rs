@@ -1,16 +1,13 @@
 //! Scaling series: computing time per step while the skin, the touch or the object grows. The skin consists of equal cylinders ("sleeves") far apart. A square
 //! of spheres (cushion), bent around the first sleeve, touches it.
 
-use crate::error::Result;
-use crate::geometry::Pose;
+use crate::studies::prelude::*;
 use crate::studies::whole_body::drive::{Drive, Posture, cushion};
-use crate::studies::whole_body::plan::{Aim, WholeBodyPlan};
+use crate::studies::whole_body::plan::{Aim, LaddersSpec, WholeBodyPlan};
 use crate::studies::whole_body::rows::{Driven, Series};
-use crate::studies::whole_body::spec::LaddersSpec;
 use crate::whole_body::WholeBody;
-use crate::world::{Extrusion, Oscillation, Patch, Taxel};
+use crate::world::{Extrusion, Oscillation, Patch};
 use glam::{DQuat, DVec3};
-use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// Numbers of patches around and along a cylindrical sleeve of skin, from the smallest to the largest sleeve. With ten patches of 10,000 taxels each, 100,000

@@ -14,16 +14,12 @@
 mod charts;
 mod drive;
 mod ladders;
-mod picture;
 mod plan;
 mod recognition;
 pub mod rows;
-mod spec;
-mod steps;
 mod study;
 
-pub use crate::studies::whole_body::plan::{Aim, ScenePlan, WholeBodyPlan};
-pub use crate::studies::whole_body::spec::{
-    BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodySpec,
-    WholeBodyStudySpec,
+pub use crate::studies::whole_body::plan::{
+    Aim, BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, ScenePlan,
+    WholeBodyPlan, WholeBodySpec, WholeBodyStudySpec,
 };

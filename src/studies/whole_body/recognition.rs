@@ -1,19 +1,13 @@
 //! Object recognition from the measurements of a whole skin: one linear SVM per compression, trained and tested on simulated touches.
 
-use crate::engine::progress::Progress;
-use crate::error::Result;
-use crate::geometry::Pose;
-use crate::inputs::units::MM;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
-use crate::random::Seed;
-use crate::sensing::{Columns, Ensemble, Projection};
+use crate::sensing::Columns;
 use crate::studies::model_recognition::{accuracy, touches_of};
+use crate::studies::prelude::*;
 use crate::studies::whole_body::drive::{Drive, Posture, built_in};
 use crate::studies::whole_body::plan::WholeBodyPlan;
 use crate::studies::whole_body::rows::BodyRecognition;
-use crate::world::ImageShape;
 use glam::DQuat;
 use ndarray::{Array2, ArrayView2, Axis};
 use rand::Rng;

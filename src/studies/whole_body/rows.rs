@@ -1,7 +1,6 @@
 //! Rows of the result tables of a whole-body study: one plain struct for each kind of row, with one field per column.
 
 use crate::studies::prelude::*;
-use serde::{Deserialize, Serialize};
 
 /// Group to which a measured case belongs: the scenes, or one of the scaling series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,23 +1,17 @@
 //! Whole-body study: training comes first, then scenes and scaling series one after the other, so that timings do not disturb each other.
 
-use crate::engine::work_items::scale::Stage;
-use crate::geometry::Pose;
 use crate::inputs::object_files::file_content;
-use crate::inputs::units::MM;
 use crate::objects::SphereUnion;
-use crate::report::study_content::Beyond;
 use crate::studies::prelude::*;
-use crate::studies::whole_body::charts::{answers, charts};
+use crate::studies::whole_body::charts::{answers, charts, picture_of_body};
 use crate::studies::whole_body::drive::{Drive, Posture, of_scene};
 use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
-use crate::studies::whole_body::picture::picture_of_body;
-use crate::studies::whole_body::plan::{BodySize, ScenePlan, WholeBodyPlan};
+use crate::studies::whole_body::plan::{BodySize, ScenePlan, WholeBodyPlan, WholeBodyStudySpec};
 use crate::studies::whole_body::recognition::learn;
 use crate::studies::whole_body::rows::{
     BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStage, BodyTouch, Series, StepTime,
     WholeBodyRows,
 };
-use crate::studies::whole_body::spec::WholeBodyStudySpec;
 use crate::whole_body::{BodyState, CoveredRobot};
 use std::collections::BTreeMap;
 
