@@ -10,9 +10,7 @@ use bubbletouch::kinds::recognition::{RecognitionRows, RecognitionStudy};
 use bubbletouch::random::Seed;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::work_items::{
-    ItemRows, Part, PendingItems, RunOptions, StudyRun, WorkItem,
-};
+use bubbletouch::study::work_items::{ItemRows, Part, PendingItems, RunOptions, WorkItem};
 use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -114,7 +112,7 @@ fn n_pending<R: ItemRows>(items: &[WorkItem], journal: &Journal) -> usize {
         journal,
         ..RunOptions::whole(&Silent)
     };
-    StudyRun::<R>::new(items, &options).pending().n()
+    PendingItems::<R>::new(items, &options).n()
 }
 
 fn time_items(folder: &Path) -> Result<()> {
@@ -129,8 +127,11 @@ fn time_items(folder: &Path) -> Result<()> {
             progress: &Silent,
         };
         let items = nothing_items();
-        let run = StudyRun::new(&items, &options);
-        let (rows, _) = run.run(measure_nothing, |_, _| (), name)?;
+        let pending = PendingItems::new(&items, &options);
+        if pending.n() > 0 {
+            measure_nothing(&pending)?;
+        }
+        let (rows, _) = pending.into_rows(|_, _| (), name);
         journal.sync()?;
         assert_eq!(rows.rows.len(), N_ITEMS);
         let seconds = start.elapsed().as_secs_f64();
@@ -195,11 +196,14 @@ fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<f64> {
         progress: &Silent,
     };
     let items = study.work_items();
-    let (rows, failures) = StudyRun::new(&items, &options).run(
-        |pending| study.measure(pending),
+    let pending = PendingItems::new(&items, &options);
+    if pending.n() > 0 {
+        study.measure(&pending)?;
+    }
+    let (rows, failures) = pending.into_rows(
         |number, rows| study.place(number, rows),
         |number| study.item_words(number, &items[number]),
-    )?;
+    );
     assert!(failures.is_empty(), "{:?}", failures[0]);
     let outcome = study.outcome(rows)?;
     journal.sync()?;

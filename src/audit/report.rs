@@ -2,7 +2,7 @@
 
 use crate::audit::finding::{ALPHA, Finding, Verdict, by_verdict};
 use crate::audit::run::Audit;
-use crate::engine::program::PROGRAM;
+use crate::engine::provenance::PROGRAM;
 use crate::error::Result;
 use crate::report::folder::{NamedFile, table_files};
 use crate::report::page::{Section, StudyAbout, png_element};

@@ -4,10 +4,9 @@ use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::provenance::{Manifest, REPORT};
-use crate::engine::work_items::pending::{Part, RunOptions};
-use crate::engine::work_items::scale::{threads_within, within_memory};
-use crate::engine::work_items::study_run::{ItemFailure, StudyRun};
-use crate::engine::work_items::work_item::WorkItem;
+use crate::engine::work_items::{
+    ItemFailure, Part, PendingItems, RunOptions, WorkItem, threads_within, within_memory,
+};
 use crate::error::{Error, Result};
 use crate::files::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN, check_output};
 use crate::inputs::content_hash::sha256;
@@ -15,8 +14,7 @@ use crate::random::Seed;
 use crate::report::csv_tables::{FAILURES_FILE, read_rows};
 use crate::report::folder::{NamedFile, table_files, write_files};
 use crate::report::page::StudyAbout;
-use crate::report::study_content::ChartFormat;
-use crate::report::study_content::Found;
+use crate::report::study_content::{ChartFormat, Found};
 use crate::report::study_folder::{files_with, first_found, words_of};
 use crate::studies::source::Source;
 use crate::studies::study::{AnyStudy, Facts, Outcome, Study, run_items};
@@ -65,20 +63,20 @@ impl<K: Study> Loaded<K> {
         })
     }
 
-    /// Returns the run of the work items in `part` that have no result in the journal; failed items are included if `retries` is set.
-    fn run_of<'a>(
+    /// Returns the work items in `part` that have no result in the journal; failed items are included if `retries` is set.
+    fn pending<'a>(
         &'a self,
         part: Part<'a>,
         journal: &'a Journal,
         retries: bool,
-    ) -> StudyRun<'a, K::Rows> {
+    ) -> PendingItems<'a, K::Rows> {
         let options = RunOptions {
             journal,
             part,
             retries,
             ..RunOptions::whole(&Silent)
         };
-        StudyRun::new(&self.items, &options)
+        PendingItems::new(&self.items, &options)
     }
 
     /// Adds the study's notes to its tables.
@@ -126,15 +124,15 @@ impl<K: Study> AnyStudy for Loaded<K> {
     }
 
     fn n_pending(&self, part: Part, journal: &Journal) -> usize {
-        self.run_of(part, journal, false).pending().n()
+        self.pending(part, journal, false).n()
     }
 
     fn n_without_success(&self, part: Part, journal: &Journal) -> usize {
-        self.run_of(part, journal, true).pending().n()
+        self.pending(part, journal, true).n()
     }
 
     fn check_elsewhere(&self, part: Part, journal: &Journal) -> Result<Vec<Error>> {
-        self.kind.check(self.run_of(part, journal, true).pending())
+        self.kind.check(&self.pending(part, journal, true))
     }
 
     fn run(&self, options: &RunOptions) -> Result<Outcome> {
@@ -224,7 +222,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
     }
 
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()> {
-        let mut tables = K::TABLES.read(folder)?;
+        let mut tables = K::read_tables(folder)?;
         self.note(&mut tables);
         tables.extend(FAILURES.read_if_there(folder)?);
         let manifest = about.manifest.clone();

@@ -5,14 +5,12 @@
 //! A kind of study ([`Study`]) lists the work items of a study, computes them, and makes tables, charts, pictures and answers. All
 //! commands use [`AnyStudy`], so that every command works with every kind.
 
-pub(crate) mod groups;
 pub(crate) mod loaded;
-pub(crate) mod median_time;
-pub(crate) mod model_recognition;
 pub mod object_detail;
 pub mod prelude;
 pub mod recognition;
 pub mod reconstruction;
+mod shared_measurements;
 pub(crate) mod source;
 pub mod stability;
 pub(crate) mod study;
@@ -25,8 +23,6 @@ pub use crate::studies::source::Source;
 pub use crate::studies::study::{
     About, AnyFile, AnyStudy, Facts, Outcome, Study, TableFiles, run_whole,
 };
-
-use crate::studies::groups::{found_and_cost, grouped};
 
 use crate::engine::axes::AxisValues;
 use crate::error::{Error, Result};
@@ -47,6 +43,7 @@ pub(crate) struct Entry {
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
     /// Table files that a study of the kind writes.
     pub tables: TableFiles,
+    read_tables: fn(&Path) -> Result<Vec<Table>>,
     /// Function that returns the JSON Schema of the kind's study files.
     pub schema: fn() -> serde_json::Value,
     /// Function that returns the descriptions of all keys that a study file of the kind may have.
@@ -90,6 +87,7 @@ const fn entry<K: Study>() -> Entry {
         about: K::ABOUT,
         load: |source| Ok(Box::new(Loaded::<K>::load(source)?)),
         tables: K::TABLES,
+        read_tables: K::read_tables,
         schema: K::Spec::schema,
         keys: K::keys,
     }
@@ -174,7 +172,7 @@ pub fn check_folder(study: &str, folder: &Path) -> Result<()> {
 /// If the folder has no study, or a table cannot be read or has other columns.
 pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
     let entry = find(&Source::of_results(folder)?.text).unwrap_or(&RECOGNITION);
-    Ok((entry.about, entry.tables.read(folder)?))
+    Ok((entry.about, (entry.read_tables)(folder)?))
 }
 
 /// Returns the table of failed work items in a result folder, or `None` if no item failed.

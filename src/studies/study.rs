@@ -4,15 +4,16 @@ use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::Progress;
 use crate::engine::provenance::Manifest;
-use crate::engine::work_items::pending::{Part, RunOptions};
-use crate::engine::work_items::{ItemFailure, ItemRows, PendingItems, Scale, StudyRun, WorkItem};
+use crate::engine::work_items::{
+    ItemFailure, ItemRows, Part, PendingItems, RunOptions, Scale, WorkItem,
+};
 use crate::error::{Error, Result};
+use crate::files::has_table;
 use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::params::{Described, joined, keys_of};
 use crate::inputs::toml_value::is_at;
 use crate::report::page::StudyAbout;
-use crate::report::study_content::Beyond;
-use crate::report::study_content::ChartFormat;
+use crate::report::study_content::{Beyond, ChartFormat};
 use crate::studies::recognition::spec::keys::keys_without_axes;
 use crate::studies::source::Source;
 use crate::table::{ChartSpec, Columns, File, FileAbout, Table};
@@ -154,9 +155,6 @@ impl Facts {
 
 /// Table file without a static row type, so that files of different tables can be in one list.
 pub trait AnyFile: Sync {
-    /// Returns the file name of the table.
-    fn name(&self) -> &'static str;
-
     /// Returns the description of the table file; see [`File::about`].
     fn about(&self) -> FileAbout;
 
@@ -165,19 +163,9 @@ pub trait AnyFile: Sync {
     /// # Errors
     /// If the file cannot be read or is not a table of this kind.
     fn read(&self, folder: &Path) -> Result<Table>;
-
-    /// Reads the table from a result folder; returns `None` if the file does not exist.
-    ///
-    /// # Errors
-    /// If the file cannot be read or is not a table of this kind.
-    fn read_if_there(&self, folder: &Path) -> Result<Option<Table>>;
 }
 
 impl<R: Columns> AnyFile for File<R> {
-    fn name(&self) -> &'static str {
-        self.name()
-    }
-
     fn about(&self) -> FileAbout {
         self.about()
     }
@@ -185,14 +173,7 @@ impl<R: Columns> AnyFile for File<R> {
     fn read(&self, folder: &Path) -> Result<Table> {
         self.read(folder)
     }
-
-    fn read_if_there(&self, folder: &Path) -> Result<Option<Table>> {
-        self.read_if_there(folder)
-    }
 }
-
-/// Function that reads the tables of a folder.
-type ReadTables = fn(&Path) -> Result<Vec<Table>>;
 
 /// Table files that studies of a kind write.
 #[derive(Clone, Copy)]
@@ -201,38 +182,30 @@ pub struct TableFiles {
     pub always: &'static [&'static dyn AnyFile],
     /// Table files that are written only if the study has certain optional parts.
     pub of_parts: &'static [&'static dyn AnyFile],
-    /// Function that reads all tables of a folder, for tables whose columns depend on the study.
-    pub read: Option<ReadTables>,
 }
 
 impl TableFiles {
     /// Creates a list of table files that every study of the kind writes; there are no optional files.
     pub const fn always(always: &'static [&'static dyn AnyFile]) -> Self {
-        Self {
-            always,
-            of_parts: &[],
-            read: None,
-        }
+        let of_parts = &[];
+        Self { always, of_parts }
     }
 
     /// Returns the names of all table files that a study may write.
     pub fn names(&self) -> Vec<&'static str> {
         let files = self.always.iter().chain(self.of_parts);
-        files.map(|file| file.name()).collect()
+        files.map(|file| file.about().name).collect()
     }
 
-    /// Reads all tables of a result folder, in the order in which a study creates them.
+    /// Reads all tables of a result folder, in the order of their files.
     ///
     /// # Errors
     /// If a table cannot be read or has other columns.
     pub fn read(&self, folder: &Path) -> Result<Vec<Table>> {
-        if let Some(read) = self.read {
-            return read(folder);
-        }
-        let files = self.always.iter().map(|file| file.read(folder).map(Some));
-        let of_parts = self.of_parts.iter().map(|file| file.read_if_there(folder));
-        let files = files.chain(of_parts);
-        files.filter_map(Result::transpose).collect()
+        let is_there = |file: &&&dyn AnyFile| has_table(folder, file.about().name);
+        let of_parts = self.of_parts.iter().filter(is_there);
+        let files = self.always.iter().chain(of_parts);
+        files.map(|file| file.read(folder)).collect()
     }
 }
 
@@ -306,11 +279,19 @@ pub trait Study: Send + Sized + Sync + 'static {
         item.name.clone()
     }
 
-    /// Creates the result tables from the rows of all work items that did not fail.
+    /// Creates the result tables from the rows of all work items that did not fail. Tables that are computed from others, without a file, are last.
     ///
     /// # Errors
     /// If a file that the tables need cannot be read.
     fn tables(&self, rows: Self::Rows) -> Result<Vec<Table>>;
+
+    /// Reads all tables of a result folder, in the order in which [`Study::tables`] creates them.
+    ///
+    /// # Errors
+    /// If a table cannot be read or has other columns.
+    fn read_tables(folder: &Path) -> Result<Vec<Table>> {
+        Self::TABLES.read(folder)
+    }
 
     /// Returns the charts of the result tables, the most important one first.
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec>;
@@ -388,14 +369,16 @@ pub(crate) fn run_items<S: Study>(
     items: &[WorkItem],
     options: &RunOptions,
 ) -> Result<(S::Rows, Vec<ItemFailure>)> {
-    StudyRun::new(items, options).run(
-        |pending| {
-            study.check(pending)?;
-            study.measure(pending)
-        },
+    let pending = PendingItems::new(items, options);
+    options.progress.expect(pending.n());
+    if pending.n() > 0 {
+        study.check(&pending)?;
+        study.measure(&pending)?;
+    }
+    Ok(pending.into_rows(
         |number, rows| study.place(number, rows),
         |number| study.item_words(number, &items[number]),
-    )
+    ))
 }
 
 /// Runs a whole study without a journal; the first failed work item ends the run.

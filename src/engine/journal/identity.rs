@@ -29,8 +29,8 @@ impl Identity {
     /// Creates the identity of a study, which consists of the TOML text, the objects and this program.
     pub fn new(study: String, objects: BTreeMap<String, String>, items: Arc<[WorkItem]>) -> Self {
         Self {
-            program: crate::engine::program::PROGRAM.to_owned(),
-            source: crate::engine::program::SOURCE.to_owned(),
+            program: crate::engine::provenance::PROGRAM.to_owned(),
+            source: crate::engine::provenance::SOURCE.to_owned(),
             study,
             objects,
             items,

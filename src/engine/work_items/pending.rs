@@ -1,15 +1,15 @@
-//! Pending work items, which a run has yet to compute, and the options of the run: the items to compute, and the place where their results are stored.
+//! Run of a study: its options, and the work items that it has yet to compute. Results that the journal already contains are reused.
 
 use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::Progress;
 use crate::engine::shard::Shard;
-use crate::engine::work_items::record::{ItemResult, ItemRows};
-use crate::engine::work_items::work_item::WorkItem;
+use crate::engine::work_items::work_item::{ItemResult, ItemRows, WorkItem};
 use crate::error::Result;
+use crate::row;
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 /// Selection of the work items that a run of a study computes.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +50,15 @@ impl<'a> RunOptions<'a> {
     }
 }
 
+row! {
+/// Failed work item, as a row of the table `failures.csv`.
+pub struct ItemFailure {
+    /// Name of the work item, in words.
+    work_item: String => Subject "work item";
+    /// Message of the error that ended the work item.
+    error: String => Note;
+} }
+
 /// Work items that a run has yet to compute, identified by their numbers among all items of the study.
 pub struct PendingItems<'a, R> {
     options: RunOptions<'a>,
@@ -58,22 +67,32 @@ pub struct PendingItems<'a, R> {
     items: &'a [WorkItem],
     /// Whether each work item of the study is pending.
     is_pending: Vec<bool>,
-    /// Results of the items that this run has finished, by item number.
-    results: Mutex<BTreeMap<usize, ItemResult<R>>>,
+    /// Result of each work item, of an earlier run or of this one; `None` if the item is unfinished.
+    results: Mutex<Vec<Option<ItemResult<R>>>>,
 }
 
 impl<'a, R: ItemRows> PendingItems<'a, R> {
-    /// Creates the list of the work items that are pending among all items.
-    pub(crate) fn new(
-        options: &RunOptions<'a>,
-        (items, is_pending): (&'a [WorkItem], Vec<bool>),
-    ) -> Self {
+    /// Creates the list of the work items in the part that the options select. Items that have a result in the journal are not pending.
+    pub fn new(items: &'a [WorkItem], options: &RunOptions<'a>) -> Self {
+        let in_journal = items.iter().map(|item| options.journal.get(&item.key()));
+        let mut results: Vec<Option<ItemResult<R>>> = in_journal.collect();
+        let is_in = is_in(items, options.part);
+        let take_pending = |(number, result): (usize, &mut Option<ItemResult<R>>)| {
+            let is_done = result
+                .as_ref()
+                .is_some_and(|found| found.is_ok() || !options.retries);
+            let is_pending = !is_done && is_in(number);
+            if is_pending {
+                *result = None;
+            }
+            is_pending
+        };
         Self {
             options: *options,
             progress: options.progress,
             items,
-            is_pending,
-            results: Mutex::default(),
+            is_pending: results.iter_mut().enumerate().map(take_pending).collect(),
+            results: Mutex::new(results),
         }
     }
 
@@ -156,20 +175,59 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
             item.name
         );
         self.options.journal.keep(&item.key(), &result)?;
-        // The map is consistent even after a panic, because each insertion is one operation.
-        let results = self.results.lock();
-        let mut results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
-        results.insert(number, result);
+        // The list is consistent even after a panic, because each change is one assignment.
+        let mut results = self.results.lock().unwrap_or_else(PoisonError::into_inner);
+        results[number] = Some(result);
         self.progress.advance(1);
         self.progress.item_finished();
         Ok(())
     }
 
-    /// Returns whether each work item was pending, and the results of the finished work items by number.
-    pub(crate) fn into_results(self) -> (Vec<bool>, BTreeMap<usize, ItemResult<R>>) {
+    /// Returns all rows of the study, and the failed work items. The rows belong to all items that did not fail in this or an earlier run, in the order of
+    /// items. Except for times, they equal the rows of a run that computes all items together.
+    ///
+    /// `place(number, rows)` sets the values in the rows that depend on the item's number, such as numbers of configurations. `words(number)` returns the name
+    /// of an item in words, for failures.
+    pub fn into_rows(
+        self,
+        place: impl Fn(usize, &mut R),
+        words: impl Fn(usize) -> String,
+    ) -> (R, Vec<ItemFailure>) {
         let results = self.results.into_inner();
-        let results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
-        (self.is_pending, results)
+        let results = results.unwrap_or_else(PoisonError::into_inner);
+        let mut rows = R::default();
+        let mut failures = Vec::new();
+        for (number, result) in results.into_iter().enumerate() {
+            let error = match result {
+                Some(Ok(mut found)) => {
+                    place(number, &mut found);
+                    rows.append(found);
+                    continue;
+                }
+                Some(Err(error)) => error,
+                None if self.is_pending[number] => {
+                    "a defect of the program: it was passed over".to_owned()
+                }
+                // The item belongs to another shard.
+                None => continue,
+            };
+            failures.push(ItemFailure {
+                work_item: words(number),
+                error,
+            });
+        }
+        (rows, failures)
+    }
+}
+
+/// Returns a function that returns whether a work item, given by its number, belongs to `part`.
+fn is_in<'a>(items: &'a [WorkItem], part: Part<'a>) -> impl Fn(usize) -> bool + 'a {
+    let groups = items.iter().map(|item| item.group);
+    let n_groups = groups.max().map_or(0, |last| last + 1);
+    move |number| match part {
+        Part::All => true,
+        Part::Shard(shard) => shard.takes((items[number].group, n_groups), number),
+        Part::Only(numbers) => numbers.contains(&number),
     }
 }
 

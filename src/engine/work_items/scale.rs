@@ -34,6 +34,14 @@ pub struct Stage {
     pub items: Vec<f64>,
 }
 
+impl Stage {
+    /// Creates a stage of `bytes` bytes whose work items need no memory of their own.
+    pub fn of_bytes(bytes: f64) -> Self {
+        let items = Vec::new();
+        Self { bytes, items }
+    }
+}
+
 impl Scale {
     /// Returns the approximate memory of a run that computes one work item at a time, bytes. The memory that the process uses now counts as the memory of the
     /// program and the loaded study.

@@ -1,6 +1,6 @@
 //! Report on the differences between two result folders, as sentences, a table and a page.
 
-use crate::engine::program::PROGRAM;
+use crate::engine::provenance::PROGRAM;
 use crate::error::Result;
 use crate::quantile::quantile;
 use crate::report::differences::{ColumnDifferences, Difference, Significance};

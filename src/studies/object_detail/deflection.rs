@@ -1,8 +1,8 @@
 //! Deflections on a model, and their comparison with the deflections on the exact mesh.
 
 use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
-use crate::studies::median_time::median_s;
 use crate::studies::prelude::*;
+use crate::studies::shared_measurements::median_s;
 
 /// Summary of |δ − δ\*| over taxels, where δ is the deflection by a model and δ\* the deflection by the exact object.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

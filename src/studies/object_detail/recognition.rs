@@ -3,12 +3,12 @@
 //! All models of an object are touched in the same poses and to the same depth past their own first contact, as in other studies.
 
 use crate::learning::classifiers::classifier::Classifier;
-use crate::studies::model_recognition::{accuracy, touches_of};
 use crate::studies::object_detail::measured::{Level, Measured, Variant, levels, within};
 use crate::studies::object_detail::plan::{DetailRecognitionSpec, ObjectDetailPlan};
 use crate::studies::object_detail::rows::DetailRecognition;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::pressed_objects::simulate_array;
+use crate::studies::shared_measurements::{accuracy, touches_of};
 use ndarray::Array2;
 use std::ops::Range;
 

@@ -2,8 +2,6 @@
 
 use crate::inputs::object_files::{NamedMesh, load_named_meshes};
 use crate::inputs::packings::packing_path;
-use crate::studies::grouped;
-use crate::studies::model_recognition::check_apart;
 use crate::studies::object_detail::charts::{answers, charts};
 use crate::studies::object_detail::measured::{Level, Measured, levels};
 use crate::studies::object_detail::plan::{DetailMethod, ObjectDetailPlan, ObjectDetailStudySpec};
@@ -13,6 +11,7 @@ use crate::studies::object_detail::rows::{
     RECOGNITION,
 };
 use crate::studies::prelude::*;
+use crate::studies::shared_measurements::grouped;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -99,7 +98,6 @@ impl Study for ObjectDetailStudy {
     const TABLES: TableFiles = TableFiles {
         always: &[&DETAIL, &SUMMARY, &TIMING, &COST],
         of_parts: &[&RECOGNITION],
-        read: None,
     };
 
     type Spec = ObjectDetailStudySpec;
@@ -110,8 +108,13 @@ impl Study for ObjectDetailStudy {
         source.replace_objects(&mut spec.objects);
         let plan = ObjectDetailPlan::new(&source.place, spec)?;
         let meshes = load_named_meshes(&plan.meshes, &plan.spec.objects)?;
-        if plan.recognition().is_some() {
-            check_apart(&source.place, meshes.len())?;
+        if plan.recognition().is_some() && meshes.len() < 2 {
+            let given = format!("{} objects to recognise", meshes.len());
+            return Err(Error::input(
+                &source.place,
+                given,
+                "at least 2 to tell apart",
+            ));
         }
         Ok(Self {
             meshes,

@@ -2,7 +2,6 @@
 
 use crate::inputs::sensor_errors::NOISES;
 use crate::sensing::{PCA_ATOMS, Solver};
-use crate::studies::found_and_cost;
 use crate::studies::prelude::*;
 use crate::studies::recognition::spec::keys::keys_without_axes;
 use crate::studies::recognition::tables::table_files::set_noise_unit;
@@ -14,6 +13,7 @@ use crate::studies::reconstruction::rows::{
     ReconstructionRows, ReconstructionScore, ReconstructionTime,
 };
 use crate::studies::reconstruction::touches::{Touches, pareto};
+use crate::studies::shared_measurements::found_and_cost;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -47,18 +47,12 @@ const PARETO: File<(ReconstructionConfiguration, ReconstructionPareto)> = File::
 .summary()
 .of_times();
 
-/// Table files that every reconstruction study writes.
-const FILES: &[&dyn AnyFile] = &[&CONFIGURATIONS, &ENSEMBLES, &TIMING, &PARETO];
-
 impl Study for ReconstructionStudy {
     const ABOUT: About = About {
         table: "reconstruction",
         words: "a study that reconstructs frames",
     };
-    const TABLES: TableFiles = TableFiles {
-        read: Some(read_tables),
-        ..TableFiles::always(FILES)
-    };
+    const TABLES: TableFiles = TableFiles::always(&[&CONFIGURATIONS, &ENSEMBLES, &TIMING, &PARETO]);
 
     type Spec = ReconstructionStudySpec;
     type Rows = ReconstructionRows;
@@ -142,12 +136,16 @@ impl Study for ReconstructionStudy {
             configuration.configuration = numbers[&configuration.name()];
         }
         let pareto = pareto(&rows, &self.plan.noise);
-        let [configurations, timing] = found_and_cost(&CONFIGURATIONS, &TIMING, &rows)?;
+        let [configurations, timing] = found_and_cost((&CONFIGURATIONS, &TIMING), &rows)?;
         let ensembles = ENSEMBLES.table(&statistics)?;
         let pareto = PARETO.table(&pareto)?;
         Ok(with_both(
             [configurations, ensembles, timing, pareto].into(),
         ))
+    }
+
+    fn read_tables(folder: &Path) -> Result<Vec<Table>> {
+        Self::TABLES.read(folder).map(with_both)
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
@@ -164,11 +162,6 @@ impl Study for ReconstructionStudy {
             ..Beyond::default()
         })
     }
-}
-
-/// Reads all tables of a result folder.
-fn read_tables(folder: &Path) -> Result<Vec<Table>> {
-    TableFiles::always(FILES).read(folder).map(with_both)
 }
 
 /// Returns the tables in the order of their files, followed by a table of the error, its interval and the time of each configuration.

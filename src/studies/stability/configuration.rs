@@ -7,8 +7,8 @@ use crate::contact::{Approach, DamperState, Workspace, press_at_pose, spring_loa
 use crate::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, Steps, System, run,
 };
-use crate::studies::median_time::median_s;
 use crate::studies::prelude::*;
+use crate::studies::shared_measurements::median_s;
 use crate::studies::stability::plan::{ContactMethod, StabilityScene};
 use crate::studies::stability::rows::{
     Outcome, StabilityConfiguration, StabilityScore, StabilityTime, TOLERANCE,

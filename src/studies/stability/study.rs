@@ -2,6 +2,7 @@
 
 use crate::report::csv_tables::read_rows;
 use crate::studies::prelude::*;
+use crate::studies::shared_measurements::{found_and_cost, grouped};
 use crate::studies::stability::charts::{answers, charts, with_common};
 use crate::studies::stability::configuration::measure;
 use crate::studies::stability::plan::{StabilityPlan, StabilityScene, StabilityStudySpec};
@@ -9,7 +10,6 @@ use crate::studies::stability::rows::{
     Joints, Outcome, PeerScene, PeerSource, StabilityConfiguration, StabilityRow, StabilityScore,
     StabilitySummary, StabilityTime,
 };
-use crate::studies::{found_and_cost, grouped};
 use crate::table::csv_place;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -32,18 +32,12 @@ const JOINTS: File<Joints> = File::new(
 .summary()
 .of_times();
 
-/// Table files that every stability study writes.
-const FILES: &[&dyn AnyFile] = &[&CONFIGURATIONS, &SUMMARY, &TIMING, &JOINTS];
-
 impl Study for StabilityPlan {
     const ABOUT: About = About {
         table: "stability",
         words: "a study of where contact methods break",
     };
-    const TABLES: TableFiles = TableFiles {
-        read: Some(read_tables),
-        ..TableFiles::always(FILES)
-    };
+    const TABLES: TableFiles = TableFiles::always(&[&CONFIGURATIONS, &SUMMARY, &TIMING, &JOINTS]);
 
     type Spec = StabilityStudySpec;
     type Rows = Vec<StabilityRow>;
@@ -117,10 +111,14 @@ impl Study for StabilityPlan {
                 rows.partition_point(|(configuration, ..)| configuration.part <= row.0.part);
             rows.insert(behind, row);
         }
-        let [configurations, timing] = found_and_cost(&CONFIGURATIONS, &TIMING, &rows)?;
+        let [configurations, timing] = found_and_cost((&CONFIGURATIONS, &TIMING), &rows)?;
         let summary = SUMMARY.table(&summary(&rows))?;
         let joints = JOINTS.table(&joints(&rows))?;
         with_common(vec![configurations, summary, timing, joints])
+    }
+
+    fn read_tables(folder: &Path) -> Result<Vec<Table>> {
+        with_common(Self::TABLES.read(folder)?)
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
@@ -130,11 +128,6 @@ impl Study for StabilityPlan {
     fn answers(&self, tables: &[Table]) -> Vec<String> {
         answers(self, &charts(tables))
     }
-}
-
-/// Reads all tables of a result folder.
-fn read_tables(folder: &Path) -> Result<Vec<Table>> {
-    TableFiles::always(FILES).read(folder).and_then(with_common)
 }
 
 /// Returns one row for each scene, method and number of iterations, with counts of the outcomes, in the order of first occurrence.

@@ -3,8 +3,8 @@
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
 use crate::sensing::Columns;
-use crate::studies::model_recognition::{accuracy, touches_of};
 use crate::studies::prelude::*;
+use crate::studies::shared_measurements::{accuracy, touches_of};
 use crate::studies::whole_body::drive::{Drive, Posture, built_in};
 use crate::studies::whole_body::plan::WholeBodyPlan;
 use crate::studies::whole_body::rows::BodyRecognition;

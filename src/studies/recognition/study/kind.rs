@@ -14,6 +14,7 @@ use crate::studies::study::settings_words;
 use crate::world::ImageShape;
 use rayon::prelude::*;
 use std::collections::HashSet;
+use std::path::Path;
 
 /// Names of the tables and columns that contain the intervals of accuracies.
 const ACCURACIES: &str = "accuracy.csv, summary.csv: accuracy_low, accuracy_high";
@@ -64,7 +65,6 @@ impl Study for RecognitionStudy {
     const TABLES: TableFiles = TableFiles {
         always: charts::TABLES,
         of_parts: charts::TABLES_OF_PARTS,
-        read: Some(charts::read_tables),
     };
     const SUMMARY: Option<fn(&[Table], usize) -> String> = Some(charts::words);
     type Spec = StudySpec;
@@ -179,6 +179,10 @@ impl Study for RecognitionStudy {
 
     fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
         charts::tables_of(&self.outcome(rows)?)
+    }
+
+    fn read_tables(folder: &Path) -> Result<Vec<Table>> {
+        charts::read_tables(folder)
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {

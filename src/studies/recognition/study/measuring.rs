@@ -1,7 +1,7 @@
 //! Work items and their results: touches are simulated once per array, each group is measured once per trial, and each pending family is evaluated.
 
 use crate::engine::at_once::run_at_once;
-use crate::engine::work_items::pending::PendingItems;
+use crate::engine::work_items::PendingItems;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::Frames;
 use crate::studies::recognition::measurements::Measurements;

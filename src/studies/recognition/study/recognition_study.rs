@@ -1,7 +1,7 @@
 //! Recognition study with its work items and result tables.
 
-use crate::engine::work_items::scale::Scale;
-use crate::engine::work_items::shared::Shared;
+use crate::engine::work_items::Scale;
+use crate::engine::work_items::Shared;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{Samples, TouchSet};
 use crate::studies::recognition::plan::MeasurementGroup;

@@ -1,6 +1,6 @@
 //! Memory estimate of a recognition study: frames, measurements, and data of the training.
 
-use crate::engine::work_items::scale::{Scale, Stage};
+use crate::engine::work_items::{Scale, Stage};
 use crate::sensing::{Ensemble, N_COMPONENTS};
 use crate::studies::recognition::measurements::{MeasurementInputs, UNTOUCHED};
 use crate::studies::recognition::rows::{Configuration, join_values};
