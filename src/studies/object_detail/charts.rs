@@ -1,7 +1,7 @@
 //! Charts and answers of an object-detail study: deflection errors and costs of models, and the accuracy of classifiers trained on models.
 
 use crate::studies::object_detail::measured::within;
-use crate::studies::object_detail::rows::RECOGNITION;
+use crate::studies::object_detail::rows::*;
 use crate::studies::prelude::*;
 use crate::table::short_number;
 

@@ -4,8 +4,8 @@
 
 use crate::learning::classifiers::classifier::Classifier;
 use crate::studies::object_detail::measured::{Level, Measured, Variant, levels, within};
-use crate::studies::object_detail::plan::{DetailRecognitionSpec, ObjectDetailPlan};
-use crate::studies::object_detail::rows::DetailRecognition;
+use crate::studies::object_detail::plan::*;
+use crate::studies::object_detail::rows::*;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::pressed_objects::simulate_array;
 use crate::studies::shared_measurements::{accuracy, touches_of};

@@ -1,6 +1,6 @@
 //! Rows of the result tables of an object-detail study: one plain struct for each kind of row, with one field per column.
 
-use crate::studies::object_detail::plan::DetailMethod;
+use crate::studies::object_detail::plan::*;
 use crate::studies::prelude::*;
 
 /// Display names of the methods that replace a mesh by a model.
@@ -171,3 +171,20 @@ pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
     "Classifiers that learned from models",
     "",
 );
+
+/// File of the table of deflection errors, one row per object and model.
+pub(super) const DETAIL: File<(DetailConfiguration, DetailScore)> =
+    File::new("object_detail.csv", "Models of each object", "");
+pub(super) const SUMMARY: File<DetailSummary> = File::new(
+    "object_detail_summary.csv",
+    "Models over all objects",
+    "Medians and quartiles over objects. Deflection errors are means of |deflection − deflection of the exact mesh| over touched taxels; \
+     errors after offset are without the best constant depth.",
+)
+.summary();
+pub(super) const TIMING: File<(DetailConfiguration, DetailTime)> =
+    File::new("timing.csv", "Time of a touch of each model", "").of_times();
+pub(super) const COST: File<(DetailSummary, LevelTime)> =
+    File::new("object_detail_cost.csv", "Cost of deflection errors", "")
+        .of_times()
+        .summary();

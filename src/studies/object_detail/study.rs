@@ -4,12 +4,9 @@ use crate::inputs::object_files::{NamedMesh, load_named_meshes};
 use crate::inputs::packings::packing_path;
 use crate::studies::object_detail::charts::{answers, charts};
 use crate::studies::object_detail::measured::{Level, Measured, levels};
-use crate::studies::object_detail::plan::{DetailMethod, ObjectDetailPlan, ObjectDetailStudySpec};
+use crate::studies::object_detail::plan::*;
 use crate::studies::object_detail::recognition::{Learned, Sensor};
-use crate::studies::object_detail::rows::{
-    DetailConfiguration, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
-    RECOGNITION,
-};
+use crate::studies::object_detail::rows::*;
 use crate::studies::prelude::*;
 use crate::studies::shared_measurements::grouped;
 use rayon::prelude::*;
@@ -31,23 +28,6 @@ pub type DetailRows = (
     Vec<(DetailConfiguration, DetailTime)>,
     Vec<DetailRecognition>,
 );
-
-/// File of the table of deflection errors, one row per object and model.
-const DETAIL: File<(DetailConfiguration, DetailScore)> =
-    File::new("object_detail.csv", "Models of each object", "");
-const SUMMARY: File<DetailSummary> = File::new(
-    "object_detail_summary.csv",
-    "Models over all objects",
-    "Medians and quartiles over objects. Deflection errors are means of |deflection − deflection of the exact mesh| over touched taxels; \
-     errors after offset are without the best constant depth.",
-)
-.summary();
-const TIMING: File<(DetailConfiguration, DetailTime)> =
-    File::new("timing.csv", "Time of a touch of each model", "").of_times();
-const COST: File<(DetailSummary, LevelTime)> =
-    File::new("object_detail_cost.csv", "Cost of deflection errors", "")
-        .of_times()
-        .summary();
 
 /// Returns the number of the work item that computes all models of an object. For an index past the last object, returns the number of the first classifier's
 /// item.

@@ -4,7 +4,7 @@ use crate::report::advice::Candidates;
 use crate::report::pictures::snapshots::{Snapshots, snapshots};
 use crate::sensing::{Reconstructor, SensedDictionary};
 use crate::studies::prelude::*;
-use crate::studies::reconstruction::rows::BOTH;
+use crate::studies::reconstruction::rows::*;
 use crate::studies::reconstruction::study::ReconstructionStudy;
 use crate::table::{Along, At, Rule, Value};
 use ndarray::Array2;

@@ -2,11 +2,8 @@
 
 use crate::sensing::{Extremes, Reconstructor, SensedDictionary};
 use crate::studies::prelude::*;
-use crate::studies::reconstruction::plan::ReconstructionPlan;
-use crate::studies::reconstruction::rows::{
-    EnsembleStatistics, ReconstructionConfiguration, ReconstructionRow, ReconstructionRows,
-    ReconstructionTime,
-};
+use crate::studies::reconstruction::plan::*;
+use crate::studies::reconstruction::rows::*;
 use crate::studies::reconstruction::touches::{Found, Noisy, Touches, square_errors};
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;

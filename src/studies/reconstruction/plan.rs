@@ -7,7 +7,7 @@ use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::studies::prelude::*;
 use crate::studies::recognition::spec::signal::SignalSpec;
 use crate::studies::recognition::spec::study::SensingSpec;
-use crate::studies::reconstruction::rows::ReconstructionConfiguration;
+use crate::studies::reconstruction::rows::*;
 use crate::world::Grid;
 
 study_file! {

@@ -163,3 +163,24 @@ pub type ReconstructionRow = (
 
 /// Results of all work items: the configurations with their errors and times, and the isometry statistics.
 pub type ReconstructionRows = (Vec<ReconstructionRow>, Vec<EnsembleStatistics>);
+
+pub(super) const CONFIGURATIONS: File<(ReconstructionConfiguration, ReconstructionScore)> =
+    File::new(
+        "reconstruction.csv",
+        "Every configuration",
+        "Errors are relative to the clean frames: 0 is perfect, 1 is as wrong as an empty frame.",
+    );
+pub(super) const ISOMETRY: File<EnsembleStatistics> = File::new(
+    "ensembles.csv",
+    "Isometry of ensembles and dictionaries",
+    "Squared singular values of supports drawn at random, whose columns have a mean square norm of 1.",
+);
+pub(super) const TIMING: File<(ReconstructionConfiguration, ReconstructionTime)> =
+    File::new("timing.csv", "Time of every configuration", "").of_times();
+pub(super) const PARETO: File<(ReconstructionConfiguration, ReconstructionPareto)> = File::new(
+    "pareto.csv",
+    "Error and time of every configuration",
+    "One core, frames in blocks of 64.",
+)
+.summary()
+.of_times();

@@ -7,11 +7,8 @@ use crate::studies::recognition::spec::keys::keys_without_axes;
 use crate::studies::recognition::tables::table_files::set_noise_unit;
 use crate::studies::reconstruction::charts::{answers, charts};
 use crate::studies::reconstruction::measured::measure_cells;
-use crate::studies::reconstruction::plan::{ReconstructionPlan, ReconstructionStudySpec};
-use crate::studies::reconstruction::rows::{
-    BOTH, EnsembleStatistics, ReconstructionConfiguration, ReconstructionPareto,
-    ReconstructionRows, ReconstructionScore, ReconstructionTime,
-};
+use crate::studies::reconstruction::plan::*;
+use crate::studies::reconstruction::rows::*;
 use crate::studies::reconstruction::touches::{Touches, pareto};
 use crate::studies::shared_measurements::found_and_cost;
 use std::collections::BTreeMap;
@@ -27,32 +24,12 @@ pub struct ReconstructionStudy {
     frames: Shared<Touches>,
 }
 
-const CONFIGURATIONS: File<(ReconstructionConfiguration, ReconstructionScore)> = File::new(
-    "reconstruction.csv",
-    "Every configuration",
-    "Errors are relative to the clean frames: 0 is perfect, 1 is as wrong as an empty frame.",
-);
-const ENSEMBLES: File<EnsembleStatistics> = File::new(
-    "ensembles.csv",
-    "Isometry of ensembles and dictionaries",
-    "Squared singular values of supports drawn at random, whose columns have a mean square norm of 1.",
-);
-const TIMING: File<(ReconstructionConfiguration, ReconstructionTime)> =
-    File::new("timing.csv", "Time of every configuration", "").of_times();
-const PARETO: File<(ReconstructionConfiguration, ReconstructionPareto)> = File::new(
-    "pareto.csv",
-    "Error and time of every configuration",
-    "One core, frames in blocks of 64.",
-)
-.summary()
-.of_times();
-
 impl Study for ReconstructionStudy {
     const ABOUT: About = About {
         table: "reconstruction",
         words: "a study that reconstructs frames",
     };
-    const TABLES: TableFiles = TableFiles::always(&[&CONFIGURATIONS, &ENSEMBLES, &TIMING, &PARETO]);
+    const TABLES: TableFiles = TableFiles::always(&[&CONFIGURATIONS, &ISOMETRY, &TIMING, &PARETO]);
 
     type Spec = ReconstructionStudySpec;
     type Rows = ReconstructionRows;
@@ -137,7 +114,7 @@ impl Study for ReconstructionStudy {
         }
         let pareto = pareto(&rows, &self.plan.noise);
         let [configurations, timing] = found_and_cost((&CONFIGURATIONS, &TIMING), &rows)?;
-        let ensembles = ENSEMBLES.table(&statistics)?;
+        let ensembles = ISOMETRY.table(&statistics)?;
         let pareto = PARETO.table(&pareto)?;
         Ok(with_both(
             [configurations, ensembles, timing, pareto].into(),

@@ -10,10 +10,8 @@ use crate::studies::recognition::frames::reading::{
     ReadSkin, Reading, TouchToRead, measure, touches_to_read,
 };
 use crate::studies::recognition::frames::touch_set::TouchSet;
-use crate::studies::reconstruction::plan::ReconstructionPlan;
-use crate::studies::reconstruction::rows::{
-    ReconstructionConfiguration, ReconstructionPareto, ReconstructionRow, ReconstructionScore,
-};
+use crate::studies::reconstruction::plan::*;
+use crate::studies::reconstruction::rows::*;
 use crate::table::front;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Array2, ArrayView2, Axis};

@@ -5,8 +5,8 @@
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
 use crate::studies::prelude::*;
-use crate::studies::stability::plan::StabilityPlan;
-use crate::studies::stability::rows::{CommonScene, MethodScore};
+use crate::studies::stability::plan::*;
+use crate::studies::stability::rows::*;
 use crate::table::{Along, Rule, Shown, Value};
 
 /// Table of the outcomes in the common scenes, which is not written to a file.

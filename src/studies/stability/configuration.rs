@@ -9,10 +9,8 @@ use crate::dynamics::{
 };
 use crate::studies::prelude::*;
 use crate::studies::shared_measurements::median_s;
-use crate::studies::stability::plan::{ContactMethod, StabilityScene};
-use crate::studies::stability::rows::{
-    Outcome, StabilityConfiguration, StabilityScore, StabilityTime, TOLERANCE,
-};
+use crate::studies::stability::plan::*;
+use crate::studies::stability::rows::*;
 use crate::studies::stability::scene::{ConfigurationScene, GRAVITY};
 use crate::world::VelocityPlan;
 use glam::DVec3;

@@ -2,7 +2,7 @@
 
 use crate::files::FilePath;
 use crate::studies::prelude::*;
-use crate::studies::stability::rows::StabilityConfiguration;
+use crate::studies::stability::rows::*;
 use crate::study_file::toml_file;
 use std::path::{Path, PathBuf};
 

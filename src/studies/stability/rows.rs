@@ -2,7 +2,7 @@
 
 use crate::engine::work_items::any_number;
 use crate::studies::prelude::*;
-use crate::studies::stability::plan::{ContactMethod, StabilityScene};
+use crate::studies::stability::plan::*;
 
 /// Display names of the simulation methods.
 const METHODS: &[(&str, &str)] = &[
@@ -216,3 +216,21 @@ pub enum Outcome {
 
 /// Largest force imbalance and deflection error of a correct simulation, dimensionless.
 pub const TOLERANCE: f64 = 0.01;
+
+pub(super) const CONFIGURATIONS: File<(StabilityConfiguration, StabilityScore)> =
+    File::new("stability.csv", "Every configuration", "");
+pub(super) const SUMMARY: File<StabilitySummary> = File::new(
+    "stability_summary.csv",
+    "Scenes and methods",
+    "Right: force balance and deflections within 1 %. Imbalance, deflection: largest relative errors of finished runs.",
+)
+.summary();
+pub(super) const TIMING: File<(StabilityConfiguration, StabilityTime)> =
+    File::new("timing.csv", "Time of every configuration", "").of_times();
+pub(super) const JOINTS: File<Joints> = File::new(
+    "joints.csv",
+    "Taxels on joints",
+    "Plungers on SkinSim's springs and dampers with an equal load per taxel on all arrays. The quasi-static method has no time steps; its time is for the whole solution.",
+)
+.summary()
+.of_times();

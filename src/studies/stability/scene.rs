@@ -4,8 +4,8 @@ use crate::contact::equilibrium::HalfSpace;
 use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
 use crate::objects::{Sphere, SphereUnion};
 use crate::studies::prelude::*;
-use crate::studies::stability::plan::StabilityScene;
-use crate::studies::stability::rows::StabilityConfiguration;
+use crate::studies::stability::plan::*;
+use crate::studies::stability::rows::*;
 use crate::world::{Grid, Layout, Patch, Phase, Taxels, VelocityPlan};
 use glam::DVec3;
 

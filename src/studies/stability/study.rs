@@ -5,32 +5,11 @@ use crate::studies::prelude::*;
 use crate::studies::shared_measurements::{found_and_cost, grouped};
 use crate::studies::stability::charts::{answers, charts, with_common};
 use crate::studies::stability::configuration::measure;
-use crate::studies::stability::plan::{StabilityPlan, StabilityScene, StabilityStudySpec};
-use crate::studies::stability::rows::{
-    Joints, Outcome, PeerScene, PeerSource, StabilityConfiguration, StabilityRow, StabilityScore,
-    StabilitySummary, StabilityTime,
-};
+use crate::studies::stability::plan::*;
+use crate::studies::stability::rows::*;
 use crate::table::csv_place;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-
-const CONFIGURATIONS: File<(StabilityConfiguration, StabilityScore)> =
-    File::new("stability.csv", "Every configuration", "");
-const SUMMARY: File<StabilitySummary> = File::new(
-    "stability_summary.csv",
-    "Scenes and methods",
-    "Right: force balance and deflections within 1 %. Imbalance, deflection: largest relative errors of finished runs.",
-)
-.summary();
-const TIMING: File<(StabilityConfiguration, StabilityTime)> =
-    File::new("timing.csv", "Time of every configuration", "").of_times();
-const JOINTS: File<Joints> = File::new(
-    "joints.csv",
-    "Taxels on joints",
-    "Plungers on SkinSim's springs and dampers with an equal load per taxel on all arrays. The quasi-static method has no time steps; its time is for the whole solution.",
-)
-.summary()
-.of_times();
 
 impl Study for StabilityPlan {
     const ABOUT: About = About {

@@ -6,7 +6,7 @@ use crate::report::pictures::drawing::{Align, Area, Drawing, TextStyle};
 use crate::report::pictures::picture::Picture;
 use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
 use crate::studies::prelude::*;
-use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
+use crate::studies::whole_body::plan::*;
 use crate::table::{Along, Rule, Shown, short_number};
 use bubbletouch_sim::raster::{Canvas, Hit, Lighting, view_from};
 use glam::{DQuat, DVec2, DVec3};

@@ -4,11 +4,9 @@ use crate::inputs::objects_spec::ModelSpec;
 use crate::objects::{Catalogue, Sphere, SphereUnion, pack};
 use crate::scene::Reader;
 use crate::studies::prelude::*;
-use crate::studies::whole_body::plan::{Aim, ScenePlan, WholeBodyPlan};
+use crate::studies::whole_body::plan::*;
 use crate::studies::whole_body::recognition::Compression;
-use crate::studies::whole_body::rows::{
-    BodyCase, BodyCount, BodySensed, BodyStage, Driven, Series, Stage, StepTime,
-};
+use crate::studies::whole_body::rows::*;
 use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
 use crate::world::Oscillation;
 use glam::DVec3;
@@ -275,7 +273,7 @@ impl Drive<'_> {
         }
         let steps = &steps[WARM_UP..];
         let press = steps.iter().map(|step| step.press_s);
-        let mut times = vec![time(Stage::Press, "", press.clone())];
+        let mut times = vec![time(StepPart::Press, "", press.clone())];
         let mut decided = Vec::new();
         for (compression, (_, sensed)) in compressions.iter().zip(&sensed) {
             let sensed = &sensed[WARM_UP..];
@@ -284,9 +282,9 @@ impl Drive<'_> {
             let whole = whole.map(|(press_s, of)| press_s + of.compress_s + of.classify_s);
             let compress = sensed.iter().map(|of| of.compress_s);
             let classify = sensed.iter().map(|of| of.classify_s);
-            times.push(time(Stage::Compress, name, compress));
-            times.push(time(Stage::Classify, name, classify));
-            times.push(time(Stage::Whole, name, whole));
+            times.push(time(StepPart::Compress, name, compress));
+            times.push(time(StepPart::Classify, name, classify));
+            times.push(time(StepPart::Whole, name, whole));
             decided.push(decision(plan, (&case.name, name), sensed));
         }
         Ok(Driven {
@@ -360,7 +358,7 @@ fn decision(
 }
 
 fn time(
-    stage: Stage,
+    stage: StepPart,
     compression: &str,
     seconds: impl Iterator<Item = f64>,
 ) -> (BodyStage, StepTime) {

@@ -3,8 +3,8 @@
 
 use crate::studies::prelude::*;
 use crate::studies::whole_body::drive::{Drive, Posture, cushion};
-use crate::studies::whole_body::plan::{Aim, LaddersSpec, WholeBodyPlan};
-use crate::studies::whole_body::rows::{Driven, Series};
+use crate::studies::whole_body::plan::*;
+use crate::studies::whole_body::rows::*;
 use crate::whole_body::WholeBody;
 use crate::world::{Extrusion, Oscillation, Patch};
 use glam::{DQuat, DVec3};

@@ -105,7 +105,7 @@ pub struct BodyRecognition {
 /// Part of a step whose computing time is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Stage {
+pub enum StepPart {
     /// Simulation of the contact with the skin.
     Press,
     /// Compression of the touched taxels' readings into measurements.
@@ -117,10 +117,10 @@ pub enum Stage {
 }
 
 row! {
-/// Stage of a step whose time is measured. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
+/// StepPart of a step whose time is measured. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
 pub struct BodyStage {
     /// Timed stage of a step: press, compress, classify, or all three together.
-    stage: Stage => Note;
+    stage: StepPart => Note;
     /// Name of the compression; empty for the stage `press`.
     compression: String => Choice;
     /// Number of threads that share the work of a step.
@@ -169,3 +169,26 @@ pub struct Driven {
 
 /// Results of all work items: recognition accuracies of compressions, and results of scenes and scaling series.
 pub type WholeBodyRows = (Vec<BodyRecognition>, Vec<Driven>);
+
+pub(super) const CASES: File<(BodyCase, BodyCount)> =
+    File::new("whole_body.csv", "Scenes and scaling points", "");
+pub(super) const RECOGNITION: File<BodyRecognition> = File::new(
+    "recognition.csv",
+    "Recognition",
+    "A linear SVM, trained and tested on simulated touches.",
+);
+pub(super) const SENSED: File<BodySensed> =
+    File::new("sensed.csv", "Recognised classes of the scenes", "");
+pub(super) const TIMING: File<(BodyCase, BodyStage, StepTime)> = File::new(
+    "timing.csv",
+    "From touch to answer",
+    "Medians over steps, on this machine.",
+)
+.of_times();
+pub(super) const STEPS: File<(BodyCase, BodyTouch, StepTime)> = File::new(
+    "steps.csv",
+    "Steps of the skin",
+    "Medians over steps of a moving object; scaling points press a cushion of spheres, half of them on its far side.",
+)
+.summary()
+.of_times();

@@ -6,36 +6,11 @@ use crate::studies::prelude::*;
 use crate::studies::whole_body::charts::{answers, charts, picture_of_body};
 use crate::studies::whole_body::drive::{Drive, Posture, of_scene};
 use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
-use crate::studies::whole_body::plan::{BodySize, ScenePlan, WholeBodyPlan, WholeBodyStudySpec};
+use crate::studies::whole_body::plan::*;
 use crate::studies::whole_body::recognition::learn;
-use crate::studies::whole_body::rows::{
-    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStage, BodyTouch, Series, StepTime,
-    WholeBodyRows,
-};
+use crate::studies::whole_body::rows::*;
 use crate::whole_body::{BodyState, CoveredRobot};
 use std::collections::BTreeMap;
-
-const CASES: File<(BodyCase, BodyCount)> =
-    File::new("whole_body.csv", "Scenes and scaling points", "");
-const RECOGNITION: File<BodyRecognition> = File::new(
-    "recognition.csv",
-    "Recognition",
-    "A linear SVM, trained and tested on simulated touches.",
-);
-const SENSED: File<BodySensed> = File::new("sensed.csv", "Recognised classes of the scenes", "");
-const TIMING: File<(BodyCase, BodyStage, StepTime)> = File::new(
-    "timing.csv",
-    "From touch to answer",
-    "Medians over steps, on this machine.",
-)
-.of_times();
-const STEPS: File<(BodyCase, BodyTouch, StepTime)> = File::new(
-    "steps.csv",
-    "Steps of the skin",
-    "Medians over steps of a moving object; scaling points press a cushion of spheres, half of them on its far side.",
-)
-.summary()
-.of_times();
 
 impl Study for WholeBodyPlan {
     const ABOUT: About = About {

@@ -2,7 +2,8 @@
 
 use crate::command::{Case, says};
 use bubbletouch::kinds::whole_body::rows::{
-    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStage, BodyTouch, Series, Stage, StepTime,
+    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStage, BodyTouch, Series, StepPart,
+    StepTime,
 };
 use bubbletouch::report::csv_tables::read_rows;
 use std::fs;
@@ -82,7 +83,7 @@ fn tables_obey_their_laws() {
         assert!(time.us_p05 <= time.us_median && time.us_median <= time.us_p95);
         assert_eq!(
             of.compression.is_empty(),
-            of.stage == Stage::Press,
+            of.stage == StepPart::Press,
             "{case:?}"
         );
     }
