@@ -139,12 +139,11 @@ impl Manifest {
             return Ok(None);
         }
         let text = fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
-        let is_of_page = |json: &serde_json::Value| json["written_by"] == REPORT;
-        if serde_json::from_str(&text).is_ok_and(|json| is_of_page(&json)) {
-            return Ok(None);
-        }
         let not_ours = |e| Error::input(path.display(), e, "a manifest of this program");
         let json: serde_json::Value = serde_json::from_str(&text).map_err(not_ours)?;
+        if json["written_by"] == REPORT {
+            return Ok(None);
+        }
         let schema = json["schema"].as_u64().unwrap_or(0);
         if schema != u64::from(SCHEMA) {
             let given = format!("results with schema = {schema}");

@@ -6,10 +6,9 @@ use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::value::RawValue;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{DirEntry, File, OpenOptions, TryLockError};
 use std::io::ErrorKind::{NotADirectory, NotFound};
 use std::io::{self, Read, Seek, SeekFrom, Write};
-use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
@@ -60,9 +59,8 @@ impl Journal {
             identity.check_same((begun, journal.records()), &path.display().to_string())?;
         }
         let n_whole = journal.before.n_whole as u64;
-        let cut = file
-            .set_len(n_whole)
-            .and_then(|()| file.seek(SeekFrom::End(0)));
+        let cut = file.0.set_len(n_whole);
+        let cut = cut.and_then(|()| file.0.seek(SeekFrom::End(0)));
         cut.map_err(|e| Error::io(path, "write", e))?;
         journal.writer = Mutex::new(Some(Writer {
             file,
@@ -202,7 +200,7 @@ impl Writer {
             return Err(io::Error::other("an earlier line could not be written"));
         }
         self.is_broken = true;
-        self.file.write_all(line.as_bytes())?;
+        self.file.0.write_all(line.as_bytes())?;
         if self.synced.elapsed() >= SYNC_INTERVAL {
             self.sync()?;
         }
@@ -211,7 +209,7 @@ impl Writer {
     }
 
     fn sync(&mut self) -> io::Result<()> {
-        self.file.sync_data()?;
+        self.file.0.sync_data()?;
         self.synced = Instant::now();
         Ok(())
     }
@@ -244,8 +242,8 @@ fn read_locked(path: &Path) -> Result<(LockedFile, Vec<u8>)> {
     let file = file.map_err(|e| Error::io(path, "write", e))?;
     let mut file = LockedFile::new(path, file)?;
     let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes)
-        .map_err(|e| Error::io(path, "read", e))?;
+    let read = file.0.read_to_end(&mut bytes);
+    read.map_err(|e| Error::io(path, "read", e))?;
     Ok((file, bytes))
 }
 
@@ -261,7 +259,11 @@ impl Journal {
     ) -> Result<usize> {
         let mut n_journals = 0;
         for folder in folders {
-            for path in shard_journals(folder)? {
+            let mut names = names_in(folder)?;
+            // The file name has the form of `Shard::file_name`.
+            names.retain(|name| is_journal(name) && name.contains("-of-"));
+            for name in names {
+                let path = folder.join(name);
                 n_journals += 1;
                 if let Some((begun, shard)) = Self::read(&path)? {
                     let place = path.display().to_string();
@@ -274,20 +276,22 @@ impl Journal {
     }
 }
 
-/// Returns the shard journals in a folder, sorted by name.
-fn shard_journals(folder: &Path) -> Result<Vec<PathBuf>> {
-    let failed = |e| Error::io(folder, "read", e);
-    let mut paths = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        // The file name has the form of `Shard::file_name`.
-        if name.starts_with("journal.") && name.contains("-of-") && name.ends_with(".jsonl") {
-            paths.push(path);
-        }
-    }
-    paths.sort();
-    Ok(paths)
+/// Returns the names of all entries of a folder, sorted.
+///
+/// # Errors
+/// If the folder cannot be read.
+pub(crate) fn names_in(folder: &Path) -> Result<Vec<String>> {
+    let name = |entry: io::Result<DirEntry>| Ok(entry?.file_name().to_string_lossy().into_owned());
+    let entries = std::fs::read_dir(folder);
+    let names = entries.and_then(|entries| entries.map(name).collect::<io::Result<Vec<_>>>());
+    let mut names = names.map_err(|e| Error::io(folder, "read", e))?;
+    names.sort();
+    Ok(names)
+}
+
+/// Returns whether a file name is the name of a journal, of a whole study or of a shard.
+pub(crate) fn is_journal(name: &str) -> bool {
+    name.starts_with("journal.") && name.ends_with(".jsonl")
 }
 
 /// File that is locked against other runs until this value is dropped.
@@ -295,7 +299,7 @@ fn shard_journals(folder: &Path) -> Result<Vec<PathBuf>> {
 /// A child process that another thread is starting has a copy of each open file until its own program begins. Closing the file would not end the lock in this
 /// time, so the lock is released explicitly.
 #[derive(Debug)]
-pub(crate) struct LockedFile(File);
+pub(crate) struct LockedFile(pub File);
 
 impl LockedFile {
     /// Locks an open file. `path` is its path for error sentences.
@@ -312,20 +316,6 @@ impl LockedFile {
             )),
             Err(TryLockError::Error(error)) => Err(Error::io(path, "lock", error)),
         }
-    }
-}
-
-impl Deref for LockedFile {
-    type Target = File;
-
-    fn deref(&self) -> &File {
-        &self.0
-    }
-}
-
-impl DerefMut for LockedFile {
-    fn deref_mut(&mut self) -> &mut File {
-        &mut self.0
     }
 }
 

@@ -1,6 +1,6 @@
 //! Renaming of old result folders, so that new results do not replace them.
 
-use crate::engine::journal::journal_file::{JOURNAL_FILE, LockedFile};
+use crate::engine::journal::journal_file::{JOURNAL_FILE, LockedFile, is_journal, names_in};
 use crate::error::{Error, Result};
 use crate::files::{MANIFEST_FILE, OwnedFiles, RUN, input_within};
 use std::fs::{self, File};
@@ -69,24 +69,11 @@ pub fn check_set_aside(folder: &Path) -> Result<()> {
 
 /// Returns whether a folder contains files, but neither a manifest nor a journal of this program.
 fn is_foreign(folder: &Path) -> Result<bool> {
-    let mut entries = fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
-    if entries.next().is_none() {
+    let names = names_in(folder)?;
+    if names.is_empty() {
         return Ok(false);
     }
     OwnedFiles::read(folder, RUN)?;
-    if [MANIFEST_FILE, JOURNAL_FILE]
-        .iter()
-        .any(|name| folder.join(name).exists())
-    {
-        return Ok(false);
-    }
-    let mut entries = fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
-    // Journals of shards count, too.
-    Ok(!entries.any(|entry| {
-        entry.is_ok_and(|entry| {
-            let name = entry.file_name();
-            let name = name.to_string_lossy();
-            name.starts_with("journal.") && name.ends_with(".jsonl")
-        })
-    }))
+    let is_ours = |name: &String| name == MANIFEST_FILE || is_journal(name);
+    Ok(!names.iter().any(is_ours))
 }

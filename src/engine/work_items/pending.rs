@@ -111,11 +111,10 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.is_pending[number]
     }
 
-    /// Returns the elements of `all` whose work items are pending, each with the number of its item. The work items of the elements are numbered consecutively
-    /// from `first`.
-    pub fn among<T>(&self, first: usize, all: impl IntoIterator<Item = T>) -> Vec<(usize, T)> {
-        let numbered = (first..).zip(all);
-        numbered.filter(|(number, _)| self.has(*number)).collect()
+    /// Starts a stage of the run, which computes those of the given work items that are pending.
+    pub fn stage(&self, name: &str, numbers: impl IntoIterator<Item = usize>) {
+        let pending = numbers.into_iter().filter(|&number| self.has(number));
+        self.progress.stage(name, pending.count() as u64);
     }
 
     /// Computes a work item with `measure` and stores its result; does nothing if the item is not pending.

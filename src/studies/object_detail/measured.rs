@@ -23,21 +23,20 @@ pub(super) struct Measured<'a> {
 }
 
 impl<'a> Measured<'a> {
-    /// Computes all models of an object; also returns the surface of its mesh, which only their errors need.
+    /// Computes all models of an object.
     pub fn new(
         (plan, packings): (&ObjectDetailPlan, Option<&Path>),
         mesh: &'a NamedMesh,
-    ) -> Result<(Self, Surface)> {
+    ) -> Result<Self> {
         let surface = Surface::new(mesh.mesh.clone());
         let variants = variants(plan, &mesh.place, &surface, packings)?;
         let exact = (&mesh.name[..], variants[0].model.clone());
         let seed = Seed::new(plan.spec.seed);
-        let measured = Self {
+        Ok(Self {
             truth: Truth::new(exact, &plan.array, &plan.placement, &seed)?,
             mesh,
             variants,
-        };
-        Ok((measured, surface))
+        })
     }
 
     /// Returns the configuration of each model of the object, together with the result of `row`.
@@ -54,15 +53,14 @@ impl<'a> Measured<'a> {
             .collect()
     }
 
-    pub fn models(
-        &self,
-        plan: &ObjectDetailPlan,
-        surface: &Surface,
-    ) -> Vec<(DetailConfiguration, DetailScore)> {
+    /// Returns the differences between each model and the mesh.
+    pub fn scores(&self, plan: &ObjectDetailPlan) -> Vec<(DetailConfiguration, DetailScore)> {
+        let surface = Surface::new(self.mesh.mesh.clone());
         let n_points = plan.spec.object_detail.surface_points;
-        self.rows(|variant| self.score(variant, (surface, n_points)))
+        self.rows(|variant| self.score(variant, (&surface, n_points)))
     }
 
+    /// Returns the computing times of each model.
     pub fn times(&self) -> Vec<(DetailConfiguration, DetailTime)> {
         self.rows(|variant| DetailTime {
             us_per_touch: 1e6 * self.truth.seconds_per_touch(&variant.model),

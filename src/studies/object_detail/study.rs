@@ -47,29 +47,6 @@ const SPHERE_BYTES: f64 = 70.0;
 /// Memory of the samples of a surface while it is packed, bytes.
 const PACKING_BYTES: f64 = 6e7;
 
-impl ObjectDetailStudy {
-    /// Computes all models of an object and stores their errors. If the computation fails, all work items that need these models fail, including those in
-    /// `learners`.
-    fn object(
-        &self,
-        object: usize,
-        learners: &[usize],
-        left: &PendingItems<DetailRows>,
-    ) -> Result<Option<Measured<'_>>> {
-        let (mesh, mut made) = (&self.meshes[object], None);
-        let measured = || Measured::new((&self.plan, self.packings.as_deref()), mesh);
-        left.finish(models_item(object), || {
-            let (object, surface) = measured()?;
-            let scores = object.models(&self.plan, &surface);
-            made = Some(object);
-            Ok((scores, Vec::new(), Vec::new()))
-        })?;
-        let needed = [&[times_item(object)], learners].concat();
-        // If the models are not computed, their rows are in the journal.
-        left.prepare(&needed, || made.map_or_else(|| Ok(measured()?.0), Ok))
-    }
-}
-
 impl Study for ObjectDetailStudy {
     const ABOUT: About = About {
         table: "object_detail",
@@ -167,37 +144,40 @@ impl Study for ObjectDetailStudy {
     }
 
     fn measure(&self, left: &PendingItems<DetailRows>) -> Result<()> {
-        let learned = left.among(models_item(self.meshes.len()), Learned::all(&self.plan));
-        let learners: Vec<usize> = learned.iter().map(|(number, _)| *number).collect();
-        let spec = self.plan.recognition().filter(|_| !learned.is_empty());
-        let sensor = spec.map(|spec| Sensor::new(&self.plan, spec)).transpose()?;
-        let is_needed = |object: &usize| {
-            !learned.is_empty() || left.has(models_item(*object)) || left.has(times_item(*object))
-        };
-        let needed: Vec<usize> = (0..self.meshes.len()).filter(is_needed).collect();
-        left.progress.stage("models", needed.len() as u64);
-        let made = needed.into_par_iter().map(|object| {
-            let Some(made) = self.object(object, &learners, left)? else {
-                return Ok(None);
-            };
-            let felt = match &sensor {
-                Some(sensor) => left.prepare(&learners, || sensor.measure(&made))?,
-                None => None,
-            };
-            Ok(Some((object, made, felt)))
-        });
-        let made = made.collect::<Result<Vec<_>>>()?;
-        left.progress.stage("time touches", made.len() as u64);
-        for (object, made, _) in made.iter().flatten() {
-            left.finish(times_item(*object), || {
-                Ok((Vec::new(), made.times(), Vec::new()))
-            })?;
-        }
-        let felt = made.into_iter().map(|made| made?.2);
-        let (Some(sensor), Some(felt)) = (sensor, felt.collect::<Option<Vec<_>>>()) else {
+        let objects = 0..self.meshes.len();
+        let models: Vec<Shared<Measured>> = objects.clone().map(|_| Shared::default()).collect();
+        let of_study = (&self.plan, self.packings.as_deref());
+        let made =
+            |object: usize| models[object].get(|| Measured::new(of_study, &self.meshes[object]));
+        left.stage("models", objects.clone().map(models_item));
+        objects.clone().into_par_iter().try_for_each(|object| {
+            left.finish(models_item(object), || {
+                let scores = made(object)?.scores(&self.plan);
+                Ok((scores, Vec::new(), Vec::new()))
+            })
+        })?;
+        left.progress
+            .stage("time touches", self.meshes.len() as u64);
+        objects.clone().try_for_each(|object| {
+            left.finish(times_item(object), || {
+                Ok((Vec::new(), made(object)?.times(), Vec::new()))
+            })
+        })?;
+        let learned = (models_item(self.meshes.len())..).zip(Learned::all(&self.plan));
+        let learned: Vec<_> = learned.filter(|(number, _)| left.has(*number)).collect();
+        let (Some(spec), false) = (self.plan.recognition(), learned.is_empty()) else {
             return Ok(());
         };
         left.progress.stage("recognise", learned.len() as u64);
+        let sensor = Sensor::new(&self.plan, spec)?;
+        let numbers: Vec<usize> = learned.iter().map(|(number, _)| *number).collect();
+        let felt = left.prepare(&numbers, || {
+            let felt = objects
+                .into_par_iter()
+                .map(|object| sensor.measure(made(object)?));
+            felt.collect::<Result<Vec<_>>>()
+        })?;
+        let Some(felt) = felt else { return Ok(()) };
         learned.par_iter().try_for_each(|(number, learned)| {
             left.finish(*number, || {
                 let row = sensor.row(&felt, learned)?;

@@ -3,6 +3,7 @@
 use crate::files::FilePath;
 use crate::scene::{JointsSpec, Movement, ObjectSpec, PlannedRobot, Reader};
 use crate::studies::prelude::*;
+use crate::studies::whole_body::ladders::{ScalingPoint, rungs};
 use crate::world::{MeshFolders, Motion, Oscillation, Robot};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -181,6 +182,8 @@ pub struct WholeBodyPlan {
     pub compressions: Vec<(String, Option<usize>)>,
     /// Target position and approach direction of the objects that are recognised.
     pub aim: Aim,
+    /// Sizes of the scaling series; empty without a table `[whole_body.ladders]`.
+    pub(super) rungs: Vec<ScalingPoint>,
     /// Size of the covered robot; zero until the study is loaded.
     pub(super) size: BodySize,
 }
@@ -268,6 +271,7 @@ impl WholeBodyPlan {
             folder: folder.to_owned(),
             place: place.to_owned(),
             aim: recognition_aim(&reader, &wanted.recognition, &robot)?,
+            rungs: wanted.ladders.as_ref().map_or_else(Vec::new, rungs),
             compressions,
             robot,
             robot_file,

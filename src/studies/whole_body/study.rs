@@ -5,7 +5,7 @@ use crate::objects::SphereUnion;
 use crate::studies::prelude::*;
 use crate::studies::whole_body::charts::{answers, charts, picture_of_body};
 use crate::studies::whole_body::drive::{Drive, Posture, of_scene};
-use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
+use crate::studies::whole_body::ladders::climb;
 use crate::studies::whole_body::plan::*;
 use crate::studies::whole_body::recognition::learn;
 use crate::studies::whole_body::rows::*;
@@ -79,7 +79,7 @@ impl Study for WholeBodyPlan {
             let name = format!("scene {}", scene.spec.name);
             WorkItem::of(name, 0, &(&shared, &self.compressions, &scene.spec))
         });
-        let rungs = self.rungs().into_iter().enumerate().map(|(number, rung)| {
+        let rungs = self.rungs.iter().enumerate().map(|(number, rung)| {
             let name = format!("ladder of {:?}, {}", rung.series, rung.name).to_lowercase();
             WorkItem::of(name, number + 1, &(&shared, rung))
         });
@@ -101,11 +101,11 @@ impl Study for WholeBodyPlan {
                 Ok((vec![learn()?[number].score.clone()], Vec::new()))
             })?;
         }
-        let rungs = self.rungs();
         let first_rung = n_compressions + self.scenes.len();
-        let driven = n_compressions..first_rung + rungs.len();
-        let n_pending = driven.filter(|&number| left.has(number)).count();
-        left.progress.stage("scenes and ladders", n_pending as u64);
+        left.stage(
+            "scenes and ladders",
+            n_compressions..first_rung + self.rungs.len(),
+        );
         for (scene, number) in self.scenes.iter().zip(n_compressions..) {
             left.finish(number, || {
                 let (mut drive, _) = self.begin(scene, cover()?)?;
@@ -113,7 +113,7 @@ impl Study for WholeBodyPlan {
                 Ok((Vec::new(), vec![driven]))
             })?;
         }
-        for (rung, number) in rungs.iter().zip(first_rung..) {
+        for (rung, number) in self.rungs.iter().zip(first_rung..) {
             left.finish(number, || Ok((Vec::new(), vec![climb(self, rung)?])))?;
         }
         Ok(())
@@ -190,11 +190,6 @@ impl WholeBodyPlan {
                 state_bytes: finer * BodyState::at_rest(body).n_bytes() as f64,
             });
         }
-    }
-
-    fn rungs(&self) -> Vec<ScalingPoint> {
-        let ladders = self.spec.whole_body.ladders.as_ref();
-        ladders.map_or_else(Vec::new, rungs)
     }
 
     /// Returns the approximate memory of the states of the skin, the compressions and the scaling series.
