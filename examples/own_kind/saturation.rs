@@ -2,7 +2,6 @@
 //! `guide/adding.md`.
 
 use bubbletouch::contact::{Workspace, press_to_depth};
-use bubbletouch::inputs::range::COUNT;
 use bubbletouch::kinds::prelude::*;
 use std::slice::from_ref;
 
@@ -67,14 +66,13 @@ impl Study for SaturationStudy {
     fn load(source: &Source) -> Result<Self> {
         let mut spec = SaturationStudySpec::of(source)?;
         source.replace_objects(&mut spec.objects);
-        let place = &source.place;
-        let check = Check { place };
+        let check = source.check();
         check.keys("saturation", &spec.saturation, &Self::keys())?;
-        check.objects(&spec.objects)?;
-        let array = check.one_array(&spec.skin, "one pitch and one size")?;
-        spec.objects.settle_surface_error(from_ref(&array));
-        let placement = check.placement(&spec.touches)?;
-        check.used_springs((&spec.skin, &spec.touches), false, "no such key")?;
+        let of_touches = (&spec.skin, &spec.touches);
+        let allowed = "one pitch and one size";
+        let (array, placement) =
+            check.touches_of_one_array(&mut spec.objects, of_touches, allowed)?;
+        check.used_springs(of_touches, false, "no such key")?;
         let objects = load_objects(&spec.objects, source.packings.as_deref())?;
         let touched = draw_touches(objects, &placement, &Seed::new(spec.seed))?;
         let mut configurations = Vec::new();
@@ -135,9 +133,7 @@ impl Study for SaturationStudy {
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let title = "Saturated touches by the number of taxels at their stroke";
-        vec![ChartSpec {
-            lines: vec!["object".to_owned()],
-            ..tables[0].chart("saturated", title, ("saturated", "n_taxels"))
-        }]
+        let chart = tables[0].chart("saturated", title, ("saturated", "n_taxels"));
+        vec![chart.by(["object"])]
     }
 }

@@ -11,6 +11,25 @@ use ndarray::{Array1, ArrayView2, Axis, concatenate, s};
 use std::ops::Range;
 use std::time::Instant;
 
+impl Check<'_> {
+    /// Checks the objects, the array and the touches of a study in which one array touches all objects. Returns the array and the placement of its touches. The
+    /// objects get the default surface error of the array if none is given; `allowed` describes the allowed arrays.
+    ///
+    /// # Errors
+    /// If a key is out of its range, or `[skin]` describes several arrays.
+    pub fn touches_of_one_array(
+        &self,
+        objects: &mut ObjectsSpec,
+        (skin, touches): (&SkinSpec, &TouchesSpec),
+        allowed: &str,
+    ) -> Result<(TaxelArray, Placement)> {
+        self.objects(objects)?;
+        let array = self.one_array(skin, allowed)?;
+        objects.settle_surface_error(std::slice::from_ref(&array));
+        Ok((array, self.placement(touches)?))
+    }
+}
+
 /// Groups elements with equal keys; the order of the groups is the order in which the keys first occur.
 pub(super) fn grouped<'a, T, K: PartialEq>(
     things: impl IntoIterator<Item = &'a T>,

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::files::SetName;
+use crate::inputs::check::Check;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use std::fmt::Display;
@@ -48,6 +49,11 @@ impl Source {
         let text = std::fs::read_to_string(&path);
         let text = text.map_err(|e| Error::unreadable(&path, allowed, e))?;
         Ok(Self::of_text(&path.display().to_string(), &text))
+    }
+
+    /// Returns the checker of the study's keys.
+    pub fn check(&self) -> Check<'_> {
+        Check { place: &self.place }
     }
 
     /// Returns the seed from the command line if it is given, otherwise the seed of the study, `of_study`.

@@ -73,6 +73,14 @@ impl Table {
     }
 }
 
+impl ChartSpec {
+    /// Returns the chart with one line or point colour for each combination of values of the given columns.
+    pub fn by<const N: usize>(mut self, columns: [&str; N]) -> Self {
+        self.lines = columns.map(str::to_owned).to_vec();
+        self
+    }
+}
+
 impl Rule {
     /// Creates a reference line at a constant value of an axis.
     pub fn at(along: Along, value: f64, words: impl Into<String>) -> Self {

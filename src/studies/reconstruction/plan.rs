@@ -102,18 +102,16 @@ impl ReconstructionPlan {
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub fn new(place: &str, mut spec: ReconstructionStudySpec) -> Result<Self> {
         let check = Check { place };
-        check.objects(&spec.objects)?;
         let allowed = "one pitch and one size: a dictionary is of one array";
-        let array = check.one_array(&spec.skin, allowed)?;
-        spec.objects
-            .settle_surface_error(std::slice::from_ref(&array));
-        let placement = check.placement(&spec.touches)?;
+        let of_touches = (&spec.skin, &spec.touches);
+        let (array, placement) =
+            check.touches_of_one_array(&mut spec.objects, of_touches, allowed)?;
         let (noise_unit, noise) = check.noise(&spec.signal, None)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
         let reads_force = spec.signal.steps.contains(&StepSpec::Force);
         let of_force = "\"force\" among signal.steps beside it";
-        check.used_springs((&spec.skin, &spec.touches), reads_force, of_force)?;
+        check.used_springs(of_touches, reads_force, of_force)?;
         check.sensing(&spec.sensing, std::slice::from_ref(&array))?;
         check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
         check.selection(&spec.sensing)?;

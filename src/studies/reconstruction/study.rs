@@ -11,7 +11,6 @@ use crate::studies::reconstruction::plan::*;
 use crate::studies::reconstruction::rows::*;
 use crate::studies::reconstruction::touches::{Touches, pareto};
 use crate::studies::shared_measurements::found_and_cost;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Reconstruction study: its plan, its objects and their touches.
@@ -103,15 +102,18 @@ impl Study for ReconstructionStudy {
         groups.try_for_each(|group| measure_cells((&self.plan, touches), group, left))
     }
 
-    fn tables(&self, (mut rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {
-        // The configurations are renumbered, because the axes of an earlier run may have had other values.
-        let numbers = self.plan.configurations().into_iter();
-        let numbers: BTreeMap<String, usize> = numbers
-            .map(|configuration| (configuration.name(), configuration.configuration))
-            .collect();
-        for (configuration, ..) in &mut rows {
-            configuration.configuration = numbers[&configuration.name()];
+    fn place(&self, number: usize, (rows, _): &mut ReconstructionRows) {
+        // In each group, the isometry items of all dictionaries come before the configurations.
+        let n_dictionaries = self.plan.dictionaries.len();
+        let n_solvers = self.plan.spec.reconstruction.solver.values().len();
+        let n_in_group = n_dictionaries * (1 + self.plan.noise.len() * n_solvers);
+        let n_isometries = (number / n_in_group + 1) * n_dictionaries;
+        for (configuration, ..) in rows {
+            configuration.configuration = number - n_isometries;
         }
+    }
+
+    fn tables(&self, (rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {
         let pareto = pareto(&rows, &self.plan.noise);
         let [configurations, timing] = found_and_cost((&CONFIGURATIONS, &TIMING), &rows)?;
         let ensembles = ISOMETRY.table(&statistics)?;

@@ -1,7 +1,6 @@
 //! Transmission studies: the sum of the deflections that measurements of a touch report.
 
 use bubbletouch::contact::{Workspace, press_to_depth};
-use bubbletouch::inputs::range::{COUNT, Range::Any};
 use bubbletouch::kinds::prelude::*;
 use bubbletouch::sensing::{Ensemble, Projection};
 use bubbletouch::signal::{Chain, SignalWorkspace};
@@ -72,16 +71,14 @@ impl Study for TransmissionStudy {
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = TransmissionStudySpec::of(source)?;
-        let check = Check {
-            place: &source.place,
-        };
+        let check = source.check();
         check.keys("transmission", &spec.transmission, &Self::keys())?;
         check.keys("signal", &spec.signal, &Self::keys())?;
         check.steps(&spec.signal)?;
-        check.objects(&spec.objects)?;
-        let array = check.one_array(&spec.skin, "one pitch and one size")?;
-        spec.objects.settle_surface_error(from_ref(&array));
-        let placement = check.placement(&spec.touches)?;
+        let of_touches = (&spec.skin, &spec.touches);
+        let allowed = "one pitch and one size";
+        let (array, placement) =
+            check.touches_of_one_array(&mut spec.objects, of_touches, allowed)?;
         let objects = load_objects(&spec.objects, source.packings.as_deref())?;
         let touched = draw_touches(objects, &placement, &Seed::new(spec.seed))?;
         let mut configurations = Vec::new();
