@@ -178,18 +178,13 @@ pub struct MethodScore {
 /// Configuration of a work item, with its result and computing time.
 pub type StabilityRow = (StabilityConfiguration, StabilityScore, StabilityTime);
 
-/// Parameters of a scene that the columns of a [`StabilityConfiguration`] leave out: further columns of another program's row.
+/// Last columns of a row of another program: parameters of the scene that a [`StabilityConfiguration`] leaves out, and the program.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PeerScene {
+pub struct PeerColumns {
     /// Distance between neighbouring taxels, mm.
     pub pitch_mm: f64,
     /// Stroke of a taxel, mm.
     pub stroke_mm: f64,
-}
-
-/// Program, version and date of a result computed by another program: the last columns of its row.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PeerSource {
     /// Name of the other program, such as MuJoCo.
     pub program: String,
     /// Version of the other program that computed the result.

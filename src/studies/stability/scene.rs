@@ -32,6 +32,8 @@ const LEAST_TIME: f64 = 0.5;
 pub(super) struct TestBed {
     pub patch: Patch,
     pub ball: Model,
+    /// Radius of the ball, metres.
+    radius: f64,
     /// Pose of the ball at first contact, `patch_from_object`.
     pub pose: Pose,
 }
@@ -82,6 +84,7 @@ impl TestBed {
         Ok(Self {
             patch: Patch::new("test_bed", layout, Taxels::Equal(taxel))?,
             ball: ball.into(),
+            radius,
             pose: Pose::from_translation(lift * DVec3::Z),
         })
     }
@@ -93,26 +96,16 @@ impl TestBed {
 
     /// Returns the poses of a stack of balls at first contact, from bottom to top, `patch_from_object`.
     pub fn stack(&self, n_balls: usize) -> impl Iterator<Item = Pose> {
-        let radius = self
-            .ball
-            .spheres()
-            .map_or(0.0, |ball| ball.spheres()[0].radius);
-        let above = move |number| 2.0 * number as f64 * radius * DVec3::Z;
-        (0..n_balls)
-            .map(move |number| Pose::from_translation(self.pose.translation + above(number)))
+        let above = |number| 2.0 * number as f64 * self.radius * DVec3::Z;
+        let place = move |number| self.pose.translation + above(number);
+        (0..n_balls).map(move |number| Pose::from_translation(place(number)))
     }
 
     /// Returns the walls of a tube that keeps a stack of balls upright, as half-spaces that touch the balls without force.
     pub fn tube(&self) -> Vec<HalfSpace> {
-        let radius = self
-            .ball
-            .spheres()
-            .map_or(0.0, |ball| ball.spheres()[0].radius);
         let inwards = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y];
-        let wall = |normal| HalfSpace {
-            normal,
-            height: -radius,
-        };
+        let height = -self.radius;
+        let wall = |normal| HalfSpace { normal, height };
         inwards.map(wall).into()
     }
 

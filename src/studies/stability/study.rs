@@ -37,29 +37,23 @@ impl Study for StabilityPlan {
 
     fn scale(&self) -> Scale {
         // Memory of a taxel: its state and its history; in an engine also its body, its joint and its contact.
-        let taxel_bytes =
-            |configuration: &StabilityConfiguration| match configuration.method.is_engine() {
+        let bytes = |(configuration, _): &(StabilityConfiguration, Taxel)| {
+            let of_taxel = match configuration.method.is_engine() {
                 true => 2e4,
                 false => 2e3,
             };
-        let configurations = self
-            .configurations
-            .iter()
-            .map(|(configuration, _)| configuration);
-        let bytes = configurations
-            .clone()
-            .map(|one| taxel_bytes(one) * one.n_taxels() as f64);
-        let most = configurations
-            .map(StabilityConfiguration::n_taxels)
-            .max()
-            .unwrap_or(0);
+            of_taxel * configuration.n_taxels() as f64
+        };
+        let configurations = self.configurations.iter();
+        let n_taxels = configurations.clone().map(|(of, _)| of.n_taxels());
+        let most = n_taxels.max().unwrap_or(0);
         Scale {
             objects: "a ball and a plunger".to_owned(),
             touches: format!("one a configuration, on up to {most} taxels"),
             n_configurations: self.configurations.len(),
             stages: vec![Stage {
                 bytes: 0.0,
-                items: bytes.collect(),
+                items: configurations.map(bytes).collect(),
             }],
             ..Scale::default()
         }
@@ -193,13 +187,11 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
     // Each line is read once for each struct, because serde's flattening reads an empty field as an empty text.
     let configurations = read_rows::<StabilityConfiguration>(path)?.into_iter();
     let found = configurations.zip(read_rows(path)?).zip(read_rows(path)?);
-    let others = read_rows::<PeerScene>(path)?
-        .into_iter()
-        .zip(read_rows::<PeerSource>(path)?);
+    let found = found.zip(read_rows::<PeerColumns>(path)?);
     let mut sources: Vec<String> = Vec::new();
     let mut rows: Vec<StabilityRow> = Vec::new();
-    for (line, (((configuration, score), time), (scene, source))) in (2..).zip(found.zip(others)) {
-        let configuration = placed(plan, configuration, &scene)
+    for (line, (((configuration, score), time), peer)) in (2..).zip(found) {
+        let configuration = placed(plan, configuration, &peer)
             .ok_or("a scene and a method that the study lacks")
             .and_then(|one| match rows.iter().any(|(known, ..)| *known == one) {
                 true => Err("a configuration of an earlier line"),
@@ -207,7 +199,7 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
             })
             .map_err(|given| refuse(path, line, given))?;
         rows.push((configuration, score, time));
-        let source = format!("{} {}, {}", source.program, source.version, source.date);
+        let source = format!("{} {}, {}", peer.program, peer.version, peer.date);
         if !sources.contains(&source) {
             sources.push(source);
         }
@@ -220,9 +212,9 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
 fn placed(
     plan: &StabilityPlan,
     configuration: StabilityConfiguration,
-    scene: &PeerScene,
+    peer: &PeerColumns,
 ) -> Option<StabilityConfiguration> {
-    let (radius, stroke) = (0.5 * scene.pitch_mm * MM, scene.stroke_mm * MM);
+    let (radius, stroke) = (0.5 * peer.pitch_mm * MM, peer.stroke_mm * MM);
     let mut others = plan.all_methods.iter();
     let part = others.find_map(|(other, taxel)| {
         let of_scene = StabilityConfiguration {
