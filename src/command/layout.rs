@@ -3,7 +3,7 @@
 use crate::command::terminal::streams::{note, say};
 use bubbletouch::Result;
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutFormat, LayoutOptions};
-use bubbletouch::inputs::object_files::read_mesh;
+use bubbletouch::inputs::object_files::read_surface;
 use bubbletouch::mesh::{LengthUnit, SizeLimits};
 use bubbletouch::report::layout_picture::write_layout_picture;
 use glam::DVec3;
@@ -39,15 +39,12 @@ pub struct Args {
 }
 
 pub fn layout(args: &Args) -> Result<()> {
-    let mesh = args.mesh.as_ref().map(|path| -> Result<_> {
-        let sizes = SizeLimits {
-            option: "--mesh-unit",
-            ..SizeLimits::ANY
-        };
-        let (mesh, orientation) = read_mesh(path, args.mesh_unit, &sizes, None)?;
-        orientation.require(&path.display().to_string())?;
-        Ok(mesh)
-    });
+    let sizes = SizeLimits {
+        option: "--mesh-unit",
+        ..SizeLimits::ANY
+    };
+    let mesh = args.mesh.as_ref();
+    let mesh = mesh.map(|path| read_surface(path, args.mesh_unit, &sizes));
     let mesh = mesh.transpose()?;
     let options = LayoutOptions {
         mesh: mesh.as_ref(),

@@ -17,8 +17,6 @@ mod objects_show;
 mod options;
 mod plan;
 mod press;
-mod press_place;
-mod press_poses;
 mod recording;
 mod report;
 mod run;

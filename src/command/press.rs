@@ -1,14 +1,13 @@
 //! `bubbletouch press`: presses one object on one patch and prints the reading.
 
 use super::classify::word;
-use super::press_place::Place;
-use super::press_poses::{self, press_poses};
 use crate::command::options::unused::check_used;
 use crate::command::options::which_object::catalogue;
-use crate::command::terminal::output::terminal_width;
-use crate::command::terminal::streams::{note, write_out};
+use crate::command::terminal::output::{check_ending, terminal_width};
+use crate::command::terminal::streams::{note, say, write_out};
+use crate::numbers_csv::NumberTable;
 use bubbletouch::contact::{self, Contact, Goal, Workspace};
-use bubbletouch::files::check_single_output;
+use bubbletouch::files::{check_single_output, open};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, SizeLimits};
 use bubbletouch::objects::Model;
@@ -16,11 +15,12 @@ use bubbletouch::report::frame_files::write_frame;
 use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
-use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh, load_spheres, millimetres};
-use bubbletouch::world::{Grid, Patch, Taxel};
+use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh, load_spheres, millimetres, write_npy};
+use bubbletouch::world::{Grid, Patch, RestPose, RestPoses, Taxel, Touch};
 use bubbletouch::{Error, Result};
-use ndarray::Array2;
-use std::path::PathBuf;
+use glam::{DQuat, DVec3};
+use ndarray::{Array2, Array3, ArrayView2};
+use std::path::{Path, PathBuf};
 
 const MM: f64 = 1e-3;
 
@@ -52,8 +52,13 @@ pub struct Args {
     force_n: Option<f64>,
     #[command(flatten)]
     place: Place,
-    #[command(flatten)]
-    many: press_poses::Args,
+    /// Press the object at every pose of a CSV file
+    ///
+    /// Columns x, y, z in metres and qw, qx, qy, qz: the object in the patch frame (taxels rest in the plane z = 0, axes along +z). With --depth-mm,
+    /// each pose is moved to that depth past first contact; otherwise it is used as given. With --out FILE.npy, the array has n × ny × nx deflections
+    /// in metres.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["Place", "force_n"], help_heading = "Press")]
+    poses: Option<PathBuf>,
     /// Represent a mesh as mesh, packed or vertex_spheres [default: mesh]
     #[arg(long, value_name = "MODEL", value_parser = word::<ModelSpec>, conflicts_with_all = ["object", "spheres"], help_heading = "Object")]
     model: Option<ModelSpec>,
@@ -113,6 +118,34 @@ struct Source {
     spheres: Option<PathBuf>,
 }
 
+#[derive(clap::Args)]
+#[group(id = "Place", multiple = true)]
+struct Place {
+    /// Lay the object in stable pose N, 0 the likeliest [default: as modelled]
+    #[arg(long, value_name = "N", help_heading = "Press")]
+    rest: Option<usize>,
+    /// Shift the patch along x from the object's middle
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
+    offset_x_mm: f64,
+    /// Shift the patch along y from the object's middle
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
+    offset_y_mm: f64,
+    /// Turn the object about the vertical
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
+    yaw_deg: f64,
+    /// Tilt the patch about its x axis
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
+    tilt_x_deg: f64,
+    /// Tilt the patch about its y axis
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
+    tilt_y_deg: f64,
+}
+
+fn finite(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| "expected a finite number".to_owned())
+}
+
 fn parse_taxels(text: &str) -> std::result::Result<(usize, usize), String> {
     const MOST: usize = 4096;
     let parsed = text
@@ -137,9 +170,8 @@ pub fn press(args: &Args) -> Result<()> {
         (_, Some(depth)) => Goal::Depth(depth),
         (None, None) => Goal::Pose,
     };
-    if let Some(path) = &args.many.poses {
-        let out = args.out.as_deref();
-        return press_poses(&args.many, path, (&patch, &objects), goal, out);
+    if let Some(path) = &args.poses {
+        return args.press_poses(path, (&patch, &objects), goal);
     }
     let mut workspace = Workspace::new();
     let contact = contact::press(&patch, &objects, &[pose], goal, &mut workspace)?;
@@ -190,8 +222,33 @@ impl Args {
             stiffness.is_some(),
             force.is_some(),
             user,
-        )?;
-        self.many.check_used()
+        )
+    }
+
+    /// Presses the object in each pose of the file at `path`, and writes the deflections to a file.
+    fn press_poses(
+        &self,
+        path: &Path,
+        (patch, objects): (&Patch, &[Model; 1]),
+        goal: Goal,
+    ) -> Result<()> {
+        check_ending(self.out.as_deref(), "npy")?;
+        let poses = read_poses(path)?;
+        let (nx, ny) = self.taxels;
+        let mut frames = Array3::zeros((poses.len(), ny, nx));
+        let mut n_missed = 0;
+        let mut workspace = Workspace::new();
+        for (pose, mut frame) in poses.iter().zip(frames.outer_iter_mut()) {
+            let contact = contact::press(patch, objects, &[*pose], goal, &mut workspace)?;
+            n_missed += usize::from(contact.is_none_or(|contact| contact.n_touched == 0));
+            let read = ArrayView2::from_shape(frame.dim(), workspace.deflections());
+            frame.assign(&read.expect("a press gives one deflection a taxel"));
+        }
+        if let Some(out) = &self.out {
+            write_npy(out, &frames)?;
+        }
+        let n = poses.len();
+        say(format_args!("{n} poses, {n_missed} without contact"))
     }
 
     fn grid(&self) -> Grid {
@@ -254,7 +311,7 @@ impl Args {
     /// Returns the press depth past first contact, metres; `None` for a press to a force, or for an object that is not moved. Prints a note if the depth
     /// exceeds the stroke of the taxels.
     fn depth(&self, taxel: &Taxel) -> Result<Option<f64>> {
-        let is_placed = self.source.spheres.is_some() || self.many.poses.is_some();
+        let is_placed = self.source.spheres.is_some() || self.poses.is_some();
         let default = (!is_placed && self.force_n.is_none()).then_some(3.0);
         let Some(depth_mm) = self.depth_mm.or(default) else {
             return Ok(None);
@@ -273,4 +330,60 @@ impl Args {
         }
         Ok(Some(depth))
     }
+}
+
+impl Place {
+    /// Returns the touch; its depth is 0.
+    fn touch(&self) -> Touch {
+        Touch {
+            rest: 0,
+            offset: [self.offset_x_mm, self.offset_y_mm].map(|mm| mm * MM),
+            yaw: self.yaw_deg.to_radians(),
+            tilt: [self.tilt_x_deg, self.tilt_y_deg].map(f64::to_radians),
+            depth: 0.0,
+            indices: [None; 7],
+        }
+    }
+
+    /// Returns the stable pose in which the object lies; returns an error if the object does not have the requested pose.
+    fn rest(&self, model: &Model) -> Result<RestPose> {
+        let Some(number) = self.rest else {
+            return Ok(RestPoses::AsModelled.poses(model).swap_remove(0));
+        };
+        let mut poses = RestPoses::Stable.poses(model);
+        if number >= poses.len() {
+            let last = poses.len() - 1;
+            let allowed = format!("0 to {last}, the stable poses of this object");
+            return Err(Error::input("--rest", number, allowed));
+        }
+        Ok(poses.swap_remove(number))
+    }
+}
+
+/// Reads a CSV file of poses: positions in metres, and quaternions of any length above 0.
+fn read_poses(path: &Path) -> Result<Vec<Pose>> {
+    const COLUMNS: [&str; 7] = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+    let allowed = "a CSV file with columns x, y, z, qw, qx, qy, qz of finite numbers";
+    let place = path.display().to_string();
+    let file = open(path).map_err(|error| Error::unreadable(&place, allowed, error))?;
+    let table = NumberTable::read(&place, file, allowed)?;
+    let columns = COLUMNS.map(|name| {
+        let missing = || table.refuse_header(format!("no column `{name}`"), allowed);
+        table.position(name).ok_or_else(missing)
+    });
+    let [x, y, z, qw, qx, qy, qz] = columns;
+    let columns = [x?, y?, z?, qw?, qx?, qy?, qz?];
+    if table.lines.is_empty() {
+        return Err(Error::input(place, "no poses", "at least one"));
+    }
+    let pose = |(row, line)| {
+        let [x, y, z, qw, qx, qy, qz] = columns.map(|column| table.columns[column][row]);
+        let turn = DQuat::from_xyzw(qx, qy, qz, qw);
+        if !(turn.length().is_finite() && turn.length() > 0.0) {
+            let place = format!("{place}, line {line}");
+            return Err(Error::input(place, turn, allowed));
+        }
+        Ok(Pose::new(turn.normalize(), DVec3::new(x, y, z)))
+    };
+    table.lines.iter().enumerate().map(pose).collect()
 }

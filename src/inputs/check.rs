@@ -15,6 +15,17 @@ pub const MAX_VALUES: usize = 10_000;
 /// Maximum number of configurations in a study, all of which are created before the first one runs.
 const MAX_CONFIGURATIONS: f64 = 1e6;
 
+/// Condition on the keys that a table of a file has together.
+#[derive(Clone, Copy, Debug)]
+pub enum Rule {
+    /// The table has exactly one of the keys.
+    OneOf(&'static [&'static str]),
+    /// The first key acts only beside one of the others.
+    Beside(&'static str, &'static [&'static str]),
+    /// The first key excludes the others.
+    Excludes(&'static str, &'static [&'static str]),
+}
+
 /// Checker of the keys and values in one study file.
 pub struct Check<'a> {
     /// Name of the study file in error messages.
@@ -77,6 +88,41 @@ impl Check<'_> {
             Some(number) => Err(self.error(path, number, about.range.words())),
             None => Ok(()),
         }
+    }
+
+    /// Checks which keys a table has together; a list or table without entries counts as absent.
+    ///
+    /// # Errors
+    /// If the table `name` breaks a rule; the error names the file and the key.
+    pub fn rules(&self, name: &str, table: &impl Serialize, rules: &[Rule]) -> Result<()> {
+        let table = table_of(table);
+        let given = |keys: &[&str]| -> Vec<String> {
+            let given = keys.iter().filter(|key| table.contains_key(**key));
+            given.map(|key| format!("`{key}`")).collect()
+        };
+        for rule in rules {
+            match *rule {
+                Rule::OneOf(keys) => match &given(keys)[..] {
+                    [_] => {}
+                    [] => return Err(self.error(name, "none of them", one_of(keys))),
+                    several => return Err(self.error(name, several.join(" and "), one_of(keys))),
+                },
+                Rule::Beside(key, others) => {
+                    if table.contains_key(key) && given(others).is_empty() {
+                        let allowed = format!("{} beside it", one_of(others));
+                        return Err(self.error(&format!("{name}.{key}"), "given alone", allowed));
+                    }
+                }
+                Rule::Excludes(key, others) => {
+                    let others = given(others);
+                    if table.contains_key(key) && !others.is_empty() {
+                        let given = format!("given beside {}", others.join(" and "));
+                        return Err(self.error(&format!("{name}.{key}"), given, "one of them"));
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Returns the value of a key.
@@ -156,5 +202,14 @@ impl Check<'_> {
             }
         }
         Ok(values)
+    }
+}
+
+/// Returns the names of keys as text, such as ``one of `mesh`, `parts` ``.
+fn one_of(keys: &[&str]) -> String {
+    let keys: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
+    match &keys[..] {
+        [key] => key.clone(),
+        keys => format!("one of {}", keys.join(", ")),
     }
 }

@@ -252,6 +252,20 @@ pub fn read_mesh(
     outward_mesh(read_mesh_file(path, unit, sizes)?, &place, close_holes)
 }
 
+/// Reads a mesh file whose faces have a known outer side.
+///
+/// # Errors
+/// If [`read_mesh`] fails, or the faces of an open part do not agree on the outer side.
+pub fn read_surface(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    sizes: &SizeLimits,
+) -> Result<TriangleMesh> {
+    let (mesh, orientation) = read_mesh(path, unit, sizes, None)?;
+    orientation.require(&path.display().to_string())?;
+    Ok(mesh)
+}
+
 /// Converts a mesh file to triangles with outward normals, as [`read_mesh`] does.
 fn outward_mesh(
     file: MeshFile,

@@ -6,6 +6,7 @@
 
 use crate::engine::axis::Axis;
 use crate::files::{FilePath, SetName, file_path};
+use crate::inputs::check::Check;
 use crate::inputs::doc_comment::plain;
 use crate::inputs::keys::KeyAbout;
 use crate::inputs::range::Range;
@@ -36,6 +37,24 @@ pub trait Described: DeserializeOwned + 'static {
     /// Returns the value of a key without default that is not given; `None` if such a key is required.
     fn absent() -> Option<Self> {
         None
+    }
+
+    /// Checks the numbers of the value of `key`, and those of the tables in it, against their declared ranges. Without a range, numbers are finite.
+    ///
+    /// # Errors
+    /// If a number is out of its range; the error names the file and the key.
+    fn check(&self, _check: &Check, _key: &str, _range: Option<Range>) -> crate::Result<()> {
+        Ok(())
+    }
+
+    /// Returns the range of a key of the table, given the key's name; `None` for other names, for keys without a range, and for values other than tables.
+    fn range(_key: &str) -> Option<Range> {
+        None
+    }
+
+    /// Returns the key of the value as an entry of the list `key`, given its number from 1.
+    fn entry(&self, key: &str, _number: usize) -> String {
+        key.to_owned()
     }
 
     /// Adds the descriptions of the keys of a table, given its path; nothing for other values.
@@ -162,6 +181,28 @@ macro_rules! params {
                 table.schema()
             }
 
+            fn check(
+                &self,
+                check: &$crate::studies::prelude::Check,
+                key: &str,
+                _range: Option<$crate::inputs::range::Range>,
+            ) -> $crate::Result<()> {
+                use $crate::inputs::params::{Described, joined};
+                $(Described::check(&self.$key, check, &joined(key, stringify!($key)), $crate::params!(@range $($range)?))?;)*
+                Ok(())
+            }
+
+            fn range(key: &str) -> Option<$crate::inputs::range::Range> {
+                match key {
+                    $(stringify!($key) => $crate::params!(@range $($range)?),)*
+                    _ => None,
+                }
+            }
+
+            fn entry(&self, key: &str, number: usize) -> String {
+                $crate::params!(@entry self, key, number, $($key)*)
+            }
+
             fn describe_keys(path: &str, keys: &mut Vec<$crate::inputs::keys::KeyAbout>) {
                 let _ = (path, &keys);
                 $($crate::params!(@about $type, path, stringify!($key), keys, [$($default)?] $(, $range $(, $role, $place $(, $field: $value)*)?)?);)*
@@ -170,6 +211,8 @@ macro_rules! params {
     };
     (@default $type:ty) => { <$type as $crate::inputs::params::Described>::absent() };
     (@default $type:ty, $default:expr) => { Some::<$type>($default) };
+    (@entry $table:ident, $key:ident, $number:ident, name $($other:ident)*) => { { let _ = $number; format!("{}.{}", $key, $table.name) } };
+    (@entry $table:ident, $key:ident, $number:ident, $($other:ident)*) => { format!("{}[{}]", $key, $number) };
     (@range) => { None };
     (@range $range:expr) => { Some($range) };
     (@about $type:ty, $path:ident, $name:expr, $keys:ident, [$($default:expr)?]) => {
@@ -262,6 +305,12 @@ macro_rules! variants {
                 )),*];
                 described($crate::serde_json::json!({ "oneOf": forms }), &[$($about),+])
             }
+
+            fn check(&self, check: &$crate::inputs::check::Check, key: &str, _range: Option<$crate::inputs::range::Range>) -> $crate::Result<()> {
+                match self {
+                    $(Self::$variant(value) => $crate::inputs::params::Described::check(value, check, &$crate::inputs::params::joined(key, $word), None),)*
+                }
+            }
         }
     };
     (
@@ -284,6 +333,12 @@ macro_rules! variants {
                 let forms = [$(described(<$type as $crate::inputs::params::Described>::schema(), &[$($doc),+])),*];
                 let forms = $crate::serde_json::json!({ "anyOf": forms $(, "title": $title)? });
                 described(forms, &[$($about),+])
+            }
+
+            fn check(&self, check: &$crate::inputs::check::Check, key: &str, range: Option<$crate::inputs::range::Range>) -> $crate::Result<()> {
+                match self {
+                    $(Self::$variant(value) => $crate::inputs::params::Described::check(value, check, key, range),)*
+                }
             }
         }
     };
@@ -561,10 +616,36 @@ macro_rules! simple {
     };
 }
 
-simple! {
+/// Implements [`Described`] for types of numbers.
+macro_rules! number {
+    ($($type:ty: $schema:tt;)*) => {
+        $(impl Described for $type {
+            fn schema() -> Value {
+                json!($schema)
+            }
+
+            fn check(&self, check: &Check, key: &str, range: Option<Range>) -> crate::Result<()> {
+                let range = range.unwrap_or(Range::Finite);
+                match range.contains(*self as f64) {
+                    true => Ok(()),
+                    false => Err(check.error(key, self, range.words())),
+                }
+            }
+
+            fn entry(&self, key: &str, number: usize) -> String {
+                format!("{key}, number {number}")
+            }
+        })*
+    };
+}
+
+number! {
     f64: { "type": "number" };
     usize: { "type": "integer", "minimum": 0 };
     u64: { "type": "integer", "minimum": 0 };
+}
+
+simple! {
     bool: { "type": "boolean" };
     String: { "type": "string" };
     FilePath: { "type": "string" };
@@ -596,6 +677,11 @@ impl<T: Described> Described for Option<T> {
         Some(None)
     }
 
+    fn check(&self, check: &Check, key: &str, range: Option<Range>) -> crate::Result<()> {
+        let check_one = |value: &T| value.check(check, key, range);
+        self.as_ref().map_or(Ok(()), check_one)
+    }
+
     fn describe_keys(path: &str, keys: &mut Vec<KeyAbout>) {
         T::describe_keys(path, keys);
     }
@@ -605,11 +691,20 @@ impl<T: Described> Described for Box<T> {
     fn schema() -> Value {
         T::schema()
     }
+
+    fn check(&self, check: &Check, key: &str, range: Option<Range>) -> crate::Result<()> {
+        T::check(self, check, key, range)
+    }
 }
 
 impl<T: Described> Described for Vec<T> {
     fn schema() -> Value {
         json!({ "type": "array", "items": T::schema() })
+    }
+
+    fn check(&self, check: &Check, key: &str, range: Option<Range>) -> crate::Result<()> {
+        let mut values = (1..).zip(self);
+        values.try_for_each(|(number, value)| value.check(check, &value.entry(key, number), range))
     }
 
     fn describe_keys(path: &str, keys: &mut Vec<KeyAbout>) {
@@ -623,6 +718,11 @@ where
 {
     fn schema() -> Value {
         json!({ "type": "array", "items": T::schema(), "minItems": N, "maxItems": N })
+    }
+
+    fn check(&self, check: &Check, key: &str, range: Option<Range>) -> crate::Result<()> {
+        let mut values = self.iter();
+        values.try_for_each(|value| value.check(check, key, range))
     }
 }
 
@@ -641,6 +741,11 @@ impl<A: Described, B: Described, C: Described> Described for (A, B, C) {
 impl<T: Described> Described for BTreeMap<String, T> {
     fn schema() -> Value {
         json!({ "type": "object", "additionalProperties": T::schema() })
+    }
+
+    fn check(&self, check: &Check, key: &str, range: Option<Range>) -> crate::Result<()> {
+        let mut values = self.iter();
+        values.try_for_each(|(name, value)| value.check(check, &joined(key, name), range))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::geometry::rpy_from_rotation;
 use crate::report::terminal::rows_text;
-use crate::scene::{Movement, PoseControl, ScenePlan, Summary};
+use crate::scene::{Carrier, Movement, PoseControl, ScenePlan, Summary};
 use crate::table::short_number;
 use crate::world::Motion;
 use glam::DVec3;
@@ -92,8 +92,14 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> String {
 fn ending(movement: &Movement, held: &PoseControl) -> String {
     match held {
         PoseControl::Imposed => match movement {
-            Movement::Imposed(Motion::Fixed(_)) => "fixed".to_owned(),
-            Movement::Carried { .. } => "where its robot carries it".to_owned(),
+            Movement::Imposed {
+                carrier: Carrier::Link { .. },
+                ..
+            } => "where its robot carries it".to_owned(),
+            Movement::Imposed {
+                motion: Motion::Fixed(_),
+                ..
+            } => "fixed".to_owned(),
             _ => "where its motion says".to_owned(),
         },
         PoseControl::Pressed {

@@ -5,6 +5,7 @@
 //! A manual step equals a step of the time loop bit by bit if its length, time and poses are equal. The manual step must then be
 //! observed where the time loop makes a frame.
 
+use super::carrier::Carrier;
 use super::plan_object::Movement;
 use super::simulation::Simulation;
 use crate::error::{Error, Result};
@@ -101,9 +102,11 @@ impl Simulation<'_> {
         let key = format!("objects.{object}");
         check_pose(&key, &pose)?;
         match self.plan.objects[number].movement {
-            Movement::Imposed(_) => self.put[number] = Some(pose),
             Movement::Free { .. } => self.free.put(number, pose),
-            Movement::Carried { .. } => {
+            Movement::Imposed { carrier, .. } if carrier == Carrier::World => {
+                self.put[number] = Some(pose);
+            }
+            Movement::Imposed { .. } => {
                 let given = "an object that a robot carries";
                 return Err(Error::input(key, given, "the pose or joints of the robot"));
             }

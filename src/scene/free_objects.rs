@@ -45,7 +45,7 @@ impl FreeObjects {
         let is_free =
             |object: usize| matches!(plan.objects[object].movement, Movement::Free { .. });
         let all = objects.filter_map(|(object, planned)| match planned.movement {
-            Movement::Imposed(_) | Movement::Carried { .. } => None,
+            Movement::Imposed { .. } => None,
             Movement::Free {
                 start,
                 mass,

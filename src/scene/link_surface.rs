@@ -4,7 +4,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::inputs::object_files::read_mesh;
+use crate::inputs::object_files::read_surface;
 use crate::mesh::{LengthUnit, SizeLimits, TriangleMesh};
 use crate::world::{Link, LinkGeometry, LinkShape, MeshFolders, Robot, ShapeRole};
 use glam::DVec3;
@@ -99,9 +99,8 @@ fn kind(role: Option<ShapeRole>) -> &'static str {
 /// Reads a mesh file of a link, moves it by `mesh_from_file`, and multiplies the coordinates by `scale`. If the scale mirrors the mesh, its triangles are
 /// turned, so that they still face outwards.
 fn read_link_mesh(path: &Path, mesh_from_file: &Pose, scale: DVec3) -> Result<TriangleMesh> {
-    let (mesh, orientation) = read_mesh(path, None, &SizeLimits::ANY, None)?;
+    let mesh = read_surface(path, None, &SizeLimits::ANY)?;
     let place = path.display().to_string();
-    orientation.require(&place)?;
     mesh.moved(mesh_from_file).scaled(&place, scale)
 }
 

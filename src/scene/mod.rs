@@ -59,37 +59,33 @@
 //! ```
 
 mod by_hand;
+mod carrier;
 mod frame;
 mod free_objects;
 mod link_surface;
-mod mount;
-mod numbers;
 mod overlap;
 mod plan;
 mod plan_object;
 mod plan_patch;
-mod plan_press;
 mod plan_robot;
 mod plan_signal;
 mod plan_taxels;
 mod pressed_objects;
 mod reader;
-mod robot_state;
 mod simulation;
 mod skin_state;
 mod spec;
 pub(crate) mod spec_motion;
-mod spec_object;
+pub(crate) mod spec_object;
 mod spec_patch;
 mod summary;
 
+pub use carrier::Carrier;
 pub use frame::{Frame, FrameSink, FrictionReading, ObjectReading, PatchReading, PoseControl};
 pub use link_surface::{LinkSurface, link_surface};
-pub use mount::Mount;
 pub use plan::ScenePlan;
-pub use plan_object::{Movement, PlannedObject};
+pub use plan_object::{Movement, PlannedObject, PlannedPress};
 pub use plan_patch::PlannedPatch;
-pub use plan_press::PlannedPress;
 pub use plan_robot::PlannedRobot;
 pub use plan_signal::PlannedSignal;
 pub(crate) use reader::Reader;

@@ -1,13 +1,12 @@
 //! Check for objects that overlap a free object at the start of a scene.
 
 use super::plan_object::{Movement, PlannedObject};
-use super::plan_robot::PlannedRobot;
-use super::reader::MM;
-use super::robot_state::RobotState;
+use super::plan_robot::{PlannedRobot, RobotState};
 use crate::contact::equilibrium;
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::inputs::check::Check;
+use crate::inputs::units::MM;
 use crate::mesh::Welded;
 use crate::objects::{Model, Sphere, SphereUnion};
 
@@ -56,12 +55,9 @@ pub(super) fn check_starts(
     }
     let starts = objects.iter().zip(models).map(|(object, model)| {
         let pose = match &object.movement {
-            Movement::Imposed(motion) => motion.pose_at(0.0),
-            Movement::Carried {
-                robot,
-                link,
-                motion,
-            } => states[*robot].world_from_link[*link].compose(&motion.pose_at(0.0)),
+            Movement::Imposed { carrier, motion } => {
+                carrier.place(&motion.pose_at(0.0), &states, &[])
+            }
             Movement::Free { start, .. } => *start,
         };
         Start {

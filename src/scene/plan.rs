@@ -1,18 +1,20 @@
 //! Executable scene: the content of a [`SceneSpec`], checked and converted to SI units, with all files read.
 
 use super::overlap::check_starts;
-use super::plan_object::{Movement, PlannedObject};
+use super::plan_object::{Movement, PlannedObject, PlannedPress};
 use super::plan_patch::PlannedPatch;
-use super::plan_press::PlannedPress;
 use super::plan_robot::PlannedRobot;
-use super::reader::{MM, Reader};
-use super::spec::{LayoutSpec, SceneSpec};
+use super::reader::Reader;
+use super::spec::{LayoutSpec, PlaneSpec, SceneSpec};
+use super::spec_motion::metres;
 use crate::contact::equilibrium::HalfSpace;
 use crate::error::{Error, Result};
 use crate::files::with_absolute_paths;
 use crate::inputs::check::Check;
 use crate::inputs::objects_spec::ModelSpec;
-use crate::inputs::range::{not_negative, positive};
+use crate::inputs::params::Described;
+use crate::inputs::range::not_negative;
+use crate::inputs::units::MM;
 use crate::objects::Model;
 use crate::random::Seed;
 use crate::toml_numbers::with_line;
@@ -85,12 +87,12 @@ impl ScenePlan {
         mut spec: SceneSpec,
         models: &BTreeMap<String, Model>,
     ) -> Result<Self> {
-        let check = Check { place };
         let reader = Reader {
-            check,
+            check: Check { place },
             folder,
             models,
         };
+        spec.check(&reader.check, "", None)?;
         check_names(&reader.check, &spec)?;
         reader.check_models(&spec.objects)?;
         let robots = spec.robots.iter().map(|robot| reader.robot(robot));
@@ -119,21 +121,21 @@ impl ScenePlan {
         let (objects, models): (Vec<_>, Vec<_>) =
             objects.collect::<Result<Vec<_>>>()?.into_iter().unzip();
         check_presses(&reader.check, &spec)?;
-        let gravity = reader.vector("gravity_m_per_s2", spec.gravity_m_per_s2, 1.0)?;
+        let gravity = DVec3::from_array(spec.gravity_m_per_s2);
         let is_free = |object: &&PlannedObject| matches!(object.movement, Movement::Free { .. });
         let free = objects.iter().find(is_free);
         if gravity == DVec3::ZERO && free.is_some() {
             let allowed = "not zero in a scene with a free object";
-            return Err(reader.check.error("gravity_m_per_s2", gravity, allowed));
+            return reader.refuse("gravity_m_per_s2", gravity, allowed);
         }
         check_planes(&reader.check, &spec, free.is_some())?;
         check_starts(&reader.check, &objects, &models, &robots)?;
-        let planes = spec.planes.iter().map(|plane| reader.plane(plane));
+        let planes = spec.planes.iter().map(|plane| half_space(&reader, plane));
         let planes = planes.collect::<Result<Vec<_>>>()?;
         let duration = *spec
             .duration_s
             .get_or_insert_with(|| end(&robots, &objects));
-        let clock = Clock::checked(&reader.check, &spec, duration)?;
+        let clock = Clock::new(&reader.check, &spec, duration)?;
         let spec = with_absolute_paths(place, &spec, folder)?;
         Ok(Self {
             place: place.to_owned(),
@@ -220,21 +222,12 @@ struct Clock {
 }
 
 impl Clock {
-    fn checked(check: &Check, spec: &SceneSpec, duration: f64) -> Result<Self> {
-        let above_zero = "a positive number";
-        let dt = check.value("dt_ms", spec.dt_ms, positive, above_zero)? * MM;
-        let rate = check.value("output_hz", spec.output_hz, positive, above_zero)?;
-        let allowed = "zero or a positive number of seconds";
-        let duration = check.value("duration_s", duration, not_negative, allowed)?;
+    fn new(check: &Check, spec: &SceneSpec, duration: f64) -> Result<Self> {
+        let (dt, rate) = (spec.dt_ms * MM, spec.output_hz);
         if duration * rate.max(1.0 / dt) > MAX_STEPS {
-            return Err(check.error(
-                "duration_s",
-                format!(
-                    "{duration} s with dt_ms = {} and output_hz = {rate}",
-                    spec.dt_ms
-                ),
-                format!("at most {MAX_STEPS} steps"),
-            ));
+            let dt_ms = spec.dt_ms;
+            let given = format!("{duration} s with dt_ms = {dt_ms} and output_hz = {rate}");
+            return Err(check.error("duration_s", given, format!("at most {MAX_STEPS} steps")));
         }
         // The tolerance keeps a whole number of steps whole after conversion of units.
         let substeps = (1.0 / (rate * dt) - 1e-9).ceil().max(1.0);
@@ -276,6 +269,19 @@ fn check_names(check: &Check, spec: &SceneSpec) -> Result<()> {
     Ok(())
 }
 
+/// Converts a plane of a scene file to a half-space in SI units with a unit normal.
+fn half_space(reader: &Reader, plane: &PlaneSpec) -> Result<HalfSpace> {
+    let normal = DVec3::from_array(plane.normal);
+    let Some(normal) = normal.try_normalize() else {
+        let key = format!("planes.{}.normal", plane.name);
+        return reader.refuse(&key, normal, "a direction of any length above zero");
+    };
+    Ok(HalfSpace {
+        normal,
+        height: normal.dot(metres(plane.point_mm)),
+    })
+}
+
 /// Checks that planes occur only together with free objects.
 fn check_planes(check: &Check, spec: &SceneSpec, has_free: bool) -> Result<()> {
     match spec.planes.first() {
@@ -315,7 +321,7 @@ fn end(robots: &[PlannedRobot], objects: &[PlannedObject]) -> f64 {
     let objects = objects.iter().map(|object| {
         let press = object.press.as_ref().map_or(0.0, PlannedPress::end);
         match &object.movement {
-            Movement::Imposed(motion) | Movement::Carried { motion, .. } => motion.end().max(press),
+            Movement::Imposed { motion, .. } => motion.end().max(press),
             Movement::Free { .. } => 0.0,
         }
     });

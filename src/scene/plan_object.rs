@@ -1,15 +1,18 @@
-//! Objects of an executable scene: contact models and motions.
+//! Objects of an executable scene: contact models, motions and target forces.
 
+use super::carrier::Carrier;
 use super::plan_patch::PlannedPatch;
-use super::plan_press::PlannedPress;
 use super::plan_robot::PlannedRobot;
-use super::reader::{MM, Reader};
-use super::spec::{FreeSpec, ObjectSpec};
+use super::reader::Reader;
+use super::spec::{Numbers, ObjectSpec, PressSpec};
+use super::spec_motion::metres;
+use super::spec_object::{MOVEMENT_RULES, SHAPE_KEYS, SHAPE_RULES};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::inputs::object_files::{load_catalogue, load_mesh, load_spheres};
 use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
-use crate::inputs::range::positive;
+use crate::inputs::toml_value::table_of;
+use crate::inputs::units::MM;
 use crate::mesh::SizeLimits;
 use crate::objects::{Catalogue, Model, Solid, pack};
 use crate::spelling::nearest_names;
@@ -45,14 +48,10 @@ impl ObjectSpec {
 #[derive(Clone, Debug)]
 pub enum Movement {
     /// Imposed motion, which does not depend on contacts.
-    Imposed(Motion),
-    /// Motion that is imposed relative to a link of a robot.
-    Carried {
-        /// Index of the robot in the scene.
-        robot: usize,
-        /// Index of the link that carries the object in the robot.
-        link: usize,
-        /// Motion of the object in the frame of the link.
+    Imposed {
+        /// Body in whose frame the motion is given: the world or a link of a robot.
+        carrier: Carrier,
+        /// Motion of the object in the frame of the carrier.
         motion: Motion,
     },
     /// Free motion under gravity and contact forces.
@@ -64,6 +63,43 @@ pub enum Movement {
         /// Centre of mass of the free object, object frame, metres.
         center_of_mass: DVec3,
     },
+}
+
+/// Control of the force with which an object is pressed onto a patch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedPress {
+    /// Index of the patch whose force is controlled.
+    pub patch: usize,
+    /// Direction of the travel, a unit vector in the world frame.
+    pub direction: DVec3,
+    /// Times at which target forces are given, seconds, strictly increasing; at least one.
+    pub times: Vec<f64>,
+    /// Target of the patch's total spring force at each time, N, at least 0. Between the times, the target is interpolated linearly; outside, it is constant.
+    pub forces: Vec<f64>,
+    /// Maximum speed of the object along the direction of travel, m/s, positive.
+    pub speed: f64,
+    /// Maximum distance of the object from the pose of its imposed motion, metres, positive.
+    pub travel: f64,
+}
+
+impl PlannedPress {
+    /// Returns the target force at a time (seconds), N.
+    pub fn force_at(&self, time: f64) -> f64 {
+        let after = self.times.partition_point(|&t| t <= time);
+        match (after.checked_sub(1), self.forces.get(after)) {
+            (Some(before), Some(next)) => {
+                let share = (time - self.times[before]) / (self.times[after] - self.times[before]);
+                self.forces[before] + share * (next - self.forces[before])
+            }
+            (Some(last), None) => self.forces[last],
+            (None, _) => self.forces[0],
+        }
+    }
+
+    /// Returns the time of the last given target force, seconds.
+    pub fn end(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
 }
 
 impl Reader<'_> {
@@ -78,26 +114,24 @@ impl Reader<'_> {
         let key = &format!("objects.{}", spec.name);
         let for_mesh = spec.model.unwrap_or(default);
         let model = self.model(key, spec, finest_mm, for_mesh)?;
-        let is_carried = spec.robot.is_some() || spec.link.is_some();
-        if is_carried && spec.free.is_some() {
-            let allowed = "robot or free, not both";
-            return Err(self
-                .check
-                .error(key, "an object with two movements", allowed));
-        }
-        let movement = match (&spec.free, &spec.motion) {
-            _ if is_carried => self.carried(key, spec, robots)?,
-            (None, motion) => Movement::Imposed(self.motion(key, &spec.at, motion.as_ref())?),
-            (Some(_), Some(_)) => {
-                let allowed = "free or motion, not both";
-                return Err(self
-                    .check
-                    .error(key, "a free object with a motion", allowed));
+        self.check.rules(key, spec, MOVEMENT_RULES)?;
+        let movement = match &spec.free {
+            None => self.imposed(key, spec, robots)?,
+            Some(free) => {
+                let Some(mass) = free.mass_kg else {
+                    let key = format!("{key}.free.mass_kg");
+                    return self.refuse(&key, "a free object without mass", "a positive number");
+                };
+                let center = free.center_of_mass_mm.map(metres);
+                Movement::Free {
+                    start: spec.at.pose(),
+                    mass,
+                    center_of_mass: center.unwrap_or_else(|| model.center_of_mass()),
+                }
             }
-            (Some(free), None) => self.free(key, spec, free, &model)?,
         };
         let press = spec.press.as_ref();
-        let press = press.map(|press| self.press(key, press, patches));
+        let press = press.map(|press| self.press(&format!("{key}.press"), press, patches));
         let object = PlannedObject {
             name: spec.name.clone(),
             movement,
@@ -108,22 +142,16 @@ impl Reader<'_> {
         Ok((object, model))
     }
 
-    /// Checks an object that a robot's link carries, and returns its motion.
-    pub fn carried(
+    /// Returns the imposed movement of an object, in the world or on a robot's link.
+    pub fn imposed(
         &self,
         key: &str,
         spec: &ObjectSpec,
         robots: &[PlannedRobot],
     ) -> Result<Movement> {
-        let Some(name) = &spec.robot else {
-            let given = format!("`{}` without a robot", spec.link.as_deref().unwrap_or(""));
-            let allowed = "robot = \"NAME\" beside it";
-            return Err(self.check.error(&format!("{key}.link"), given, allowed));
-        };
-        let (robot, link) = self.link(key, (name, spec.link.as_deref()), robots)?;
-        Ok(Movement::Carried {
-            robot,
-            link,
+        let on = (spec.robot.as_deref(), spec.link.as_deref());
+        Ok(Movement::Imposed {
+            carrier: self.carrier(key, on, robots)?,
             motion: self.motion(key, &spec.at, spec.motion.as_ref())?,
         })
     }
@@ -134,93 +162,63 @@ impl Reader<'_> {
         for name in self.models.keys() {
             if names.clone().all(|known| known != name) {
                 let given = format!("a model for `{name}`");
-                let allowed = nearest_names(name, names);
-                return Err(self.check.error("objects", given, allowed));
+                return self.refuse("objects", given, nearest_names(name, names));
             }
         }
         Ok(())
     }
 
-    /// Returns the contact model of an object; `model` selects how a mesh is represented.
+    /// Returns the contact model of an object; `for_mesh` selects how a mesh is represented.
     pub fn model(
         &self,
         key: &str,
         spec: &ObjectSpec,
         finest_mm: f64,
-        model: ModelSpec,
+        for_mesh: ModelSpec,
     ) -> Result<Model> {
         if let Some(model) = self.models.get(&spec.name) {
-            return self.model_in_memory(key, spec, model);
+            let given = table_of(spec);
+            let Some(name) = SHAPE_KEYS.iter().find(|name| given.contains_key(**name)) else {
+                return Ok(model.clone());
+            };
+            let given = "given beside an object in memory";
+            let allowed = "no key of its shape: it is touched as it is";
+            return self.refuse(&format!("{key}.{name}"), given, allowed);
         }
-        let has_file = spec.mesh.is_some() || spec.spheres.is_some();
-        let is_solid = spec.object.is_some() || !spec.parts.is_empty();
-        let misplaced = [
-            (
-                spec.model.is_some() && spec.mesh.is_none(),
-                "model",
-                "mesh = \"FILE\"",
-            ),
-            (spec.unit.is_some() && !has_file, "unit", "mesh or spheres"),
-            (
-                spec.objects.is_some() && spec.object.is_none(),
-                "objects",
-                "object = \"NAME\"",
-            ),
-            (spec.centered && !is_solid, "centered", "object or parts"),
-        ];
-        if let Some((_, what, beside)) = misplaced.into_iter().find(|(is_so, ..)| *is_so) {
-            let given = format!("{what} without {beside}");
-            return Err(self
-                .check
-                .error(key, given, format!("it only beside {beside}")));
-        }
-        let is_made_of_spheres = is_solid || (spec.mesh.is_some() && model == ModelSpec::Packed);
-        if spec.surface_error_mm.is_some() && has_file && !is_made_of_spheres {
+        self.check.rules(key, spec, SHAPE_RULES)?;
+        let is_unpacked = spec.mesh.is_some() && for_mesh != ModelSpec::Packed;
+        let error_key = format!("{key}.surface_error_mm");
+        if spec.surface_error_mm.is_some() && (spec.spheres.is_some() || is_unpacked) {
             let given = "given beside spheres, or a mesh that is not packed";
             let allowed = "it only beside object = \"NAME\" or model = \"packed\"";
-            return Err(self
-                .check
-                .error(&format!("{key}.surface_error_mm"), given, allowed));
+            return self.refuse(&error_key, given, allowed);
         }
-        let error_mm = spec.surface_error_or_default_mm(finest_mm, model);
-        let error_key = format!("{key}.surface_error_mm");
-        let allowed = "a positive number of millimetres";
-        let surface_error = MM * self.check.value(&error_key, error_mm, positive, allowed)?;
-        let kinds = [is_solid, spec.spheres.is_some(), spec.mesh.is_some()];
-        match (kinds, &spec.spheres, &spec.mesh) {
-            ([true, false, false], ..) => {
-                let mut solid = self.solid(key, spec)?;
-                if spec.centered {
-                    let middle = solid.bounds().center();
-                    solid = solid.moved(&Pose::from_translation(-middle));
-                }
-                Ok(self.under(key, pack(&solid, surface_error))?.into())
-            }
-            ([false, true, false], Some(path), _) => {
-                let key = &format!("{key}.spheres");
-                self.open(key, path)?;
-                let spheres = load_spheres(&self.path(path), spec.unit, &SizeLimits::ANY);
-                Ok(self.under(key, spheres)?.into())
-            }
-            ([false, false, true], _, Some(path)) => {
-                let key = &format!("{key}.mesh");
-                self.open(key, path)?;
-                let wanted = ObjectsSpec {
-                    unit: spec.unit,
-                    model: Some(model),
-                    pitch: Some(MM * finest_mm),
-                    surface_error_mm: Some(error_mm),
-                    ..ObjectsSpec::default()
-                };
-                let mesh = load_mesh(&self.path(path), &wanted, None);
-                Ok(self.under(key, mesh)?.model)
-            }
-            _ => Err(self.check.error(
-                key,
-                "none, or several, of object, parts, spheres and mesh",
-                "one of them",
-            )),
+        let error_mm = spec.surface_error_or_default_mm(finest_mm, for_mesh);
+        if let Some(path) = &spec.spheres {
+            let key = &format!("{key}.spheres");
+            self.open(key, path)?;
+            let spheres = load_spheres(&self.path(path), spec.unit, &SizeLimits::ANY);
+            return Ok(self.under(key, spheres)?.into());
         }
+        if let Some(path) = &spec.mesh {
+            let key = &format!("{key}.mesh");
+            self.open(key, path)?;
+            let wanted = ObjectsSpec {
+                unit: spec.unit,
+                model: Some(for_mesh),
+                pitch: Some(MM * finest_mm),
+                surface_error_mm: Some(error_mm),
+                ..ObjectsSpec::default()
+            };
+            let mesh = load_mesh(&self.path(path), &wanted, None);
+            return Ok(self.under(key, mesh)?.model);
+        }
+        let mut solid = self.solid(key, spec)?;
+        if spec.centered {
+            let middle = solid.bounds().center();
+            solid = solid.moved(&Pose::from_translation(-middle));
+        }
+        Ok(self.under(key, pack(&solid, MM * error_mm))?.into())
     }
 
     /// Returns the solid of a built-in object, or the solid whose parts are given by the key `parts`.
@@ -231,10 +229,6 @@ impl Reader<'_> {
             let place = format!("{}, key {key}.parts", self.check.place);
             return Solid::parse_parts(&place, &text);
         };
-        if !spec.parts.is_empty() {
-            let given = "object and parts";
-            return Err(self.check.error(key, given, "one of them"));
-        }
         let catalogue = match &spec.objects {
             Some(path) => {
                 let key = &format!("{key}.objects");
@@ -247,56 +241,41 @@ impl Reader<'_> {
         Ok(entry.solid.clone())
     }
 
-    /// Returns a model that is given in memory; returns an error if the object has keys that apply only to files.
-    fn model_in_memory(&self, key: &str, spec: &ObjectSpec, model: &Model) -> Result<Model> {
-        let shape = [
-            ("object", spec.object.is_some()),
-            ("objects", spec.objects.is_some()),
-            ("parts", !spec.parts.is_empty()),
-            ("centered", spec.centered),
-            ("spheres", spec.spheres.is_some()),
-            ("mesh", spec.mesh.is_some()),
-            ("model", spec.model.is_some()),
-            ("unit", spec.unit.is_some()),
-            ("surface_error_mm", spec.surface_error_mm.is_some()),
-        ];
-        match shape.into_iter().find(|(_, is_given)| *is_given) {
-            None => Ok(model.clone()),
-            Some((name, _)) => {
-                let given = "given beside an object in memory";
-                let allowed = "no key of its shape: it is touched as it is";
-                Err(self.check.error(&format!("{key}.{name}"), given, allowed))
+    /// Checks the keys of a pressed object and returns the control of its force.
+    fn press(&self, key: &str, spec: &PressSpec, patches: &[PlannedPatch]) -> Result<PlannedPress> {
+        let names = patches.iter().map(|patch| patch.skin.name());
+        let patch = self.known(&format!("{key}.patch"), &spec.patch, names)?;
+        let direction = DVec3::from_array(spec.direction);
+        if direction == DVec3::ZERO {
+            let allowed = "a vector that is not zero";
+            return self.refuse(&format!("{key}.direction"), direction, allowed);
+        }
+        let (times, forces) = match &spec.force_n {
+            Numbers::One(force) if spec.time_s.is_empty() => (vec![0.0], vec![*force]),
+            Numbers::One(_) => {
+                let allowed = "a list, one a time; or no time_s";
+                let key = format!("{key}.force_n");
+                return self.refuse(&key, "one force beside time_s", allowed);
             }
-        }
-    }
-
-    fn free(
-        &self,
-        key: &str,
-        spec: &ObjectSpec,
-        free: &FreeSpec,
-        model: &Model,
-    ) -> Result<Movement> {
-        if spec.press.is_some() {
-            let given = "a free object that is pushed";
-            let allowed = "free, or press beside a motion";
-            return Err(self.check.error(&format!("{key}.press"), given, allowed));
-        }
-        let mass_key = format!("{key}.free.mass_kg");
-        let Some(mass) = free.mass_kg else {
-            let given = "a free object without mass";
-            return Err(self.check.error(&mass_key, given, "a positive number"));
+            Numbers::Each(forces) => (spec.time_s.clone(), forces.clone()),
         };
-        let center_key = format!("{key}.free.center_of_mass_mm");
-        Ok(Movement::Free {
-            start: self.pose(&format!("{key}.at"), &spec.at)?,
-            mass: self
-                .check
-                .value(&mass_key, mass, positive, "a positive number")?,
-            center_of_mass: match free.center_of_mass_mm {
-                Some(center) => self.vector(&center_key, center, MM)?,
-                None => model.center_of_mass(),
-            },
+        if forces.is_empty() || forces.len() != times.len() {
+            let given = format!("{} forces", forces.len());
+            let allowed = format!("{}, one a time of time_s, and at least one", times.len());
+            return self.refuse(&format!("{key}.force_n"), given, allowed);
+        }
+        if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
+            let given = format!("{} s after {} s", pair[1], pair[0]);
+            let key = format!("{key}.time_s");
+            return self.refuse(&key, given, "strictly ascending times");
+        }
+        Ok(PlannedPress {
+            patch,
+            direction: direction.normalize(),
+            times,
+            forces,
+            speed: spec.speed_mm_per_s * MM,
+            travel: spec.travel_mm * MM,
         })
     }
 }

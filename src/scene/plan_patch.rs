@@ -1,22 +1,22 @@
-//! Patches of an executable scene: layouts, taxels and mounts.
+//! Patches of an executable scene: layouts, taxels and carriers.
 
+use super::carrier::Carrier;
 use super::link_surface::{LinkSurface, link_surface};
-use super::mount::Mount;
 use super::plan_robot::PlannedRobot;
 use super::plan_signal::PlannedSignal;
-use super::reader::{MM, Reader};
-use super::spec::{
-    AnnulusSpec, CylinderSpec, DiscSpec, DrapedSpec, FileLayoutSpec, GridSpec, HexagonalSpec,
-    LayoutSpec, ObjectSpec, PatchSpec, ProjectedGridSpec, RegionSpec, SphereCapSpec,
-};
+use super::reader::Reader;
+use super::spec::{DrapedSpec, FileLayoutSpec, LayoutSpec, ObjectSpec, PatchSpec, RegionSpec};
+use super::spec_motion::metres;
+use super::spec_patch::{PATCH_RULES, REGION_RULES};
 use crate::error::Result;
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Pose};
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
-use crate::inputs::object_files::read_mesh;
-use crate::inputs::range::positive;
-use crate::mesh::{MeshFormat, SizeLimits, TriangleMesh, obj_group};
+use crate::inputs::object_files::read_surface;
+use crate::inputs::units::MM;
+use crate::mesh::{LengthUnit, MeshFormat, SizeLimits, TriangleMesh, obj_group};
 use crate::random::Seed;
 use crate::world::{DrapeRegion, Grid, Layout, Patch, PerTaxel, Shears};
+use glam::DVec3;
 use std::path::Path;
 
 /// Patch of a scene, checked and ready for simulation.
@@ -24,8 +24,10 @@ use std::path::Path;
 pub struct PlannedPatch {
     /// Taxels and layout of the patch.
     pub skin: Patch,
-    /// Body to which the patch is fixed.
-    pub mount: Mount,
+    /// Body that carries the patch.
+    pub carrier: Carrier,
+    /// Pose of the patch on its carrier, `carrier_from_patch`.
+    pub at: Pose,
     /// Tangential springs of the taxels; `None` if the patch has no friction.
     pub shears: Option<Shears>,
     /// Signal chain of the patch (conversion of deflections to sensor readings); `None` if it has no steps.
@@ -51,21 +53,46 @@ impl PlannedPatch {
 impl LayoutSpec {
     /// Returns the distance between neighbouring taxels, mm; `None` for layouts that list single taxels.
     pub fn pitch_mm(&self) -> Option<f64> {
-        Some(match *self {
-            Self::File(_) | Self::Sensor(_) => return None,
-            Self::Grid(GridSpec { pitch_mm, .. })
-            | Self::Hexagonal(HexagonalSpec { pitch_mm, .. })
-            | Self::Disc(DiscSpec { pitch_mm, .. })
-            | Self::Annulus(AnnulusSpec { pitch_mm, .. })
-            | Self::Cylinder(CylinderSpec { pitch_mm, .. })
-            | Self::SphereCap(SphereCapSpec { pitch_mm, .. })
-            | Self::Draped(DrapedSpec { pitch_mm, .. }) => pitch_mm,
-        })
+        match self {
+            Self::Grid(layout) => Some(layout.pitch_mm),
+            Self::Hexagonal(layout) => Some(layout.pitch_mm),
+            Self::Disc(layout) => Some(layout.pitch_mm),
+            Self::Annulus(layout) => Some(layout.pitch_mm),
+            Self::Cylinder(layout) => Some(layout.pitch_mm),
+            Self::SphereCap(layout) => Some(layout.pitch_mm),
+            Self::Draped(layout) => Some(layout.pitch_mm),
+            Self::File(_) | Self::Sensor(_) => None,
+        }
+    }
+}
+
+/// Taxels of a patch, before their properties are known.
+struct PlacedTaxels {
+    layout: Layout,
+    /// Default radii of the taxels, mm.
+    radii_mm: PerTaxel<f64>,
+    /// Link in whose frame the taxels are; `None` if the patch may be on any link.
+    link: Option<String>,
+    notes: Vec<String>,
+}
+
+impl PlacedTaxels {
+    fn listed(file: LayoutFile) -> Self {
+        let radii_mm = match &file.radii {
+            Some(radii) => PerTaxel::Each(radii.iter().map(|radius| radius / MM).collect()),
+            None => PerTaxel::Equal(file.default_radius() / MM),
+        };
+        Self {
+            layout: file.layout,
+            radii_mm,
+            link: None,
+            notes: file.notes,
+        }
     }
 }
 
 impl Reader<'_> {
-    /// Checks a patch of a scene file and returns its taxels, mount, friction and signal chain.
+    /// Checks a patch of a scene file and returns its taxels, carrier, friction and signal chain. Writes default values into the specification of the patch.
     pub fn patch(
         &self,
         spec: &mut PatchSpec,
@@ -73,191 +100,186 @@ impl Reader<'_> {
         seed: &Seed,
     ) -> Result<PlannedPatch> {
         let key = &format!("patches.{}", spec.name);
-        let pitch_key = format!("{key}.layout.pitch_mm");
-        if let Some(pitch_mm) = spec.layout.pitch_mm() {
-            self.check
-                .value(&pitch_key, pitch_mm, positive, "a positive number")?;
-        }
+        self.check.rules(key, spec, PATCH_RULES)?;
         let layout_key = &format!("{key}.layout");
         self.drape_on_own_link(layout_key, spec, robots)?;
-        let (layout, radii, notes) = match self.listed_taxels(layout_key, spec, robots)? {
-            Some((file, radii)) => (file.layout, radii, file.notes),
-            None => {
-                let layout = self.layout(layout_key, spec, robots, &seed.named(&spec.name))?;
-                let half_pitch = spec.layout.pitch_mm().map(|pitch_mm| 0.5 * pitch_mm);
-                let radii = PerTaxel::Equal(half_pitch.unwrap_or_default());
-                (layout, radii, Vec::new())
+        let placed = self.place_taxels(layout_key, spec, robots, &seed.named(&spec.name))?;
+        if let Some(link) = placed.link {
+            let given = spec.link.get_or_insert_with(|| link.clone());
+            if *given != link {
+                let given = format!("`{given}`, but the taxels are in the frame of link `{link}`");
+                let allowed = "the link of the taxels, or no such key";
+                return self.refuse(&format!("{key}.link"), given, allowed);
             }
-        };
-        self.mount_on_draped_link(layout_key, spec)?;
-        let (taxels, shears) = self.taxels(key, spec, (layout.n_taxels(), radii))?;
-        let skin = self.under(key, Patch::new(&spec.name, layout, taxels))?;
+        }
+        let n_taxels = placed.layout.n_taxels();
+        let (taxels, shears) = self.taxels(key, spec, (n_taxels, placed.radii_mm))?;
+        let skin = self.under(key, Patch::new(&spec.name, placed.layout, taxels))?;
         if let Some(shears) = &shears {
             self.under(key, shears.check_on(&skin))?;
         }
         Ok(PlannedPatch {
             signal: self.signal(key, &spec.signal, &skin, seed)?,
             skin,
-            mount: self.mount_of_patch(key, spec, robots, objects)?,
+            carrier: self.carrier_of_patch(key, spec, robots, objects)?,
+            at: spec.at.pose(),
             shears,
-            notes,
+            notes: placed.notes,
         })
     }
 
-    fn layout(
+    /// Returns the body that carries a patch: an object, a robot link, or the world.
+    fn carrier_of_patch(
+        &self,
+        key: &str,
+        spec: &PatchSpec,
+        robots: &[PlannedRobot],
+        objects: &[ObjectSpec],
+    ) -> Result<Carrier> {
+        let Some(name) = &spec.object else {
+            let on = (spec.robot.as_deref(), spec.link.as_deref());
+            return self.carrier(key, on, robots);
+        };
+        let key = &format!("{key}.object");
+        let names = objects.iter().map(|object| object.name.as_str());
+        let object = self.known(key, name, names)?;
+        if objects[object].free.is_some() || objects[object].press.is_some() {
+            let given = format!("`{name}`, which does not go where it is told");
+            return self.refuse(key, given, "an object that is neither free nor pushed");
+        }
+        Ok(Carrier::Object(object))
+    }
+
+    /// Returns the robot that a patch names; its surface or sensor is used by the key `key`.
+    fn robot_of_patch<'r>(
+        &self,
+        key: &str,
+        spec: &PatchSpec,
+        robots: &'r [PlannedRobot],
+    ) -> Result<&'r PlannedRobot> {
+        let Some(name) = &spec.robot else {
+            let allowed = "robot = \"NAME\" of the patch";
+            return self.refuse(key, "a patch without a robot", allowed);
+        };
+        let names = robots.iter().map(|robot| robot.name.as_str());
+        let key = format!("patches.{}.robot", spec.name);
+        Ok(&robots[self.known(&key, name, names)?])
+    }
+
+    /// Returns the layout of a patch, and the properties of its taxels that the layout determines.
+    fn place_taxels(
         &self,
         key: &str,
         spec: &PatchSpec,
         robots: &[PlannedRobot],
         seed: &Seed,
-    ) -> Result<Layout> {
-        let pitch = spec.layout.pitch_mm().unwrap_or_default() * MM;
-        let layout = match spec.layout {
-            LayoutSpec::File(_) | LayoutSpec::Sensor(_) => unreachable!("taxels that are listed"),
-            LayoutSpec::Grid(GridSpec { nx, ny, .. }) => Layout::grid(&Grid { nx, ny, pitch }),
-            LayoutSpec::Hexagonal(HexagonalSpec { nx, ny, .. }) => Layout::hexagonal(nx, ny, pitch),
-            LayoutSpec::Disc(DiscSpec { radius_mm, .. }) => Layout::disc(radius_mm * MM, pitch),
-            LayoutSpec::Annulus(AnnulusSpec {
-                inner_mm, outer_mm, ..
-            }) => Layout::annulus(inner_mm * MM, outer_mm * MM, pitch),
-            LayoutSpec::Cylinder(CylinderSpec {
-                radius_mm,
-                length_mm,
-                arc_deg,
-                ..
-            }) => Layout::cylinder(radius_mm * MM, length_mm * MM, arc_deg.to_radians(), pitch),
-            LayoutSpec::SphereCap(SphereCapSpec {
-                radius_mm,
-                half_angle_deg,
-                ..
-            }) => Layout::sphere_cap(radius_mm * MM, half_angle_deg.to_radians(), pitch),
-            LayoutSpec::Draped(DrapedSpec {
-                mesh: ref path,
-                unit,
-                ref region,
-                ref grid,
-                ..
-            }) => {
-                let region_key = &format!("{key}.region");
-                let link = region.as_ref().and_then(|region| region.link.as_deref());
-                let mesh = match (path, link) {
-                    (Some(path), None) => {
-                        let (place, _) = self.open(&format!("{key}.mesh"), path)?;
-                        let read = read_mesh(&self.path(path), unit, &SizeLimits::ANY, None);
-                        let outward = read.and_then(|(mesh, orientation)| {
-                            orientation.require(&place)?;
-                            Ok(mesh)
-                        });
-                        self.under(key, outward)?
-                    }
-                    (None, Some(link)) => {
-                        let key = &format!("{region_key}.link");
-                        if unit.is_some() {
-                            let allowed = "no unit: the robot's file has metres and scales";
-                            return Err(self.check.error(key, "a link beside unit", allowed));
-                        }
-                        let Some(name) = &spec.robot else {
-                            let given = format!("`{link}` without a robot");
-                            return Err(self.check.error(
-                                key,
-                                given,
-                                "robot = \"NAME\" of the patch",
-                            ));
-                        };
-                        let names = robots.iter().map(|robot| robot.name.as_str());
-                        let robot =
-                            self.known(&format!("patches.{}.robot", spec.name), name, names)?;
-                        let role = region.as_ref().and_then(|region| region.shapes);
-                        let surface = LinkSurface { link, role };
-                        let PlannedRobot { robot, meshes, .. } = &robots[robot];
-                        self.under(key, link_surface(robot, meshes, &surface, pitch))?
-                    }
-                    (both_or_neither, _) => {
-                        let given = match both_or_neither {
-                            Some(_) => "mesh and region.link",
-                            None => "neither mesh nor a link",
-                        };
-                        let allowed = "mesh = \"FILE\", on = \"collision\" for the patch's own link, or region = { link = \"NAME\" }, a link of the patch's robot";
-                        return Err(self.check.error(key, given, allowed));
-                    }
-                };
-                let region = match region {
-                    Some(region) => self.region(region_key, region, path.as_deref())?,
-                    None => DrapeRegion::default(),
-                };
-                match grid {
-                    Some(grid) => self.projected(key, (&mesh, &region), pitch, grid),
-                    None => Layout::draped_on(&mesh, pitch, &region, seed),
-                }
+    ) -> Result<PlacedTaxels> {
+        let pitch_mm = spec.layout.pitch_mm().unwrap_or_default();
+        let pitch = pitch_mm * MM;
+        let mut link = None;
+        let layout = match &spec.layout {
+            LayoutSpec::File(file) => {
+                let file = self.layout_file(&format!("{key}.file"), file)?;
+                return Ok(PlacedTaxels::listed(file));
             }
-        };
-        self.under(key, layout)
-    }
-
-    /// Returns a flat grid of taxels that is wrapped around a surface.
-    fn projected(
-        &self,
-        key: &str,
-        (surface, region): (&TriangleMesh, &DrapeRegion),
-        pitch: f64,
-        spec: &ProjectedGridSpec,
-    ) -> Result<Layout> {
-        if *region != DrapeRegion::default() {
-            let allowed = "a grid alone: its taxels cover the surface below it";
-            return Err(self.check.error(
-                &format!("{key}.region"),
-                "a part of the surface beside a grid",
-                allowed,
-            ));
-        }
-        let at = self.pose(&format!("{key}.grid.at"), &spec.at)?;
-        let (nx, ny) = (spec.nx, spec.ny);
-        let projected =
-            Layout::projected(surface, &at, &Grid { nx, ny, pitch }, spec.missing.into());
-        projected.map(|projected| projected.layout)
-    }
-
-    /// Returns the taxels of a layout file or of a robot's tactile sensor, their radii in mm, and the notes on the file; `None` for other layouts. A patch with
-    /// the taxels of a sensor is mounted on the link of the sensor.
-    fn listed_taxels(
-        &self,
-        key: &str,
-        spec: &mut PatchSpec,
-        robots: &[PlannedRobot],
-    ) -> Result<Option<(LayoutFile, PerTaxel<f64>)>> {
-        let file = match &spec.layout {
-            LayoutSpec::File(file) => self.layout_file(&format!("{key}.file"), file)?,
             LayoutSpec::Sensor(sensor) => {
                 let key = &format!("{key}.sensor");
-                let Some(name) = &spec.robot else {
-                    let given = format!("`{sensor}` without a robot");
-                    return Err(self
-                        .check
-                        .error(key, given, "robot = \"NAME\" of the patch"));
-                };
-                let names = robots.iter().map(|robot| robot.name.as_str());
-                let robot = &robots[self.known(key, name, names)?].robot;
-                let sensors = robot.tactile_sensors();
+                let sensors = self.robot_of_patch(key, spec, robots)?;
+                let sensors = sensors.robot.tactile_sensors();
                 let names = sensors.iter().map(|sensor| sensor.name.as_str());
                 let sensor = &sensors[self.known(key, sensor, names)?];
-                let link = spec.link.get_or_insert_with(|| sensor.link.clone());
-                if *link != sensor.link {
-                    let given = format!("a sensor of link `{}` on link `{link}`", sensor.link);
-                    return Err(self.check.error(key, given, "the link of the sensor"));
-                }
-                LayoutFile {
+                return Ok(PlacedTaxels {
+                    link: Some(sensor.link.clone()),
                     // The robot has these notes.
                     notes: Vec::new(),
-                    ..LayoutFile::of_sensor(self.check.place, sensor)?
-                }
+                    ..PlacedTaxels::listed(LayoutFile::of_sensor(self.check.place, sensor)?)
+                });
             }
-            _ => return Ok(None),
+            LayoutSpec::Grid(grid) => {
+                let (nx, ny) = (grid.nx, grid.ny);
+                Layout::grid(&Grid { nx, ny, pitch })
+            }
+            LayoutSpec::Hexagonal(rows) => Layout::hexagonal(rows.nx, rows.ny, pitch),
+            LayoutSpec::Disc(disc) => Layout::disc(disc.radius_mm * MM, pitch),
+            LayoutSpec::Annulus(ring) => {
+                Layout::annulus(ring.inner_mm * MM, ring.outer_mm * MM, pitch)
+            }
+            LayoutSpec::Cylinder(cylinder) => {
+                let (radius, length) = (cylinder.radius_mm * MM, cylinder.length_mm * MM);
+                Layout::cylinder(radius, length, cylinder.arc_deg.to_radians(), pitch)
+            }
+            LayoutSpec::SphereCap(cap) => {
+                let half_angle = cap.half_angle_deg.to_radians();
+                Layout::sphere_cap(cap.radius_mm * MM, half_angle, pitch)
+            }
+            LayoutSpec::Draped(draped) => {
+                let region = draped.region.as_ref();
+                link = region.and_then(|region| region.link.clone());
+                Ok(self.draped(key, (spec, draped), robots, seed)?)
+            }
         };
-        let radii = match &file.radii {
-            Some(radii) => PerTaxel::Each(radii.iter().map(|radius| radius / MM).collect()),
-            None => PerTaxel::Equal(file.default_radius() / MM),
+        Ok(PlacedTaxels {
+            layout: self.under(key, layout)?,
+            radii_mm: PerTaxel::Equal(0.5 * pitch_mm),
+            link,
+            notes: Vec::new(),
+        })
+    }
+
+    /// Returns taxels on the surface of a mesh or of a robot's link.
+    fn draped(
+        &self,
+        key: &str,
+        (spec, draped): (&PatchSpec, &DrapedSpec),
+        robots: &[PlannedRobot],
+        seed: &Seed,
+    ) -> Result<Layout> {
+        let pitch = draped.pitch_mm * MM;
+        let region_key = &format!("{key}.region");
+        let region = draped.region.as_deref().cloned().unwrap_or_default();
+        let mesh = match (&draped.mesh, &region.link) {
+            (Some(path), None) => self.surface(&format!("{key}.mesh"), path, draped.unit)?,
+            (None, Some(link)) => {
+                let key = &format!("{region_key}.link");
+                if draped.unit.is_some() {
+                    let allowed = "no unit: the robot's file has metres and scales";
+                    return self.refuse(key, "a link beside unit", allowed);
+                }
+                let PlannedRobot { robot, meshes, .. } = self.robot_of_patch(key, spec, robots)?;
+                let role = region.shapes;
+                let surface = LinkSurface { link, role };
+                self.under(key, link_surface(robot, meshes, &surface, pitch))?
+            }
+            (mesh, _) => {
+                let given = match mesh {
+                    Some(_) => "mesh and region.link",
+                    None => "neither mesh nor a link",
+                };
+                let allowed = "mesh = \"FILE\", on = \"collision\" for the patch's own link, or region = { link = \"NAME\" }, a link of the patch's robot";
+                return self.refuse(key, given, allowed);
+            }
         };
-        Ok(Some((file, radii)))
+        let region = self.region(region_key, &region, draped.mesh.as_deref())?;
+        let Some(grid) = &draped.grid else {
+            let layout = Layout::draped_on(&mesh, pitch, &region, seed);
+            return self.under(key, layout);
+        };
+        if region != DrapeRegion::default() {
+            let allowed = "a grid alone: its taxels cover the surface below it";
+            let given = "a part of the surface beside a grid";
+            return self.refuse(region_key, given, allowed);
+        }
+        let (nx, ny) = (grid.nx, grid.ny);
+        let flat = Grid { nx, ny, pitch };
+        let projected = Layout::projected(&mesh, &grid.at.pose(), &flat, grid.missing.into());
+        Ok(self.under(key, projected)?.layout)
+    }
+
+    /// Reads a mesh over which taxels are draped, or whose normals are their axes.
+    fn surface(&self, key: &str, path: &Path, unit: Option<LengthUnit>) -> Result<TriangleMesh> {
+        self.open(key, path)?;
+        let mesh = read_surface(&self.path(path), unit, &SizeLimits::ANY);
+        self.under(key, mesh)
     }
 
     fn layout_file(&self, key: &str, spec: &FileLayoutSpec) -> Result<LayoutFile> {
@@ -266,15 +288,7 @@ impl Reader<'_> {
             FileLayoutSpec::Parts(parts) => (&parts.path, Some(parts)),
         };
         let mesh = parts.and_then(|parts| Some((parts.mesh.as_ref()?, parts.unit)));
-        let mesh = mesh.map(|(mesh, unit)| -> Result<_> {
-            let (place, _) = self.open(&format!("{key}.mesh"), mesh)?;
-            let (mesh, orientation) = self.under(
-                key,
-                read_mesh(&self.path(mesh), unit, &SizeLimits::ANY, None),
-            )?;
-            self.under(key, orientation.require(&place))?;
-            Ok(mesh)
-        });
+        let mesh = mesh.map(|(mesh, unit)| self.surface(&format!("{key}.mesh"), mesh, unit));
         let mesh = mesh.transpose()?;
         let options = LayoutOptions {
             mesh: mesh.as_ref(),
@@ -291,104 +305,59 @@ impl Reader<'_> {
         spec: &mut PatchSpec,
         robots: &[PlannedRobot],
     ) -> Result<()> {
-        let LayoutSpec::Draped(DrapedSpec {
-            mesh, on, region, ..
-        }) = &mut spec.layout
-        else {
+        let LayoutSpec::Draped(draped) = &spec.layout else {
             return Ok(());
         };
-        let Some(role) = on.take() else {
+        let Some(role) = draped.on else {
             return Ok(());
         };
         let key = &format!("{key}.on");
-        let region = region.get_or_insert_default();
-        if mesh.is_some() || region.link.is_some() || region.shapes.is_some() {
+        let mut region = draped.region.clone().unwrap_or_default();
+        if draped.mesh.is_some() || region.link.is_some() || region.shapes.is_some() {
             let given = "beside mesh, region.link or region.shapes";
-            return Err(self
-                .check
-                .error(key, given, "one surface: on = \"collision\" alone"));
+            return self.refuse(key, given, "one surface: on = \"collision\" alone");
         }
-        let Some(name) = &spec.robot else {
-            let allowed = "robot = \"NAME\" of the patch";
-            return Err(self.check.error(key, "a patch without a robot", allowed));
-        };
-        let names = robots.iter().map(|robot| robot.name.as_str());
-        let robot = &robots[self.known(key, name, names)?].robot;
+        let robot = &self.robot_of_patch(key, spec, robots)?.robot;
         let base = || robot.links()[robot.base()].name.clone();
         region.link = Some(spec.link.clone().unwrap_or_else(base));
         region.shapes = Some(role);
+        spec.layout = LayoutSpec::Draped(DrapedSpec {
+            on: None,
+            region: Some(region),
+            ..draped.clone()
+        });
         Ok(())
-    }
-
-    /// Mounts a patch whose taxels are draped over a robot link on this link.
-    fn mount_on_draped_link(&self, key: &str, spec: &mut PatchSpec) -> Result<()> {
-        let LayoutSpec::Draped(DrapedSpec { region, .. }) = &spec.layout else {
-            return Ok(());
-        };
-        let Some(draped) = region.as_ref().and_then(|region| region.link.as_ref()) else {
-            return Ok(());
-        };
-        let carrier = spec.link.get_or_insert_with(|| draped.clone());
-        match carrier == draped {
-            true => Ok(()),
-            false => {
-                let given = format!("`{draped}` of a patch that link `{carrier}` carries");
-                let allowed = "one link: the link that skin is draped over carries the patch";
-                Err(self
-                    .check
-                    .error(&format!("{key}.region.link"), given, allowed))
-            }
-        }
     }
 
     /// Returns the part of a surface on which taxels are placed. The surface is a mesh file, or a robot link if `mesh` is `None`.
     fn region(&self, key: &str, spec: &RegionSpec, mesh: Option<&Path>) -> Result<DrapeRegion> {
-        let refuse = |given: &str, allowed: &str| Err(self.check.error(key, given, allowed));
-        if spec.shapes.is_some() && spec.link.is_none() {
-            return refuse("shapes alone", "link beside them");
-        }
-        if mesh.is_none() && (spec.group.is_some() || spec.triangles.is_some()) {
-            let allowed = "a box or a plane: groups and triangles are of a mesh file";
-            return refuse("group or triangles beside link", allowed);
-        }
-        let mesh = mesh.unwrap_or(Path::new(""));
-        let vector = |name: &str, numbers| self.vector(&format!("{key}.{name}"), numbers, MM);
-        let bounds = match (spec.box_min_mm, spec.box_max_mm) {
-            (Some(min), Some(max)) => Some(Aabb {
-                min: vector("box_min_mm", min)?,
-                max: vector("box_max_mm", max)?,
-            }),
-            (None, None) => None,
-            _ => return refuse("one corner of a box", "box_min_mm and box_max_mm"),
-        };
-        let beyond = match (spec.plane_normal, spec.plane_point_mm) {
-            (Some(normal), point) => Some((
-                vector("plane_point_mm", point.unwrap_or_default())?,
-                self.vector(&format!("{key}.plane_normal"), normal, 1.0)?,
-            )),
-            (None, None) => None,
-            (None, Some(_)) => return refuse("plane_point_mm alone", "plane_normal beside it"),
-        };
-        let triangles = match (&spec.group, spec.triangles) {
-            (Some(_), Some(_)) => return refuse("group and triangles", "one of them"),
-            (Some(group), None) => {
+        self.check.rules(key, spec, REGION_RULES)?;
+        let bounds = spec.box_min_mm.zip(spec.box_max_mm);
+        let triangles = match (&spec.group, spec.triangles, mesh) {
+            (Some(group), _, Some(mesh)) => {
                 let key = &format!("{key}.group");
                 if MeshFormat::from_path(mesh)? != MeshFormat::Obj {
                     let given = format!("`{group}` of {}", mesh.display());
-                    return Err(self.check.error(key, given, "a group of an OBJ file"));
+                    return self.refuse(key, given, "a group of an OBJ file");
                 }
                 let (place, file) = self.open(key, mesh)?;
                 Some(self.under(key, obj_group(&place, file, group))?)
             }
-            (None, Some([first, last])) if first <= last => Some((first..=last).collect()),
-            (None, Some(_)) => {
-                return refuse("triangles that end before they begin", "first and last");
+            (_, Some([first, last]), _) if first > last => {
+                let given = "triangles that end before they begin";
+                return self.refuse(key, given, "first and last");
             }
-            (None, None) => None,
+            (_, triangles, _) => triangles.map(|[first, last]| (first..=last).collect()),
         };
         Ok(DrapeRegion {
-            bounds,
-            beyond,
+            bounds: bounds.map(|(min, max)| Aabb {
+                min: metres(min),
+                max: metres(max),
+            }),
+            beyond: spec.plane_normal.map(|normal| {
+                let point = metres(spec.plane_point_mm.unwrap_or_default());
+                (point, DVec3::from_array(normal))
+            }),
             triangles,
         })
     }

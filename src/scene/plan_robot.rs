@@ -1,9 +1,10 @@
-//! Robots of an executable scene, with checked motions.
+//! Robots of an executable scene: checked motions, and the state of a robot during a simulation.
 
 use super::reader::Reader;
-use super::spec::RobotSpec;
+use super::spec::{JointsSpec, ROBOT_RULES, RobotSpec};
+use super::spec_motion::JOINTS_RULES;
 use crate::error::Result;
-use crate::scene::spec_motion::JointsSpec;
+use crate::geometry::Pose;
 use crate::spelling::nearest_names;
 use crate::world::{Joint, JointTrajectory, MeshFolders, Motion, Robot};
 use ndarray::Array2;
@@ -36,14 +37,12 @@ impl Reader<'_> {
     /// Checks a robot of a scene file and reads the robot's file.
     pub fn robot(&self, spec: &RobotSpec) -> Result<PlannedRobot> {
         let key = &format!("robots.{}", spec.name);
-        let (robot, meshes) = match (&spec.file, &spec.urdf, spec.floating) {
-            (None, None, true) => (Robot::floating(&spec.name), MeshFolders::default()),
-            (Some(path), None, false) => self.robot_file(key, "file", path, spec)?,
-            (None, Some(path), false) => self.robot_file(key, "urdf", path, spec)?,
-            _ => {
-                let allowed = "either file = \"FILE\" or floating = true";
-                return Err(self.check.error(key, "both or neither", allowed));
-            }
+        self.check.rules(key, spec, ROBOT_RULES)?;
+        let file = spec.file.as_ref().map(|path| ("file", path));
+        let file = file.or(spec.urdf.as_ref().map(|path| ("urdf", path)));
+        let (robot, meshes) = match file {
+            Some((name, path)) => self.robot_file(key, name, path, spec)?,
+            None => (Robot::floating(&spec.name), MeshFolders::default()),
         };
         Ok(PlannedRobot {
             name: spec.name.clone(),
@@ -73,9 +72,7 @@ impl Reader<'_> {
             }
             let key = format!("{key}.packages.{package}");
             let given = format!("{}, which is no folder", folder.display());
-            Err(self
-                .check
-                .error(&key, given, "a folder, its path relative to the scene's"))
+            self.refuse(&key, given, "a folder, its path relative to the scene's")
         });
         let packages = packages.collect::<Result<_>>()?;
         Ok((robot, MeshFolders::beside(&path, packages)))
@@ -88,22 +85,16 @@ impl Reader<'_> {
         joints: Option<&JointsSpec>,
         robot: &Robot,
     ) -> Result<Option<JointTrajectory>> {
-        let coordinates = robot.coordinates();
-        let joints = match (joints, coordinates.first()) {
-            (None, _) => return Ok(None),
-            (Some(_), None) => {
-                let given = "a trajectory of a robot whose joints do not move";
-                return Err(self.check.error(key, given, "no such key"));
-            }
-            (Some(joints), Some(_)) => joints,
+        let Some(joints) = joints else {
+            return Ok(None);
         };
+        if robot.coordinates().is_empty() {
+            let given = "a trajectory of a robot whose joints do not move";
+            return self.refuse(key, given, "no such key");
+        }
+        self.check.rules(key, joints, JOINTS_RULES)?;
         let interpolation = joints.interpolation.unwrap_or_default();
-        let is_here = !(joints.time_s.is_empty() && joints.positions.is_empty());
         let trajectory = match &joints.csv {
-            Some(_) if is_here => {
-                let allowed = "either csv, or time_s and positions";
-                return Err(self.check.error(key, "both", allowed));
-            }
             Some(path) => {
                 let (place, file) = self.open(&format!("{key}.csv"), path)?;
                 JointTrajectory::read_csv(robot, &place, file, interpolation)
@@ -125,47 +116,44 @@ impl Reader<'_> {
             Array2::from_shape_fn((n_times, rest.len()), |(_, column)| rest[column]);
         let mut found = vec![false; robot.n_positions()];
         for (given, values) in &joints.positions {
-            let names = robot.coordinates().iter().map(|c| c.name.as_str());
-            let place = robot
-                .coordinates()
-                .iter()
-                .enumerate()
-                .find_map(|(column, c)| {
-                    let suffix = given.strip_prefix(&c.name)?;
-                    // The first unit is empty, but here each name needs a unit.
-                    let mut units = c.dimension.units().iter().skip(1);
-                    units
-                        .find(|(unit, _)| *unit == suffix)
-                        .map(|(_, scale)| (column, scale))
-                });
+            let mut coordinates = robot.coordinates().iter().enumerate();
+            let place = coordinates.find_map(|(column, coordinate)| {
+                let suffix = given.strip_prefix(&coordinate.name)?;
+                // The first unit is empty, but here each name needs a unit.
+                let mut units = coordinate.dimension.units().iter().skip(1);
+                let found = units.find(|(unit, _)| *unit == suffix);
+                found.map(|(_, scale)| (column, scale))
+            });
             let Some((column, scale)) = place else {
-                let bare = given
-                    .rsplit_once('_')
-                    .map_or(given.as_str(), |(bare, _)| bare);
-                if let Some(joint) = robot.joints().iter().find(|joint| joint.name == bare) {
-                    let given = format!("`{given}`, and joint `{bare}` {}", stays(joint, robot));
-                    return Err(self
-                        .check
-                        .error(key, given, "joints that move and mimic none"));
-                }
-                let unit = "with _deg, _rad, _mm or _m";
-                let allowed = format!("{} {unit}", nearest_names(bare, names));
-                return Err(self.check.error(key, format!("`{given}`"), allowed));
+                return self.refuse_position(key, given, robot);
             };
             if std::mem::replace(&mut found[column], true) {
                 let given = format!("`{given}`, in a second unit");
-                return Err(self.check.error(key, given, "one list a joint"));
+                return self.refuse(key, given, "one list a joint");
             }
             if values.len() != n_times {
                 let given = format!("`{given}` with {} numbers", values.len());
                 let allowed = format!("{n_times}, one a time of time_s");
-                return Err(self.check.error(key, given, allowed));
+                return self.refuse(key, given, allowed);
             }
             for (row, value) in values.iter().enumerate() {
                 positions[(row, column)] = scale * value;
             }
         }
         Ok(positions)
+    }
+
+    /// Returns the error of a key of `positions` that is not the name of a joint that moves, with a unit.
+    fn refuse_position<T>(&self, key: &str, given: &str, robot: &Robot) -> Result<T> {
+        let bare = given.rsplit_once('_').map_or(given, |(bare, _)| bare);
+        if let Some(joint) = robot.joints().iter().find(|joint| joint.name == bare) {
+            let given = format!("`{given}`, and joint `{bare}` {}", stays(joint, robot));
+            return self.refuse(key, given, "joints that move and mimic none");
+        }
+        let names = robot.coordinates().iter().map(|c| c.name.as_str());
+        let unit = "with _deg, _rad, _mm or _m";
+        let allowed = format!("{} {unit}", nearest_names(bare, names));
+        self.refuse(key, format!("`{given}`"), allowed)
     }
 }
 
@@ -185,5 +173,45 @@ fn stays(joint: &Joint, robot: &Robot) -> String {
                 )
             }
         },
+    }
+}
+
+/// Joint positions and link poses of a robot at one time.
+#[derive(Clone, Debug)]
+pub(super) struct RobotState {
+    positions: Vec<f64>,
+    /// Whether a program has set the joint positions, which then no longer follow the scene file.
+    are_set: bool,
+    /// Pose of the base that a program has set, `world_from_base`; `None` if the base follows the scene file.
+    pub base: Option<Pose>,
+    /// Pose of each link, `world_from_link`.
+    pub world_from_link: Vec<Pose>,
+}
+
+impl RobotState {
+    /// Creates the state of a robot with its joints at their rest positions.
+    pub fn new(robot: &PlannedRobot) -> Self {
+        Self {
+            positions: robot.robot.rest_positions(),
+            are_set: false,
+            base: None,
+            world_from_link: vec![Pose::IDENTITY; robot.robot.links().len()],
+        }
+    }
+
+    /// Sets the joint positions from now on (rad or m, one number per coordinate), in place of the motion in the scene file.
+    pub fn set_positions(&mut self, positions: &[f64]) {
+        self.positions.copy_from_slice(positions);
+        self.are_set = true;
+    }
+
+    /// Computes the pose of each link at a time (seconds).
+    pub fn place(&mut self, robot: &PlannedRobot, time: f64) -> Result<()> {
+        if let (Some(joints), false) = (&robot.joints, self.are_set) {
+            joints.positions_into(time, &mut self.positions);
+        }
+        let base = self.base.unwrap_or_else(|| robot.base.pose_at(time));
+        let links = &mut self.world_from_link;
+        robot.robot.forward_into(&base, &self.positions, links)
     }
 }

@@ -1,21 +1,84 @@
 //! Signal chain of a patch with checked steps; it converts deflections or forces to sensor output.
 
 use super::frame::PatchReading;
-use super::reader::{MM, Reader};
+use super::reader::Reader;
 use super::spec::SignalStepSpec;
 use crate::error::Result;
-use crate::inputs::range::not_negative;
-use crate::inputs::sensor_errors::{NOISES, all_strengths};
+use crate::inputs::range::Range;
+use crate::inputs::sensor_errors::{NOISES, noise_words, strength_words};
+use crate::inputs::units::MM;
 use crate::random::Seed;
 use crate::signal::{
-    Chain, MAX_STRENGTHS, Noise, Quantity, Recording, SignalStep, SignalWorkspace,
+    Chain, Noise, NoiseUnit, Quantity, Recording, SensorError, SignalStep, SignalWorkspace,
 };
 use crate::spelling::nearest_names;
 use crate::world::Patch;
 use std::collections::BTreeMap;
 
-/// Name of the smoothing step of a signal chain. All other step names belong to [noise](NOISES) or sensor errors.
-const SMOOTHING: &str = "smoothing_mm";
+/// Kind of step in the signal chain of a patch.
+enum StepKind {
+    /// Noise, with its key and its unit.
+    Noise(&'static str, NoiseUnit),
+    Smoothing,
+    Error(SensorError),
+}
+
+/// Key of a step of a signal chain.
+pub(super) struct StepKey {
+    /// Name of the key.
+    pub name: &'static str,
+    /// Meaning of its number.
+    pub words: String,
+    range: Range,
+}
+
+impl StepKind {
+    /// Returns all kinds of steps: noises, smoothing, and sensor errors.
+    fn all() -> impl Iterator<Item = Self> {
+        let noises = NOISES.map(|(name, unit)| Self::Noise(name, unit));
+        let errors = SensorError::all().map(Self::Error);
+        let simple = noises.into_iter().chain([Self::Smoothing]);
+        simple.chain(errors)
+    }
+
+    /// Returns whether the step reads each frame alone; a scene has no other steps.
+    fn is_of_single_frames(&self) -> bool {
+        match self {
+            Self::Noise(..) | Self::Smoothing => true,
+            Self::Error(error) => error.about().is_of_single_frames(),
+        }
+    }
+
+    /// Returns the keys of the step.
+    fn keys(&self) -> Vec<StepKey> {
+        let one = |name, words| {
+            let range = Range::NotNegative;
+            vec![StepKey { name, words, range }]
+        };
+        match *self {
+            Self::Noise(name, unit) => one(name, noise_words(unit)),
+            Self::Smoothing => {
+                let words = "Standard deviation of the Gaussian smoothing over the array, mm.";
+                one("smoothing_mm", words.to_owned())
+            }
+            Self::Error(error) => {
+                let strengths = error.about().strengths.iter();
+                let keys = strengths.map(|strength| StepKey {
+                    name: strength.key,
+                    words: strength_words(error, strength),
+                    range: Range::Strength(strength),
+                });
+                keys.collect()
+            }
+        }
+    }
+}
+
+/// Returns the keys of all steps that a patch of a scene allows.
+pub(super) fn step_keys() -> impl Iterator<Item = StepKey> {
+    let kinds = StepKind::all().filter(StepKind::is_of_single_frames);
+    kinds.flat_map(|kind| kind.keys())
+}
 
 /// Checked signal chain of a patch, which converts deflections to sensor readings.
 #[derive(Clone, Debug)]
@@ -79,7 +142,7 @@ impl Reader<'_> {
             SignalStepSpec::Word(word) => {
                 let given = format!("{word:?} as step {place}");
                 let allowed = "\"force\" as the first, and steps such as { noise_std_n = 0.1 }";
-                Err(self.check.error(key, given, allowed))
+                self.refuse(key, given, allowed)
             }
         });
         let steps = steps.collect::<Result<Vec<_>>>()?;
@@ -95,55 +158,43 @@ impl Reader<'_> {
         given: &BTreeMap<String, f64>,
         skin: Seed,
     ) -> Result<SignalStep> {
-        let Some((first, &value)) = given.first_key_value() else {
+        let Some(first) = given.keys().next() else {
             let allowed = "one step's keys: { noise_std_n = 0.1 }";
-            return Err(self.check.error(key, "a step without a key", allowed));
+            return self.refuse(key, "a step without a key", allowed);
         };
-        let noise = NOISES.iter().find(|(name, _)| name == first);
-        if noise.is_some() || first == SMOOTHING {
-            let key = &format!("{key}.{first}");
-            if given.len() > 1 {
-                let said = "another key beside it";
-                return Err(self.check.error(key, said, "one step in each { }"));
-            }
-            let value = self
-                .check
-                .value(key, value, not_negative, "zero or a positive number")?;
-            return Ok(match noise {
-                Some(&(_, unit)) => SignalStep::Noise(Noise { std: value, unit }),
-                None => SignalStep::Smoothing { width: value * MM },
-            });
-        }
-        let found = all_strengths().find(|(_, strength)| strength.key == first);
-        let Some((error, _)) = found else {
-            let errors = all_strengths().map(|(_, strength)| strength.key);
-            let noises = NOISES.iter().map(|(name, _)| *name);
-            let names = noises.chain([SMOOTHING]).chain(errors);
-            let given = format!("`{first}`");
-            return Err(self.check.error(key, given, nearest_names(first, names)));
+        let mut kinds = StepKind::all().map(|kind| (kind.keys(), kind));
+        let found = kinds.find(|(keys, _)| keys.iter().any(|key| key.name == first));
+        let Some((keys, kind)) = found else {
+            let names = StepKind::all().flat_map(|kind| kind.keys());
+            let offered = nearest_names(first, names.map(|key| key.name));
+            return self.refuse(key, format!("`{first}`"), offered);
         };
-        let about = error.about();
-        if !about.is_of_single_frames() {
+        if !kind.is_of_single_frames() {
             let given = format!("`{first}`, which needs the frames before and after");
             let allowed = "steps that read each frame alone (studies have all)";
-            return Err(self.check.error(key, given, allowed));
+            return self.refuse(key, given, allowed);
         }
-        let mut strengths = [0.0; MAX_STRENGTHS];
+        let mut values = vec![0.0; keys.len()];
         for (name, &value) in given {
-            let mut all = about.strengths.iter();
-            let Some(place) = all.position(|strength| strength.key == name) else {
+            let Some(place) = keys.iter().position(|key| key.name == name) else {
                 let given = format!("`{name}` beside `{first}`");
-                return Err(self.check.error(key, given, "one step in each { }"));
+                return self.refuse(key, given, "one step in each { }");
             };
-            let strength = &about.strengths[place];
-            let key = &format!("{key}.{name}");
-            strengths[place] = self.check.value(
-                key,
-                value,
-                |value| strength.is_allowed(value),
-                strength.allowed,
-            )?;
+            let range = keys[place].range;
+            if !range.contains(value) {
+                return self.refuse(&format!("{key}.{name}"), value, range.words());
+            }
+            values[place] = value;
         }
-        error.step(&strengths[..about.strengths.len()], skin)
+        match kind {
+            StepKind::Noise(_, unit) => Ok(SignalStep::Noise(Noise {
+                std: values[0],
+                unit,
+            })),
+            StepKind::Smoothing => Ok(SignalStep::Smoothing {
+                width: values[0] * MM,
+            }),
+            StepKind::Error(error) => error.step(&values, skin),
+        }
     }
 }

@@ -1,10 +1,10 @@
 //! Taxel properties of a patch, given as one number for all taxels, as a list, or as a column of a CSV file.
 
-use super::numbers::Numbers;
-use super::reader::{MM, Reader};
-use super::spec::PatchSpec;
+use super::reader::Reader;
+use super::spec::{Numbers, PatchSpec};
 use crate::error::{Error, Result};
-use crate::inputs::range::{not_negative, positive};
+use crate::inputs::params::Described;
+use crate::inputs::units::MM;
 use crate::numbers_csv::NumberTable;
 use crate::spelling::nearest_names;
 use crate::world::{PerTaxel, Shear, Shears, Taxel, Taxels};
@@ -12,13 +12,15 @@ use crate::world::{PerTaxel, Shear, Shears, Taxel, Taxels};
 /// Default stiffness of a taxel, N/m.
 const STIFFNESS: f64 = 100.0;
 
-const RADIUS: &str = "taxel_radius_mm";
-const STROKE: &str = "stroke_mm";
-const STIFF: &str = "stiffness_n_per_m";
-const DAMPING: &str = "damping_n_s_per_m";
-const FRICTION: &str = "friction";
-const SHEAR: &str = "shear_stiffness_n_per_m";
-const NAMES: [&str; 6] = [RADIUS, STROKE, STIFF, DAMPING, FRICTION, SHEAR];
+/// Keys of a patch that the CSV file of its taxels may have as columns.
+const COLUMNS: [&str; 6] = [
+    "taxel_radius_mm",
+    "stroke_mm",
+    "stiffness_n_per_m",
+    "damping_n_s_per_m",
+    "friction",
+    "shear_stiffness_n_per_m",
+];
 
 /// Source of the taxel properties of a patch: its keys in the scene file, and its CSV file.
 struct Lookup<'a> {
@@ -41,138 +43,92 @@ impl Reader<'_> {
         let table = match &spec.taxels_csv {
             Some(path) => {
                 let (place, file) = self.open(&format!("{key}.taxels_csv"), path)?;
-                read_table(&place, file)?
+                read_table(&place, file, n_taxels)?
             }
             None => NumberTable::default(),
         };
-        let has = |name| table.position(name).is_some();
-        let (has_stiffness, has_damping) = (has(STIFF), has(DAMPING));
-        let default = |given: &mut Option<Numbers>, has_column: bool, value| {
-            if given.is_none() && !has_column {
-                *given = Some(Numbers::One(value));
-            }
-        };
-        default(&mut spec.stiffness_n_per_m, has_stiffness, STIFFNESS);
-        default(&mut spec.damping_n_s_per_m, has_damping, 0.0);
         let lookup = Lookup {
             reader: self,
             key,
             table,
             n_taxels,
         };
-        let (above, from) = ("a positive number", "zero or a positive number");
-        let radius = lookup.find(RADIUS, spec.taxel_radius_mm.as_ref(), positive, above)?;
+        let radius = lookup.find("taxel_radius_mm", &mut spec.taxel_radius_mm)?;
         let radius = radius.unwrap_or(default_radius_mm);
-        let stroke = lookup.needed(STROKE, spec.stroke_mm.as_ref(), positive, above)?;
-        let stiffness = lookup.needed(STIFF, spec.stiffness_n_per_m.as_ref(), positive, above)?;
-        let damping = spec.damping_n_s_per_m.as_ref();
-        let damping = lookup.needed(DAMPING, damping, not_negative, from)?;
+        let stroke = lookup.find("stroke_mm", &mut spec.stroke_mm)?;
+        let Some(stroke) = stroke else {
+            let allowed = "a number, a list, or a column of taxels_csv";
+            return self.refuse(&format!("{key}.stroke_mm"), "nothing", allowed);
+        };
+        let stiffness = &mut spec.stiffness_n_per_m;
+        let stiffness = lookup.find_or("stiffness_n_per_m", stiffness, STIFFNESS)?;
+        let damping = &mut spec.damping_n_s_per_m;
+        let damping = lookup.find_or("damping_n_s_per_m", damping, 0.0)?;
         let taxels = lookup.each([&radius, &stroke, &stiffness, &damping], |taxel| Taxel {
             radius: radius.at(taxel) * MM,
             stiffness: *stiffness.at(taxel),
             damping: *damping.at(taxel),
             stroke: stroke.at(taxel) * MM,
         });
-        let friction = lookup.find(FRICTION, spec.friction.as_ref(), not_negative, from)?;
-        let shear = spec.shear_stiffness_n_per_m.as_ref();
-        let shear = lookup.find(SHEAR, shear, positive, above)?;
-        let shears = match (friction, shear) {
-            (None, None) => None,
-            (None, Some(_)) => {
-                let given = "given without friction";
-                let allowed = "friction = μ beside it";
-                return Err(self.check.error(&format!("{key}.{SHEAR}"), given, allowed));
-            }
-            (Some(friction), shear) => {
-                let shear = shear.unwrap_or(stiffness);
-                Some(lookup.each([&friction, &shear], |taxel| Shear {
-                    stiffness: *shear.at(taxel),
-                    friction: *friction.at(taxel),
-                }))
-            }
+        let friction = lookup.find("friction", &mut spec.friction)?;
+        let shear = &mut spec.shear_stiffness_n_per_m;
+        let shear = lookup.find("shear_stiffness_n_per_m", shear)?;
+        let Some(friction) = friction else {
+            return match shear {
+                None => Ok((taxels, None)),
+                Some(_) => {
+                    let key = format!("{key}.shear_stiffness_n_per_m");
+                    self.refuse(&key, "given without friction", "friction = μ beside it")
+                }
+            };
         };
-        Ok((taxels, shears))
+        let shear = shear.unwrap_or(stiffness);
+        let shears = lookup.each([&friction, &shear], |taxel| Shear {
+            stiffness: *shear.at(taxel),
+            friction: *friction.at(taxel),
+        });
+        Ok((taxels, Some(shears)))
     }
 }
 
 impl Lookup<'_> {
-    /// Returns a taxel property that is required; returns an error if the property is missing.
-    fn needed(
-        &self,
-        name: &'static str,
-        given: Option<&Numbers>,
-        is_allowed: fn(f64) -> bool,
-        allowed: &str,
-    ) -> Result<PerTaxel<f64>> {
-        let found = self.find(name, given, is_allowed, allowed)?;
-        found.ok_or_else(|| {
-            let allowed = "a number, a list, or a column of taxels_csv";
-            self.error(name, "nothing", allowed)
-        })
-    }
-
-    /// Returns a property of each taxel, read from the scene file or from the CSV file, after a check of each number.
+    /// Returns a property of each taxel, read from the scene file or from the CSV file; `None` if neither has it.
     fn find(
         &self,
         name: &'static str,
-        given: Option<&Numbers>,
-        is_allowed: fn(f64) -> bool,
-        allowed: &str,
+        given: &mut Option<Numbers>,
     ) -> Result<Option<PerTaxel<f64>>> {
-        let check = &self.reader.check;
         let key = format!("{}.{name}", self.key);
-        match (given, self.table.position(name)) {
-            (None, None) => Ok(None),
+        Ok(match (given, self.table.position(name)) {
+            (None, None) => None,
+            (None, Some(column)) => Some(PerTaxel::Each(self.table.columns[column].clone())),
             (Some(_), Some(_)) => {
                 let given = format!("here and as a column of {}", self.table.place);
-                Err(check.error(&key, given, "one of them"))
+                return self.reader.refuse(&key, given, "one of them");
             }
-            (Some(Numbers::One(number)), None) => {
-                let number = check.value(&key, *number, is_allowed, allowed)?;
-                Ok(Some(PerTaxel::Equal(number)))
+            (Some(Numbers::One(number)), None) => Some(PerTaxel::Equal(*number)),
+            (Some(Numbers::Each(numbers)), None) if numbers.len() == self.n_taxels => {
+                Some(PerTaxel::Each(numbers.clone()))
             }
             (Some(Numbers::Each(numbers)), None) => {
-                self.check_count(numbers.len(), "numbers", |given, allowed| {
-                    check.error(&key, given, allowed)
-                })?;
-                for (index, &number) in numbers.iter().enumerate() {
-                    let key = format!("{key}, taxel {}", index + 1);
-                    check.value(&key, number, is_allowed, allowed)?;
-                }
-                Ok(Some(PerTaxel::Each(numbers.clone())))
+                let given = format!("{} numbers", numbers.len());
+                return self.reader.refuse(&key, given, one_each(self.n_taxels));
             }
-            (None, Some(column)) => {
-                let (place, column) = (&self.table.place, &self.table.columns[column]);
-                self.check_count(column.len(), "rows", |given, allowed| {
-                    Error::input(place, given, allowed)
-                })?;
-                for (line, &number) in self.table.lines.iter().zip(column) {
-                    if !is_allowed(number) {
-                        let place = format!("{place}, line {line}, column {name}");
-                        return Err(Error::input(place, number, allowed));
-                    }
-                }
-                Ok(Some(PerTaxel::Each(column.clone())))
-            }
-        }
+        })
     }
 
-    fn check_count(
+    /// Returns a property of each taxel. If neither file has the property, writes the default value to `given`.
+    fn find_or(
         &self,
-        n: usize,
-        what: &str,
-        error: impl Fn(String, String) -> Error,
-    ) -> Result<()> {
-        if n == self.n_taxels {
-            return Ok(());
-        }
-        let allowed = format!("{}, one a taxel", self.n_taxels);
-        Err(error(format!("{n} {what}"), allowed))
-    }
-
-    fn error(&self, name: &str, given: &str, allowed: &str) -> Error {
-        let key = format!("{}.{name}", self.key);
-        self.reader.check.error(&key, given, allowed)
+        name: &'static str,
+        given: &mut Option<Numbers>,
+        default: f64,
+    ) -> Result<PerTaxel<f64>> {
+        let found = self.find(name, given)?;
+        Ok(found.unwrap_or_else(|| {
+            *given = Some(Numbers::One(default));
+            PerTaxel::Equal(default)
+        }))
     }
 
     /// Computes one value per taxel from several properties. If all properties are equal for all taxels, makes a single value for all taxels.
@@ -189,18 +145,36 @@ impl Lookup<'_> {
     }
 }
 
-/// Reads a CSV table with one row per taxel and one column per property. Errors name the line and the column; unknown and repeated column names are errors.
-fn read_table(place: &str, source: impl std::io::Read) -> Result<NumberTable> {
+/// Returns the allowed number of values of a property, as text.
+fn one_each(n_taxels: usize) -> String {
+    format!("{n_taxels}, one a taxel")
+}
+
+/// Reads a CSV table with one row per taxel and one column per property. Errors name the line and the column; unknown and repeated column names are errors, as
+/// are numbers out of the range of their key.
+fn read_table(place: &str, source: impl std::io::Read, n_taxels: usize) -> Result<NumberTable> {
     let allowed = "a header and one row a taxel, of as many numbers";
     let table = NumberTable::read(place, source, allowed)?;
     for (index, given) in table.names.iter().enumerate() {
-        if !NAMES.contains(&given.as_str()) {
-            let offered = nearest_names(given, NAMES);
+        if !COLUMNS.contains(&given.as_str()) {
+            let offered = nearest_names(given, COLUMNS);
             return Err(table.refuse_header(format!("column `{given}`"), offered));
         }
         if table.names[..index].contains(given) {
             return Err(table.refuse_header(format!("column `{given}` twice"), "each once"));
         }
+        let Some(range) = PatchSpec::range(given) else {
+            continue;
+        };
+        for (line, &number) in table.lines.iter().zip(&table.columns[index]) {
+            if !range.contains(number) {
+                let place = format!("{place}, line {line}, column {given}");
+                return Err(Error::input(place, number, range.words()));
+            }
+        }
     }
-    Ok(table)
+    match table.lines.len() {
+        n if n == n_taxels => Ok(table),
+        n => Err(Error::input(place, format!("{n} rows"), one_each(n_taxels))),
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::frame::{ObjectReading, PoseControl};
 use super::plan::ScenePlan;
-use super::plan_press::PlannedPress;
+use super::plan_object::PlannedPress;
 use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
 use crate::error::Result;

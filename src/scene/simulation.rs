@@ -5,8 +5,8 @@ use super::free_objects::FreeObjects;
 use super::plan::ScenePlan;
 use super::plan_object::Movement;
 use super::plan_patch::PlannedPatch;
+use super::plan_robot::RobotState;
 use super::pressed_objects::PressedObjects;
-use super::robot_state::RobotState;
 use super::skin_state::{Detail, PlacedObjects, SkinState};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
@@ -197,21 +197,14 @@ impl<'p> Simulation<'p> {
         }
         let objects = self.objects.poses.iter_mut().zip(&plan.objects);
         for ((pose, object), put) in objects.zip(&self.put) {
-            match &object.movement {
-                Movement::Imposed(motion) => *pose = put.unwrap_or_else(|| motion.pose_at(time)),
-                Movement::Carried {
-                    robot,
-                    link,
-                    motion,
-                } => {
-                    let link = &self.robots[*robot].world_from_link[*link];
-                    *pose = link.compose(&motion.pose_at(time));
-                }
-                Movement::Free { .. } => {}
+            if let Movement::Imposed { carrier, motion } = &object.movement {
+                let at = || carrier.place(&motion.pose_at(time), &self.robots, &[]);
+                *pose = put.unwrap_or_else(at);
             }
         }
         for (skin, patch) in self.skins.iter_mut().zip(&plan.patches) {
-            skin.pose = patch.mount.place(&self.robots, &self.objects.poses);
+            let objects = &self.objects.poses;
+            skin.pose = patch.carrier.place(&patch.at, &self.robots, objects);
         }
         let objects = &mut self.objects;
         self.pressed.push(plan, &self.skins, objects, [time, dt])?;

@@ -1,7 +1,7 @@
 //! State of a patch during a simulation: pose, contacts, dampers and friction.
 
+use super::carrier::Carrier;
 use super::frame::PatchReading;
-use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
 use crate::contact::equilibrium::{TangentialSpring, TangentialSpringState, TaxelLoad};
 use crate::contact::{
@@ -36,15 +36,14 @@ impl PlacedObjects {
         patch: &PlannedPatch,
         world_from_patch: &'a Pose,
     ) -> impl Iterator<Item = Pose> + 'a {
-        let carrier = match patch.mount {
-            Mount::Object { object, .. } => Some(object),
-            Mount::World(_) | Mount::Link { .. } => None,
-        };
+        let carrier = patch.carrier;
         let poses = self.poses.iter().enumerate();
-        poses.map(move |(number, pose)| match carrier == Some(number) {
-            true => OUT_OF_REACH,
-            false => pose.seen_from(world_from_patch),
-        })
+        poses.map(
+            move |(number, pose)| match carrier == Carrier::Object(number) {
+                true => OUT_OF_REACH,
+                false => pose.seen_from(world_from_patch),
+            },
+        )
     }
 
     /// Returns whether any object may touch the patch: the bounding box of the taxels intersects the bounding ball of an object.

@@ -2,12 +2,12 @@
 //!
 //! The specification checks only names and types. The scene plan checks the values.
 
-pub use super::numbers::Numbers;
 pub use super::spec_motion::*;
 pub use super::spec_object::*;
 pub use super::spec_patch::*;
 use crate::error::Result;
 use crate::files::FilePath;
+use crate::inputs::check::Rule;
 use crate::inputs::params::params;
 use crate::inputs::range::Range::{NotNegative, Positive};
 use crate::toml_text;
@@ -79,6 +79,9 @@ params! {
         joints: Option<JointsSpec>;
     }
 }
+
+/// Keys of a robot that exclude each other.
+pub(super) const ROBOT_RULES: &[Rule] = &[Rule::OneOf(&["file", "urdf", "floating"])];
 
 impl SceneSpec {
     /// Parses the text of a scene file.

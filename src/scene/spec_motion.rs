@@ -1,9 +1,13 @@
-//! Specification of poses and motions in a scene file.
+//! Specification of poses and motions in a scene file, and their conversion to SI units.
 
 use crate::files::FilePath;
+use crate::geometry::{Pose, rotation_from_rpy};
+use crate::inputs::check::Rule;
 use crate::inputs::params::{named, params};
-use crate::inputs::range::Range::NotNegative;
-use crate::world::Interpolation;
+use crate::inputs::range::Range::{NotNegative, Positive};
+use crate::inputs::units::MM;
+use crate::world::{Interpolation, Oscillation, Phase};
+use glam::DVec3;
 use std::collections::BTreeMap;
 
 named!(Interpolation);
@@ -62,7 +66,7 @@ params! {
         /// Amplitude of the rotation vector about the origin of the world or link frame, degrees. Default: 0.
         angular_deg: [f64; 3] = [0.0; 3];
         /// Period of the oscillation, s, positive.
-        period_s: f64;
+        period_s: f64 => Positive;
     }
 }
 
@@ -95,5 +99,62 @@ params! {
         /// `slide_m`.
         #[serde(skip_serializing_if = "BTreeMap::is_empty")]
         positions: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    }
+}
+
+/// Keys of `[motion]` that exclude each other or act together.
+pub(super) const MOTION_RULES: &[Rule] = &[
+    Rule::OneOf(&["phases", "way_points", "csv", "oscillation"]),
+    Rule::Beside("interpolation", &["way_points", "csv"]),
+];
+
+/// Keys of `[joints]` that exclude each other.
+pub(super) const JOINTS_RULES: &[Rule] = &[Rule::Excludes("csv", &["time_s", "positions"])];
+
+/// Converts a vector in mm to metres.
+pub(crate) fn metres(vector_mm: [f64; 3]) -> DVec3 {
+    MM * DVec3::from_array(vector_mm)
+}
+
+/// Converts a vector of angles in degrees to radians.
+fn radians(angles_deg: [f64; 3]) -> DVec3 {
+    1f64.to_radians() * DVec3::from_array(angles_deg)
+}
+
+impl PoseSpec {
+    /// Returns the pose, with its position in metres.
+    pub fn pose(&self) -> Pose {
+        let rotation = rotation_from_rpy(radians(self.rotation_deg));
+        Pose::new(rotation, metres(self.position_mm))
+    }
+}
+
+impl WayPointSpec {
+    /// Returns the position, metres, and the rotations about the fixed axes, radians.
+    pub(super) fn position_and_angles(&self) -> [DVec3; 2] {
+        [metres(self.position_mm), radians(self.rotation_deg)]
+    }
+}
+
+impl PhaseSpec {
+    /// Returns the phase in SI units.
+    pub(super) fn phase(&self) -> Phase {
+        Phase {
+            duration: self.duration_s,
+            linear: metres(self.linear_mm_per_s),
+            angular: radians(self.angular_deg_per_s),
+        }
+    }
+}
+
+impl OscillationSpec {
+    /// Returns the oscillation about a pose, in SI units.
+    pub(super) fn about(&self, start: Pose) -> Oscillation {
+        Oscillation {
+            start,
+            linear: metres(self.linear_mm),
+            angular: radians(self.angular_deg),
+            period: self.period_s,
+        }
     }
 }

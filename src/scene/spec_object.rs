@@ -1,7 +1,8 @@
 //! Specification of objects: the tables `[[objects]]`.
 
-use super::numbers::Numbers;
+use super::spec_patch::Numbers;
 use crate::files::FilePath;
+use crate::inputs::check::Rule;
 use crate::inputs::objects_spec::ModelSpec;
 use crate::inputs::params::params;
 use crate::inputs::range::Range::{NotNegative, Positive};
@@ -82,3 +83,31 @@ params! {
         travel_mm: f64 => Positive;
     }
 }
+
+/// Keys that describe the shape of an object.
+pub(super) const SHAPE_KEYS: [&str; 9] = [
+    "object",
+    "objects",
+    "parts",
+    "centered",
+    "spheres",
+    "mesh",
+    "model",
+    "unit",
+    "surface_error_mm",
+];
+
+/// Keys of the shape of an object that exclude each other or act together.
+pub(crate) const SHAPE_RULES: &[Rule] = &[
+    Rule::OneOf(&["object", "parts", "spheres", "mesh"]),
+    Rule::Beside("objects", &["object"]),
+    Rule::Beside("centered", &["object", "parts"]),
+    Rule::Beside("model", &["mesh"]),
+    Rule::Beside("unit", &["mesh", "spheres"]),
+];
+
+/// Keys of the movement of an object that exclude each other or act together.
+pub(super) const MOVEMENT_RULES: &[Rule] = &[
+    Rule::Beside("link", &["robot"]),
+    Rule::Excludes("free", &["robot", "motion", "press"]),
+];

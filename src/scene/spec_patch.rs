@@ -1,16 +1,17 @@
 //! Specification of skin patches: the tables `[[patches]]`.
 
-use super::numbers::Numbers;
+use super::plan_signal::step_keys;
+use crate::engine::axis::Axis;
 use crate::files::FilePath;
+use crate::inputs::check::Rule;
 use crate::inputs::params::{Described, named, params, variants, words};
 use crate::inputs::range::MIN_POSITIVE;
 use crate::inputs::range::Range::{self, AtLeastOne, Between, NotNegative, Positive};
-use crate::inputs::sensor_errors::{NOISES, all_strengths, noise_words, strength_words};
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::PoseSpec;
 use crate::signal::MAX_STRENGTHS;
 use crate::world::{MissingTaxels, ShapeRole};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
@@ -57,6 +58,42 @@ params! {
     }
 }
 
+/// Keys of a patch that exclude each other or act together.
+pub(super) const PATCH_RULES: &[Rule] = &[
+    Rule::Excludes("object", &["robot", "link"]),
+    Rule::Beside("link", &["robot"]),
+];
+
+/// Keys of the part of a surface that exclude each other or act together.
+pub(super) const REGION_RULES: &[Rule] = &[
+    Rule::Beside("shapes", &["link"]),
+    Rule::Excludes("link", &["group", "triangles"]),
+    Rule::Excludes("group", &["triangles"]),
+    Rule::Beside("box_min_mm", &["box_max_mm"]),
+    Rule::Beside("box_max_mm", &["box_min_mm"]),
+    Rule::Beside("plane_point_mm", &["plane_normal"]),
+];
+
+variants! {
+    /// One number for all taxels or times, or a list: `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
+    pub untagged enum Numbers {
+        /// One number that applies to all elements.
+        One(f64),
+        /// List with one number for each element.
+        Each(Vec<f64>),
+    }
+}
+
+// The error of serde's untagged enum would only state that no variant matched.
+impl<'de> Deserialize<'de> for Numbers {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Ok(match Axis::deserialize(deserializer)? {
+            Axis::One(number) => Self::One(number),
+            Axis::Many(numbers) => Self::Each(numbers),
+        })
+    }
+}
+
 /// Step of the signal chain, as in `signal = ["force", { noise_std_n = 0.1 }, { dead_fraction = 0.01 }]`. The keys are the same as in `[signal]` of studies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -69,9 +106,9 @@ pub enum SignalStepSpec {
 
 impl Described for SignalStepSpec {
     fn schema() -> Value {
-        let keys = scene_steps().map(|(key, words)| {
-            let number = json!({ "type": "number", "minimum": 0, "description": words });
-            (key.to_owned(), number)
+        let keys = step_keys().map(|key| {
+            let number = json!({ "type": "number", "minimum": 0, "description": key.words });
+            (key.name.to_owned(), number)
         });
         json!({
             "title": "`\"force\"` or a table with a key of a step, such as `{ noise_std_n = 0.1 }`",
@@ -87,17 +124,6 @@ impl Described for SignalStepSpec {
             ]
         })
     }
-}
-
-/// Returns the keys and descriptions of the signal steps that a patch of a scene allows. Steps that need earlier and later frames are omitted.
-fn scene_steps() -> impl Iterator<Item = (&'static str, String)> {
-    let noises = NOISES.iter().map(|(key, unit)| (*key, noise_words(*unit)));
-    let smoothing = "Standard deviation of the Gaussian smoothing over the array, mm.";
-    let errors = all_strengths().filter(|(error, _)| error.about().is_of_single_frames());
-    let errors = errors.map(|(error, strength)| (strength.key, strength_words(error, strength)));
-    noises
-        .chain([("smoothing_mm", smoothing.to_owned())])
-        .chain(errors)
 }
 
 variants! {

@@ -166,7 +166,7 @@ fn a_terminal_gets_colours_unless_no_color_is_set() {
 }
 
 /// Command lines of all subcommands that write to standard output; those whose results others read come first.
-const SPEAKERS: [&str; 24] = [
+const SPEAKERS: [&str; 23] = [
     "run study.toml --out results/study --threads 2",
     "run study.toml --out results/json --json --threads 2",
     "features study.toml --out features",
@@ -180,7 +180,6 @@ const SPEAKERS: [&str; 24] = [
     "objects mesh corner.obj",
     "press --object golf",
     "press --object golf --poses poses.csv",
-    "press --object golf --poses poses.csv --json",
     "completions bash",
     "man",
     "man --out pages",

@@ -532,10 +532,7 @@ const READ: &[(&str, &[&str])] = &[
         "box.stl",
         &["press --mesh box.stl --out out.csv", "objects mesh box.stl"],
     ),
-    (
-        "poses.csv",
-        &["press --object golf --poses poses.csv --json"],
-    ),
+    ("poses.csv", &["press --object golf --poses poses.csv"]),
     (
         "parts.toml",
         &[

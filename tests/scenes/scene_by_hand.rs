@@ -61,7 +61,7 @@ fn a_step_by_hand_is_the_time_loops() {
     let (looped, still) = (plan(&sliding(MOTION)), plan(&sliding("")));
     let set = |simulation: &mut Simulation, time: f64| {
         for object in &looped.objects {
-            let Movement::Imposed(motion) = &object.movement else {
+            let Movement::Imposed { motion, .. } = &object.movement else {
                 panic!("both go where they are told");
             };
             let pose = motion.pose_at(time);

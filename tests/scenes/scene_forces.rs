@@ -69,7 +69,7 @@ fn tips_are_dragged_from_step_to_step_as_by_hand() {
     let patch = &plan.patches[0];
     let mut state = FrictionState::at_rest(&patch.skin, patch.shears.clone().unwrap()).unwrap();
     let mut workspace = Workspace::new();
-    let bubbletouch::scene::Movement::Imposed(motion) = &plan.objects[0].movement else {
+    let bubbletouch::scene::Movement::Imposed { motion, .. } = &plan.objects[0].movement else {
         panic!("the pear goes where it is told")
     };
     let (mut n_sticking, mut n_slipping) = (0, 0);

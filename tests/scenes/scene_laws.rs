@@ -7,7 +7,7 @@ use bubbletouch::contact::equilibrium::{
 use bubbletouch::contact::{Workspace, Wrench, press_with_contacts, simulate, spring_load};
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{
-    Frame, Mount, Movement, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping,
+    Carrier, Frame, Movement, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping,
 };
 use bubbletouch::world::{Motion, Phase, VelocityPlan};
 use glam::{DQuat, DVec3};
@@ -130,13 +130,16 @@ fn a_moved_world_feels_the_same() {
         let along = phase(0.53, DVec3::new(0.12, 0.0, 0.0), DVec3::new(0.2, 0.0, 1.2));
         let start = Pose::from_translation(DVec3::new(-0.01, 0.003, 0.003));
         let plan = VelocityPlan::new(moved.compose(&start), vec![down, along]);
-        Movement::Imposed(Motion::Plan(plan.unwrap()))
+        Movement::Imposed {
+            carrier: Carrier::World,
+            motion: Motion::Plan(plan.unwrap()),
+        }
     };
     let at = |moved: Pose| {
         let mut plan = sliding(1.0, 3.0);
         for patch in &mut plan.patches {
-            if let Mount::World(pose) = patch.mount {
-                patch.mount = Mount::World(moved.compose(&pose));
+            if patch.carrier == Carrier::World {
+                patch.at = moved.compose(&patch.at);
             }
         }
         plan.objects[0].movement = phases(&moved);
@@ -293,7 +296,11 @@ fn two_balls(apart: f64, one: &str, other: &str) -> ScenePlan {
     ));
     for (object, x) in plan.objects.iter_mut().zip([-apart, apart]) {
         match &mut object.movement {
-            Movement::Free { start: pose, .. } | Movement::Imposed(Motion::Fixed(pose)) => {
+            Movement::Free { start: pose, .. }
+            | Movement::Imposed {
+                motion: Motion::Fixed(pose),
+                ..
+            } => {
                 pose.translation.x = 1e-3 * x;
             }
             _ => panic!("the balls stand or are free"),

@@ -127,11 +127,11 @@ fn parts_in_a_scene_are_the_solid_of_a_file_of_objects() {
         ),
         (
             "object = \"apple\"\nparts = [{ shape = \"ball\", diameter_mm = 3 }]",
-            "object and parts",
+            "`object` and `parts`; one of",
         ),
         (
             "spheres = \"a.csv\"\ncentered = true",
-            "centered without object or parts",
+            "centered: given alone; one of `object`, `parts` beside it",
         ),
     ] {
         let said = model(object).unwrap_err().to_string();

@@ -258,7 +258,7 @@ fn a_robot_of_mujoco_carries_skin_on_its_bodies_and_sites() {
     for (robot, said) in [
         (
             "file = \"arm.xml\"\nurdf = \"arm.xml\"",
-            "key robots.arm: both or neither",
+            "key robots.arm: `file` and `urdf`; one of `file`, `urdf`, `floating`",
         ),
         ("file = \"none.xml\"", "key robots.arm.file"),
         (

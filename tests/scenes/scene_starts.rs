@@ -141,11 +141,17 @@ fn a_draped_patch_covers_a_region_of_the_outer_surface_and_says_how_many_taxels_
         )
     );
     for (region, given) in [
-        ("box_min_mm = [0.0, 0.0, 0.0]", "one corner of a box"),
-        ("plane_point_mm = [0.0, 0.0, 0.0]", "plane_point_mm alone"),
+        (
+            "box_min_mm = [0.0, 0.0, 0.0]",
+            "box_min_mm: given alone; `box_max_mm` beside it",
+        ),
+        (
+            "plane_point_mm = [0.0, 0.0, 0.0]",
+            "plane_point_mm: given alone; `plane_normal` beside it",
+        ),
         (
             "group = \"ends\", triangles = [0, 1]",
-            "group and triangles",
+            "group: given beside `triangles`",
         ),
         ("triangles = [3, 1]", "triangles that end before they begin"),
         ("triangles = [3, 99]", "triangle 32"),

@@ -1,7 +1,10 @@
 //! Keys of a whole-body study, and its plan: the checked values in SI units.
 
 use crate::files::FilePath;
-use crate::scene::{JointsSpec, Movement, ObjectSpec, PlannedRobot, Reader};
+use crate::inputs::params::Described;
+use crate::scene::spec_motion::metres;
+use crate::scene::spec_object::SHAPE_RULES;
+use crate::scene::{Carrier, JointsSpec, Movement, ObjectSpec, PlannedRobot, Reader};
 use crate::studies::prelude::*;
 use crate::studies::whole_body::ladders::{ScalingPoint, rungs};
 use crate::world::{MeshFolders, Motion, Oscillation, Robot};
@@ -314,6 +317,8 @@ fn scene_plan(
         return Err(check.error(&key(&format!("object.{name}")), "given", allowed));
     }
     // Solids are packed when the scene runs; their keys are checked before.
+    check.rules(&key("object"), object, SHAPE_RULES)?;
+    object.check(check, &key("object"), None)?;
     if object.mesh.is_none() && object.spheres.is_none() {
         reader.solid(&key("object"), object)?;
     }
@@ -322,9 +327,12 @@ fn scene_plan(
         ..object.clone()
     };
     let robots = std::slice::from_ref(robot);
-    let (link, motion) = match reader.carried(&key("object"), &on_robot, robots)? {
-        Movement::Carried { link, motion, .. } => (link, motion),
-        Movement::Imposed(_) | Movement::Free { .. } => unreachable!("a link carries the object"),
+    let Movement::Imposed {
+        carrier: Carrier::Link { link, .. },
+        motion,
+    } = reader.imposed(&key("object"), &on_robot, robots)?
+    else {
+        unreachable!("a link carries the object")
     };
     let motion = match motion {
         Motion::Fixed(start) => Oscillation::resting(start),
@@ -356,7 +364,7 @@ fn scene_plan(
 /// Returns the target position and the approach direction of the objects for recognition.
 fn recognition_aim(reader: &Reader, wanted: &BodyRecognitionSpec, robot: &Robot) -> Result<Aim> {
     let key = |name: &str| format!("whole_body.recognition.{name}");
-    let at = reader.vector(&key("at_mm"), wanted.at_mm, MM)?;
+    let at = metres(wanted.at_mm);
     Ok(Aim {
         link: reader.under(&key("link"), robot.link(&wanted.link))?,
         from: direction(reader, &key("from"), wanted.from)?,
@@ -366,7 +374,7 @@ fn recognition_aim(reader: &Reader, wanted: &BodyRecognitionSpec, robot: &Robot)
 
 /// Returns the direction of the approach as a unit vector; if the vector has length 0, the error names the `key`.
 fn direction(reader: &Reader, key: &str, from: [f64; 3]) -> Result<DVec3> {
-    let direction = reader.vector(key, from, 1.0)?.try_normalize();
+    let direction = DVec3::from_array(from).try_normalize();
     let zero = || {
         let given = format!("{from:?}");
         reader.check.error(key, given, "a vector that is not zero")
