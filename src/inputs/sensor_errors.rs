@@ -140,6 +140,15 @@ impl Strengths {
         all.filter_map(|((error, strength), slot)| Some((error, strength, slot.value()?)))
     }
 
+    /// Returns the table cells of the strengths that the study sets: the name of the column and the value.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = (&'static str, toml::Value)> {
+        self.given()
+            .map(|(_, strength, value)| match strength.is_whole {
+                true => (strength.key, (value as i64).into()),
+                false => (strength.key, value.into()),
+            })
+    }
+
     /// Returns the strengths of sensor errors that are not zero.
     pub fn present(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
         self.given().filter(|(_, _, value)| *value != 0.0)
