@@ -93,11 +93,12 @@ impl StudyPart {
         let family = FamilyInputs::new(plan, sweep, std::slice::from_ref(configuration));
         let (split, labels) = inputs.training(&family.training_rows)?;
         // As in a run, nested measurements are the first m of the largest set.
+        let of_group = group.inputs(plan);
         let n_projected = match group.ensemble.is_prefix_nested() {
-            true => group.projected()[0],
+            true => of_group.projected[0],
             false => configuration.measurements,
         };
-        let fitted = group.inputs(plan).fitted_rows(plan, group, configuration);
+        let fitted = of_group.fitted_rows(plan, group, configuration);
         let of = (group, fitted, n_projected);
         let measured = self.measured(of, trial, ("touch", progress))?;
         let (trained, trained_labels) =

@@ -6,7 +6,7 @@
 use crate::signal::NoiseUnit;
 use crate::studies::prelude::*;
 use crate::studies::recognition::plan::{Condition, KeepTogether};
-use crate::studies::recognition::rows::{Configuration, FeaturesOfImages};
+use crate::studies::recognition::rows::Configuration;
 use crate::studies::recognition::spec::SpreadSpec;
 use crate::world::Placement;
 use std::collections::HashSet;
@@ -256,25 +256,10 @@ impl MeasurementGroup {
         }
     }
 
-    /// Returns the kinds of image features that the group's configurations use, each kind once.
-    pub fn features_of_images(&self) -> Vec<FeaturesOfImages> {
-        let mut all: Vec<FeaturesOfImages> = Vec::new();
-        for one in self
-            .configurations
-            .iter()
-            .filter_map(Configuration::of_images)
-        {
-            if !all.contains(&one) {
-                all.push(one);
-            }
-        }
-        all
-    }
-
-    /// Returns the numbers m of measurements per frame that are computed for the group. If smaller sets of measurements are prefixes of larger ones, this is
-    /// only the largest number m; otherwise every m.
-    pub fn projected(&self) -> Vec<usize> {
-        let mut counts: Vec<usize> = self.configurations.iter().map(|c| c.measurements).collect();
+    /// Returns the numbers m of measurements per frame that are computed for some configurations of the group. If smaller sets of measurements are prefixes of
+    /// larger ones, this is only the largest number m; otherwise every m.
+    pub fn projected(&self, configurations: &[Configuration]) -> Vec<usize> {
+        let mut counts: Vec<usize> = configurations.iter().map(|c| c.measurements).collect();
         counts.sort_unstable();
         counts.dedup();
         if self.ensemble.is_prefix_nested() {

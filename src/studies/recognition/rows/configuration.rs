@@ -167,8 +167,13 @@ impl Configuration {
             temporal_features: self.temporal_features,
             features: self.features,
             depth_window_full_scale: self.depth_window_full_scale.filter(|_| is_of_images),
-            n_copies: self.tilt_augmentation.unwrap_or(0),
+            n_copies: self.n_copies(),
         }
+    }
+
+    /// Returns the number of tilted copies of each training touch.
+    pub fn n_copies(&self) -> usize {
+        self.tilt_augmentation.unwrap_or(0)
     }
 
     /// Returns an error if the running program does not provide the features of the configuration.

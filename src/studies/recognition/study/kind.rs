@@ -109,9 +109,9 @@ impl Study for RecognitionStudy {
             let touches = [placed.touches, placed.tested];
             let touches = touches.map(|touches| &self.touch_sets[touches].content);
             // The measurements are those that the family alone needs.
-            let alone = self.group(number).1.with_cells(configurations);
+            let measured = self.group(number).1.inputs_of(&part.plan, configurations);
             let inputs = FamilyInputs::new(&part.plan, &part.sweep, configurations);
-            identity(&(touches, alone.inputs(&part.plan), inputs))
+            identity(&(touches, measured, inputs))
         };
         let families: Vec<String> = families.into_par_iter().map(of_family).collect();
         let mut items = Vec::with_capacity(self.n_trials() * families.len());

@@ -159,7 +159,7 @@ impl RecognitionStudy {
             for (&group, families) in &alike {
                 let measured = self.group(group).1;
                 let is_nested = measured.ensemble.is_prefix_nested();
-                for n_measurements in measured.projected() {
+                for n_measurements in measured.projected(&measured.configurations) {
                     let is_served = |&family: &usize| {
                         (is_nested || self.family(family).1[0].measurements == n_measurements)
                             && is_left(self.family_item(trial, family))

@@ -9,7 +9,7 @@ use crate::studies::recognition::rows::{
     Configuration, Prediction, Predictions, StageTime, Tables,
 };
 use crate::studies::recognition::spec::ConfusionMatrices;
-use crate::studies::recognition::study::{RecognitionRows, TouchInputs, TouchRow};
+use crate::studies::recognition::study::{RecognitionRows, TouchRow, set_content};
 use crate::studies::recognition::sweep::{StudyPart, Sweep, TrainingRows};
 use crate::studies::recognition::tables::published::{check_published, compare_with_published};
 use crate::studies::recognition::tables::tabulate::tabulate;
@@ -142,7 +142,7 @@ impl RecognitionStudy {
                 (plan.tested.as_deref().unwrap_or(plan), &of_part.tested),
             ];
             let content = |(plan, set): (_, &Arc<dyn TouchSet + Send>)| {
-                (plan, TouchInputs::new(plan).content(set.as_ref()))
+                (plan, set_content(plan, set.as_ref()))
             };
             let touched = touched.map(content);
             for (place, group) in sweep.groups.iter().enumerate() {

@@ -126,7 +126,7 @@ fn family_bytes(part: &StudyPart, family: &[Configuration], n_readings: usize) -
         _ => n_classes,
     };
     let n_touches = n_classes * configuration.train_touches;
-    let n_train = n_touches * (n_readings + configuration.tilt_augmentation.unwrap_or(0));
+    let n_train = n_touches * (n_readings + configuration.n_copies());
     let n_choice = match training.c_grid.is_some() || training.gamma_grid.is_some() {
         true => training
             .cv_touches
