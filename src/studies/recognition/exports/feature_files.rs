@@ -21,15 +21,11 @@ use crate::note::note;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::Frames;
 use crate::studies::recognition::measurements::{MeasuredTrial, Measurements, measure_group};
-use crate::studies::recognition::plan::MeasurementGroup;
-use crate::studies::recognition::rows::Configuration;
 use crate::studies::recognition::spec::RecognitionSpec;
 use crate::studies::recognition::sweep::{StudyPart, Sweep, TrainingRows};
 use crate::studies::recognition::training::{FamilyInputs, learned_rows};
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
-use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Array2, Axis};
-use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Image features: features of frame images that are estimated from measurements, also of tilted copies of training touches.
 
-use crate::sensing::{ImageEstimate, ImagePrior, Projection, Readings};
+use crate::sensing::{ImageEstimate, ImagePrior, Readings};
 use crate::studies::prelude::*;
 use crate::studies::recognition::measurements::CopyInputs;
 use crate::studies::recognition::plan::SensorImage;

@@ -1,6 +1,6 @@
 //! Measurement of frames after the signal chain, for one signal condition, ensemble and trial.
 
-use crate::sensing::{Projection, Readings, TrainingFrames};
+use crate::sensing::{Readings, TrainingFrames};
 use crate::signal::SignalWorkspace;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{

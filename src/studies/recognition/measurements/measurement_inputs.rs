@@ -4,14 +4,12 @@
 //! bytes share their measurements.
 
 use crate::inputs::content_hash::Hashed;
-use crate::signal::{Noise, NoiseUnit, SignalStep};
+use crate::signal::{Noise, SignalStep};
 use crate::studies::prelude::*;
-use crate::studies::recognition::plan::{Condition, MeasurementGroup};
-use crate::studies::recognition::rows::{Configuration, FeaturesOfImages};
+use crate::studies::recognition::plan::Condition;
+use crate::studies::recognition::rows::FeaturesOfImages;
 use crate::studies::recognition::sweep::{Sweep, TrainingRows};
-use bubbletouch_svm::split::Split;
 use ndarray::Array1;
-use serde::Serialize;
 use std::collections::BTreeSet;
 
 /// All inputs that determine the measurements of a group of configurations.

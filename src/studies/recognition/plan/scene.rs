@@ -5,7 +5,7 @@ use crate::inputs::units::MAX_SIDE;
 use crate::mesh::SizeLimits;
 use crate::studies::prelude::*;
 use crate::studies::recognition::spec::{RangeSpec, SpreadSpec};
-use crate::world::{Grid, Placement, Spread, Taxel};
+use crate::world::{Grid, Spread};
 
 /// Returns the smallest pitch of all arrays, metres.
 fn finest_pitch(arrays: &[TaxelArray]) -> f64 {

@@ -3,12 +3,9 @@
 //! The checks are in `scene.rs` (arrays, taxels, placement), `sensed.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. The checks also convert
 //! millimetres, degrees and fractions into metres, radians and absolute values. Later stages use SI units only.
 
-use crate::signal::NoiseUnit;
 use crate::studies::prelude::*;
 use crate::studies::recognition::plan::{Condition, KeepTogether};
-use crate::studies::recognition::rows::Configuration;
 use crate::studies::recognition::spec::SpreadSpec;
-use crate::world::Placement;
 use std::collections::HashSet;
 use std::sync::Arc;
 

@@ -6,14 +6,12 @@ use crate::doc_of;
 use crate::inputs::sensor_errors::{Strengths, strength_columns};
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
-use crate::signal::NoiseUnit;
 use crate::studies::prelude::*;
 use crate::studies::recognition::spec::{key, with_version};
 use crate::table::{Column, Columns, Role, Scale};
-use crate::world::ImageShape;
 use bubbletouch_sim::features::{Features, Join};
+use serde::Serializer;
 use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
 
 /// Declares a configuration: each parameter has a type, the form of its column, and the key or the words that describe it. The struct, its columns and its
 /// format in files are generated from this list, in its order.

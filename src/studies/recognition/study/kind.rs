@@ -2,7 +2,6 @@
 
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::snapshots;
-use crate::report::study_content::{Beyond, NamedPicture};
 use crate::studies::prelude::*;
 use crate::studies::recognition::charts;
 use crate::studies::recognition::frames::Samples;
@@ -11,7 +10,6 @@ use crate::studies::recognition::study::{RecognitionRows, RecognitionStudy, dist
 use crate::studies::recognition::sweep::StudyPart;
 use crate::studies::recognition::training::FamilyInputs;
 use crate::studies::study::settings_words;
-use crate::world::ImageShape;
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::path::Path;

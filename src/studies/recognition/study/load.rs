@@ -9,7 +9,6 @@ use crate::studies::recognition::frames::{
     HumanTouches, RecordedFrames, TouchSet, note_shear_ripple,
 };
 use crate::studies::recognition::study::{RecognitionStudy, recognition_scale};
-use serde::Serialize;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;

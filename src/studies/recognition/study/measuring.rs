@@ -1,14 +1,11 @@
 //! Work items and their results: touches are simulated once per array, each group is measured once per trial, and each pending family is evaluated.
 
 use crate::engine::at_once::run_at_once;
-use crate::engine::work_items::PendingItems;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::Frames;
 use crate::studies::recognition::measurements::Measurements;
-use crate::studies::recognition::rows::Configuration;
 use crate::studies::recognition::study::{Family, RecognitionStudy, in_frames};
 use crate::studies::recognition::training::{Evaluation, FamilyInputs, Trial};
-use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

@@ -1,13 +1,8 @@
 //! Recognition study with its work items and result tables.
 
-use crate::engine::work_items::Scale;
-use crate::engine::work_items::Shared;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{Samples, TouchSet};
-use crate::studies::recognition::plan::MeasurementGroup;
-use crate::studies::recognition::rows::{
-    Configuration, Prediction, Predictions, StageTime, Tables,
-};
+use crate::studies::recognition::rows::{Prediction, Predictions, StageTime, Tables};
 use crate::studies::recognition::spec::ConfusionMatrices;
 use crate::studies::recognition::study::{RecognitionRows, TouchRow, set_content};
 use crate::studies::recognition::sweep::{StudyPart, Sweep, TrainingRows};
@@ -15,7 +10,6 @@ use crate::studies::recognition::tables::published::{check_published, compare_wi
 use crate::studies::recognition::tables::tabulate::tabulate;
 use crate::studies::recognition::training::Evaluation;
 use crate::studies::study::run_whole;
-use crate::world::ImageShape;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;

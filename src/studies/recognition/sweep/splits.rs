@@ -5,12 +5,9 @@ use crate::learning::data::split::{
 };
 use crate::learning::data::spoiled::{mislabelled, with_imbalance};
 use crate::studies::prelude::*;
-use crate::studies::recognition::rows::Configuration;
 use crate::studies::recognition::spec::PoseSplit;
 use crate::studies::recognition::training::TrialInputs;
-use bubbletouch_svm::split::Split;
 use ndarray::Array1;
-use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 
 /// Draws the split of all touches into training and test touches for a trial. The split is given by the data, or drawn by poses, by groups (`keys`), or by
