@@ -213,32 +213,22 @@ impl RecognitionStudy {
         keys.join(", ")
     }
 
-    /// Returns the part of the study that contains the configuration with this number; the last part if no part contains it.
+    /// Returns the part of the study that contains the configuration with this number; the first part if no part contains it.
     pub fn part_of(&self, configuration: usize) -> &StudyPart {
-        let has_it = |part: &&StudyPart| {
-            part.sweep
-                .configurations()
-                .any(|known| known.configuration == configuration)
-        };
-        self.parts
-            .iter()
-            .find(has_it)
-            .unwrap_or_else(|| self.first())
+        let mut cells = self.all_cells();
+        let found = cells.find(|known| known.configuration == configuration);
+        found.map_or(self.first(), |known| &self.parts[known.variant.number])
     }
 
     /// Returns all configurations of the study in the order of their numbers.
     pub fn all_cells(&self) -> impl Iterator<Item = &Configuration> {
-        self.parts
-            .iter()
-            .flat_map(|part| part.sweep.configurations())
+        let parts = self.parts.iter();
+        parts.flat_map(|part| part.sweep.configurations())
     }
 
     /// Returns the number of configurations of the study.
     pub fn n_configurations(&self) -> usize {
-        self.parts
-            .iter()
-            .map(|part| part.sweep.n_configurations())
-            .sum()
+        self.all_cells().count()
     }
 
     /// Returns the number of different arrays on which touches are simulated.

@@ -141,11 +141,8 @@ impl Sweep {
 
     /// Assigns the configurations to the combination `variant` of axis values in `[axes]`, and numbers them from `first`.
     pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
-        for configuration in self
-            .groups
-            .iter_mut()
-            .flat_map(|group| &mut group.configurations)
-        {
+        let groups = self.groups.iter_mut();
+        for configuration in groups.flat_map(|group| &mut group.configurations) {
             configuration.configuration += first;
             configuration.variant.clone_from(variant);
         }
@@ -158,10 +155,7 @@ impl Sweep {
 
     /// Returns the number of configurations in the sweep.
     pub fn n_configurations(&self) -> usize {
-        self.groups
-            .iter()
-            .map(|group| group.configurations.len())
-            .sum()
+        self.configurations().count()
     }
 
     /// Checks that a learned ensemble has enough training frames: their variations must span more directions than there are measurements.
