@@ -201,8 +201,9 @@ impl Check<'_> {
         let values = match *spread {
             SpreadSpec::Range(RangeSpec::Within(0.0)) => vec![0.0],
             SpreadSpec::Range(RangeSpec::Within(half_width)) => {
-                let is_allowed = |half_width: f64| half_width.is_finite() && half_width >= 0.0;
-                self.value(key, half_width, is_allowed, "within zero or more")?;
+                if !(half_width.is_finite() && half_width >= 0.0) {
+                    return Err(self.error(key, half_width, "within zero or more"));
+                }
                 vec![-half_width, half_width]
             }
             SpreadSpec::Range(RangeSpec::Uniform((low, high))) => vec![low, high],
