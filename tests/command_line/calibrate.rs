@@ -24,146 +24,110 @@ const UNTOUCHED: &str = "0..50,100..150,200..250,300..350,400..450,500..550";
 
 const STUDY: &str = include_str!("../fixtures/texts/calibrate.toml");
 
-#[test]
-fn what_it_writes_is_the_signal_of_a_study() {
+/// Creates a folder with readings.
+fn folder() -> Case {
     let case = Case::new();
     write_npy(&case.path("frames.npy"), &frames()).unwrap();
-    let scale = ["--zero", "100", "--full-scale", "500"];
-    let given = [
-        &["calibrate", "frames.npy", "--untouched-frames", UNTOUCHED],
-        &scale[..],
-    ]
-    .concat();
-    let (table, _) = case.succeeds(&given);
-    let read: toml::Table = table.parse().unwrap();
-    let signal = read["signal"].as_table().unwrap();
-    let noise = signal["noise_std_full_scale"].as_float().unwrap();
-    assert!((noise - 0.01).abs() < 0.0005, "{table}");
-    assert_eq!(signal["adc_bits"].as_integer(), Some(0), "{table}");
-    says(&table, &["# gain_std: not identifiable: "]);
-    case.file("study.toml", format!("{STUDY}{table}"));
-    case.succeeds(&["plan", "study.toml"]);
+    case
+}
+
+/// Runs the command with these options; returns the table that it writes, as text and as numbers.
+fn calibrated(case: &Case, options: &str) -> (String, toml::Table) {
+    let (text, _) = case.succeeds(&format!("calibrate frames.npy {options}"));
+    let table = text.parse().unwrap();
+    (text, table)
+}
+
+fn number(table: &toml::Table, group: &str, key: &str) -> f64 {
+    match &table[group][key] {
+        toml::Value::Integer(number) => *number as f64,
+        other => other.as_float().unwrap(),
+    }
+}
+
+#[test]
+fn what_it_writes_is_the_signal_of_a_study() {
+    let case = folder();
+    let options = format!("--untouched-frames {UNTOUCHED} --zero 100 --full-scale 500");
+    let (text, table) = calibrated(&case, &options);
+    let noise = number(&table, "signal", "noise_std_full_scale");
+    assert!((noise - 0.01).abs() < 0.0005, "{text}");
+    assert_eq!(number(&table, "signal", "adc_bits"), 0.0, "{text}");
+    says(&text, &["# gain_std: not identifiable: "]);
+    case.file("study.toml", format!("{STUDY}{text}"));
+    case.succeeds("plan study.toml");
     // With `--output`, the command writes the table to a file.
-    let to_file = [&given[..], &["--output", "signal.toml"]].concat();
-    let (said, _) = case.succeeds(&to_file);
-    assert_eq!(said, "");
-    assert_eq!(
-        std::fs::read_to_string(case.path("signal.toml")).unwrap(),
-        table
-    );
+    let (said, _) = calibrated(&case, &format!("{options} --output signal.toml"));
+    assert_eq!((said, case.read("signal.toml")), (String::new(), text));
 }
 
 #[test]
 fn forces_tell_how_stiff_taxels_are() {
-    let case = Case::new();
-    let frames = frames();
-    write_npy(&case.path("frames.npy"), &frames).unwrap();
+    let case = folder();
     // 16 taxels are deflected by 200 of 400 counts of 2 mm, with 150 N/m.
-    let force = |frame: usize| {
-        if frame / 50 % 2 == 1 {
-            16.0 * 1e-3 * 150.0
-        } else {
-            0.0
-        }
-    };
-    let forces = Array1::from_shape_fn(frames.dim().0, force);
-    write_npy(&case.path("forces.npy"), &forces).unwrap();
-    let (table, _) = case.succeeds(&[
-        "calibrate",
-        "frames.npy",
-        "--untouched-frames",
-        UNTOUCHED,
-        "--zero",
-        "100",
-        "--full-scale",
-        "500",
-        "--forces",
-        "forces.npy",
-        "--stroke-mm",
-        "2",
-    ]);
-    let read: toml::Table = table.parse().unwrap();
-    let stiffness = &read["skin"]["stiffness_n_per_m"];
-    let stiffness = stiffness
-        .as_float()
-        .or(stiffness.as_integer().map(|n| n as f64))
-        .unwrap();
-    assert!((stiffness / 150.0 - 1.0).abs() < 0.03, "{table}");
+    let force = |frame: usize| (frame / 50 % 2) as f64 * 16.0 * 1e-3 * 150.0;
+    write_npy(&case.path("forces.npy"), &Array1::from_shape_fn(600, force)).unwrap();
+    let options = format!("--untouched-frames {UNTOUCHED} --zero 100 --full-scale 500");
+    let (text, table) = calibrated(
+        &case,
+        &format!("{options} --forces forces.npy --stroke-mm 2"),
+    );
+    let stiffness = number(&table, "skin", "stiffness_n_per_m");
+    assert!((stiffness / 150.0 - 1.0).abs() < 0.03, "{text}");
 }
 
 #[test]
 fn frames_that_tell_nothing_are_refused_or_say_so() {
-    let case = Case::new();
-    write_npy(&case.path("frames.npy"), &frames()).unwrap();
+    let case = folder();
     write_npy(&case.path("other.npy"), &Array3::<f32>::zeros((60, 3, 4))).unwrap();
     write_npy(&case.path("line.npy"), &Array1::<f32>::zeros(60)).unwrap();
     let mut broken = frames();
     broken[(7, 2, 1)] = f32::NAN;
     write_npy(&case.path("broken.npy"), &broken).unwrap();
-    for (arguments, said) in [
-        (&["missing.npy"][..], "missing.npy"),
-        (&["line.npy"], "line.npy"),
-        (&["broken.npy"], "NaN; finite numbers"),
+    for (options, words) in [
+        ("missing.npy", "missing.npy"),
+        ("line.npy", "line.npy"),
+        ("broken.npy", "NaN; finite numbers"),
         (
-            &["frames.npy", "--untouched", "other.npy"],
+            "frames.npy --untouched other.npy",
             "--untouched: other.npy without --untouched-times",
         ),
         (
-            &[
-                "frames.npy",
-                "--untouched",
-                "frames.npy",
-                "--untouched-times",
-                "0.5..0.2",
-            ],
+            "frames.npy --untouched frames.npy --untouched-times 0.5..0.2",
             "times of untouched frames: 0.5..0.2",
         ),
         (
-            &["frames.npy", "--untouched-frames", "30..130"],
+            "frames.npy --untouched-frames 30..130",
             "untouched frames: 16 taxels change by more than",
         ),
         (
-            &["frames.npy", "--untouched-frames", "50..100,150..200"],
+            "frames.npy --untouched-frames 50..100,150..200",
             "untouched frames: 16 taxels read more than in the other frames",
         ),
         (
-            &[
-                "frames.npy",
-                "--untouched",
-                "other.npy",
-                "--untouched-times",
-                "0..1",
-            ],
+            "frames.npy --untouched other.npy --untouched-times 0..1",
             "other.npy: frames of 3 × 4 taxels; 12 × 12",
         ),
+        ("frames.npy --untouched-frames 590..610", "590..610"),
+        ("frames.npy --untouched-frames 9..9", "9..9"),
+        ("frames.npy --untouched-frames x", "FROM..TO"),
         (
-            &["frames.npy", "--untouched-frames", "590..610"],
-            "590..610",
-        ),
-        (&["frames.npy", "--untouched-frames", "9..9"], "9..9"),
-        (&["frames.npy", "--untouched-frames", "x"], "FROM..TO"),
-        (
-            &["frames.npy", "--full-scale", "0"],
+            "frames.npy --full-scale 0",
             "full scale: 0; a number other than the zero, 0",
         ),
         (
-            &["frames.npy", "--pitch-mm", "0"],
+            "frames.npy --pitch-mm 0",
             "--pitch-mm: 0; a positive number",
         ),
-        (
-            &["frames.npy", "--forces", "line.npy", "--stroke-mm", "1"],
-            "line.npy",
-        ),
-        (&["frames.npy", "--output", "signal.txt"], "signal.txt"),
+        ("frames.npy --forces line.npy --stroke-mm 1", "line.npy"),
+        ("frames.npy --output signal.txt", "signal.txt"),
     ] {
-        let error = case.refuses(&[&["calibrate"], arguments].concat());
-        assert!(error.contains(said), "{arguments:?}: {error}");
+        says(&case.refuses(&format!("calibrate {options}")), &[words]);
     }
-    let (table, _) = case.succeeds(&["calibrate", "frames.npy", "--zero", "100"]);
-    assert!(
-        table.contains(
-            "# noise_std_full_scale: not identifiable: there are too few untouched frames"
-        )
+    let (text, _) = calibrated(&case, "--zero 100");
+    says(
+        &text,
+        &["# noise_std_full_scale: not identifiable: there are too few untouched frames"],
     );
 }
 
@@ -172,47 +136,30 @@ fn frames_that_tell_nothing_are_refused_or_say_so() {
 fn counts_with_an_offset_have_a_zero_and_no_drift() {
     let case = Case::new();
     write_npy(&case.path("frames.npy"), &frames().mapv(f32::round)).unwrap();
-    let given = [
-        "calibrate",
-        "frames.npy",
-        "--untouched-frames",
-        UNTOUCHED,
-        "--full-scale",
-        "500",
-    ];
-    let (table, _) = case.succeeds(&given);
-    says(&table, &["The zero is 100."]);
-    let read: toml::Table = table.parse().unwrap();
-    let value = |key: &str| match &read["signal"][key] {
-        toml::Value::Integer(number) => *number as f64,
-        other => other.as_float().unwrap(),
-    };
-    assert!(value("drift_std_full_scale") < 0.002, "{table}");
-    assert!(
-        (value("noise_std_full_scale") - 0.01).abs() < 0.0005,
-        "{table}"
+    let (text, table) = calibrated(
+        &case,
+        &format!("--untouched-frames {UNTOUCHED} --full-scale 500"),
     );
+    says(&text, &["The zero is 100."]);
+    let [drift, noise] =
+        ["drift_std_full_scale", "noise_std_full_scale"].map(|key| number(&table, "signal", key));
+    assert!(drift < 0.002 && (noise - 0.01).abs() < 0.0005, "{text}");
 }
 
 /// Law: untouched frames of a file have the times that are given, so those before the first frame determine no drift.
 #[test]
 fn a_file_of_untouched_frames_has_times() {
-    let case = Case::new();
-    write_npy(&case.path("frames.npy"), &frames()).unwrap();
+    let case = folder();
     let untouched = frames().slice(ndarray::s![..50, .., ..]).to_owned();
     write_npy(&case.path("untouched.npy"), &untouched).unwrap();
-    let given = |times: &str| {
-        let words = [
-            "calibrate",
-            "frames.npy",
-            "--untouched",
-            "untouched.npy",
-            "--untouched-times",
-            times,
-        ];
-        case.succeeds(&words).0
-    };
-    let reason = "# drift_std_full_scale: not identifiable: untouched frames are from one time";
-    assert!(given("0..0").contains(reason));
-    assert!(given("0..0.1,0.9..1").contains("\ndrift_std_full_scale = 0"));
+    for (times, words) in [
+        (
+            "0..0",
+            "# drift_std_full_scale: not identifiable: untouched frames are from one time",
+        ),
+        ("0..0.1,0.9..1", "\ndrift_std_full_scale = 0"),
+    ] {
+        let options = format!("--untouched untouched.npy --untouched-times {times}");
+        says(&calibrated(&case, &options).0, &[words]);
+    }
 }

@@ -1,6 +1,7 @@
 //! `bubbletouch classify` accepts any folder of features, and checks it before training.
 
-use crate::command::{Case, says, words};
+use crate::arrays::npy;
+use crate::command::{Case, contains, says};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::classifiers::classifier::Classifier;
 use bubbletouch::recognition::data::dataset::dataset;
@@ -12,7 +13,7 @@ use bubbletouch::recognition::svm::{Multiclass, SvmSolver};
 use bubbletouch::recognition::{ClassifierKind, ModelFile};
 use bubbletouch::study::{KeyValue, write_texts};
 use ndarray::{Array1, Array2, Axis, array};
-use ndarray_npy::{read_npy, write_npy};
+use ndarray_npy::read_npy;
 use serde_json::Value;
 
 const N_ROWS: usize = 60;
@@ -28,26 +29,29 @@ fn labels() -> Array1<i64> {
     (0..N_ROWS as i64).map(|row| row % 3).collect()
 }
 
-fn train() -> Array1<i64> {
-    (0..N_ROWS as i64).filter(|row| row / 3 % 3 != 0).collect()
-}
-
-fn test() -> Array1<i64> {
-    (0..N_ROWS as i64).filter(|row| row / 3 % 3 == 0).collect()
+/// Returns the test rows, or the training rows.
+fn rows(is_tested: bool) -> Array1<i64> {
+    let rows = 0..N_ROWS as i64;
+    rows.filter(|row| (row / 3 % 3 == 0) == is_tested).collect()
 }
 
 fn folder() -> Case {
-    let case = Case::new();
-    write_npy(case.path("features.npy"), &features()).unwrap();
-    write_npy(case.path("labels.npy"), &labels()).unwrap();
-    write_npy(case.path("train.npy"), &train()).unwrap();
-    write_npy(case.path("test.npy"), &test()).unwrap();
+    let case = Case::with("features.npy", npy(&features()));
+    case.file("labels.npy", npy(&labels()));
+    case.file("train.npy", npy(&rows(false)));
+    case.file("test.npy", npy(&rows(true)));
     case
 }
 
-fn json(case: &Case, arguments: &[&str]) -> Value {
-    let (said, _) = case.succeeds(&[&["classify", ".", "--json"], arguments].concat());
+const LINEAR: &str = "--classifier linear_svm";
+
+fn json(case: &Case, options: &str) -> Value {
+    let (said, _) = case.succeeds(&format!("classify . --json {options}"));
     serde_json::from_str(&said).unwrap()
+}
+
+fn read(case: &Case, name: &str) -> Array1<i64> {
+    read_npy(case.path(name)).unwrap()
 }
 
 #[test]
@@ -58,27 +62,26 @@ fn it_says_and_writes_what_the_library_predicts() {
         ("rbf_svm", ClassifierKind::RbfSvm),
         ("polynomial_svm", ClassifierKind::PolynomialSvm),
     ] {
-        let said = json(&case, &["--classifier", name, "--predictions", "out.npy"]);
-        let rows = |rows: Array1<i64>| {
-            let rows: Vec<usize> = rows.iter().map(|&row| row as usize).collect();
+        let said = json(&case, &format!("--classifier {name} --predictions out.npy"));
+        let side = |is_tested: bool| {
+            let rows = rows(is_tested).mapv(|row| row as usize).to_vec();
             let labels = labels().select(Axis(0), &rows).mapv(|label| label as usize);
             dataset(features().select(Axis(0), &rows), labels).unwrap()
         };
-        let trained = Classifier::new(kind)
-            .train(&rows(train()), &Seed::new(0))
-            .unwrap();
-        let tested = rows(test());
-        let expected = trained.labels(tested.records.view()).unwrap();
-        let written: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
-        assert_eq!(written, expected.mapv(|label| label as i64), "{name}");
+        let trained = Classifier::new(kind).train(&side(false), &Seed::new(0));
+        let tested = side(true);
+        let expected = trained.unwrap().labels(tested.records.view()).unwrap();
+        assert_eq!(
+            read(&case, "out.npy"),
+            expected.mapv(|label| label as i64),
+            "{name}"
+        );
         let n_correct = expected.iter().zip(&tested.targets).filter(|(a, b)| a == b);
         assert_eq!(said["n_correct"], n_correct.count());
-        assert_eq!(
-            (&said["n_train"], &said["n_test"]),
-            (&39.into(), &21.into())
-        );
-        assert_eq!(said["svm"]["n_problems"], 3);
-        assert_eq!(said["svm"]["n_capped"], 0);
+        let counts = ["n_train", "n_test"].map(|key| &said[key]);
+        assert_eq!(counts, [39, 21]);
+        let counts = ["n_problems", "n_capped"].map(|key| &said["svm"][key]);
+        assert_eq!(counts, [3, 0]);
     }
 }
 
@@ -86,101 +89,69 @@ fn it_says_and_writes_what_the_library_predicts() {
 #[test]
 fn the_dual_objective_falls_as_c_grows() {
     let case = folder();
-    let dual = |c: &str| {
-        let said = json(&case, &["--classifier", "linear_svm", "--c", c]);
+    let duals = [0.001, 0.1, 10.0].map(|c| {
+        let said = json(&case, &format!("{LINEAR} --c {c}"));
         said["svm"]["dual_objective"].as_f64().unwrap()
-    };
-    let duals = ["0.001", "0.1", "10"].map(dual);
+    });
     assert!(duals[0] > duals[1] && duals[1] > duals[2], "{duals:?}");
     // At C = 0.001, every multiplier is at most C; there are three problems of 26 rows.
-    assert!(
-        -duals[0] < 0.001 * 78.0 && -duals[0] > 0.5 * 0.001 * 78.0,
-        "{duals:?}"
-    );
+    let share = -duals[0] / (0.001 * 78.0);
+    assert!(share > 0.5 && share < 1.0, "{duals:?}");
 }
 
 #[test]
 fn options_reach_the_classifier() {
     let case = folder();
-    let accuracy_of = |arguments: &[&str]| json(&case, arguments)["svm"].clone();
-    let rbf = ["--classifier", "rbf_svm"];
-    let usual = accuracy_of(&rbf);
-    for option in [
-        ["--gamma", "3.5"],
-        ["--c", "0.1"],
-        ["--scaling", "none"],
-        ["--multiclass", "one_vs_rest"],
-        ["--train-rows", "30"],
+    for (classifier, what, options) in [
+        (
+            "rbf_svm",
+            "svm",
+            &[
+                "--gamma 3.5",
+                "--c 0.1",
+                "--scaling none",
+                "--multiclass one_vs_rest",
+                "--train-rows 30",
+            ][..],
+        ),
+        ("polynomial_svm", "svm", &["--degree 2", "--coef0 0.5"]),
+        (
+            "random_forest",
+            "n_correct",
+            &["--max-depth 1", "--n-trees 1"],
+        ),
+        ("k_nearest", "n_correct", &["--n-neighbours 39"]),
     ] {
-        assert_ne!(
-            accuracy_of(&[&rbf[..], &option].concat()),
-            usual,
-            "{option:?}"
-        );
+        let with = |option: &str| json(&case, &format!("--classifier {classifier} {option}"));
+        for option in options {
+            assert_ne!(with(option)[what], with("")[what], "{option:?}");
+        }
     }
-    let cubic = ["--classifier", "polynomial_svm"];
-    let usual = accuracy_of(&cubic);
-    for option in [["--degree", "2"], ["--coef0", "0.5"]] {
-        assert_ne!(
-            accuracy_of(&[&cubic[..], &option].concat()),
-            usual,
-            "{option:?}"
-        );
+    let forest = |option: &str| json(&case, &format!("--classifier random_forest {option}"));
+    assert_eq!(
+        forest("--max-depth pure")["n_correct"],
+        forest("")["n_correct"]
+    );
+    let said = json(&case, &format!("{LINEAR} --repeat 3"));
+    for times in ["fit_s", "predict_s"] {
+        assert_eq!(said[times].as_array().unwrap().len(), 3);
     }
-    let forest = ["--classifier", "random_forest"];
-    let neighbours = ["--classifier", "k_nearest"];
-    let correct = |arguments: &[&str]| json(&case, arguments)["n_correct"].clone();
-    for (usual, option) in [
-        (forest, ["--max-depth", "1"]),
-        (forest, ["--n-trees", "1"]),
-        (neighbours, ["--n-neighbours", "39"]),
-    ] {
-        let changed = correct(&[&usual[..], &option].concat());
-        assert_ne!(changed, correct(&usual), "{option:?}");
-    }
-    let pure = [&forest[..], &["--max-depth", "pure"]].concat();
-    assert_eq!(correct(&pure), correct(&forest));
-    let said = json(&case, &["--classifier", "linear_svm", "--repeat", "3"]);
-    assert_eq!(said["fit_s"].as_array().unwrap().len(), 3);
-    assert_eq!(said["predict_s"].as_array().unwrap().len(), 3);
 }
 
 #[test]
 fn people_get_lines() {
-    let (said, error) = folder().succeeds(&["classify", ".", "--classifier", "linear_svm"]);
+    let (said, error) = folder().succeeds("classify . --classifier linear_svm");
     assert_eq!(error, "");
-    for word in [
-        "39 to train on",
-        "21 to test",
-        "accuracy",
-        "support vectors",
-        "0 of 3",
-    ] {
-        assert!(said.contains(word), "{word}: {said}");
-    }
-}
-
-/// Runs the command on a folder, and asserts that it fails with a message that contains all `words`.
-fn refused(case: &Case, arguments: &[&str], words: &[&str]) {
-    let all = [&["classify", "."], arguments].concat();
-    let error = case.refuses(&[&all[..], &["--predictions", "out.npy"]].concat());
-    for word in words {
-        assert!(error.contains(word), "no {word:?} in: {error}");
-    }
-    assert!(!case.path("out.npy").exists());
-}
-
-const LINEAR: [&str; 2] = ["--classifier", "linear_svm"];
-
-#[test]
-fn a_feature_that_is_no_number_is_named_by_row_and_column() {
-    let case = folder();
-    for broken in [f64::NAN, f64::INFINITY] {
-        let mut features = features();
-        features[[7, 3]] = broken;
-        write_npy(case.path("features.npy"), &features).unwrap();
-        refused(&case, &LINEAR, &["features, row 7, column 3"]);
-    }
+    says(
+        &said,
+        &[
+            "39 to train on",
+            "21 to test",
+            "accuracy",
+            "support vectors",
+            "0 of 3",
+        ],
+    );
 }
 
 #[test]
@@ -189,41 +160,40 @@ fn arrays_of_any_type_that_numpy_writes_are_read_as_the_same_numbers() {
     // Halves, which every floating-point type represents, and integers, which every integer type represents.
     let halves = features().mapv(|value| (2.0 * value).round() / 2.0);
     let whole = halves.mapv(f64::round);
-    let path = |name: &str| case.path(name);
     let asked = |what: &str| {
-        let said = json(&case, &["--classifier", "linear_svm"]);
-        let svm = said["svm"]["dual_objective"].as_f64();
+        let said = json(&case, LINEAR);
+        let dual = said["svm"]["dual_objective"].as_f64();
         (
             said["n_correct"].as_u64(),
-            svm.unwrap_or_else(|| panic!("{what}: {said}")),
+            dual.unwrap_or_else(|| panic!("{what}: {said}")),
         )
     };
-    write_npy(path("features.npy"), &halves).unwrap();
+    case.file("features.npy", npy(&halves));
     let expected = asked("float64");
-    write_npy(path("features.npy"), &halves.mapv(|value| value as f32)).unwrap();
+    case.file("features.npy", npy(&halves.mapv(|value| value as f32)));
     assert_eq!(asked("float32"), expected);
-    write_npy(path("labels.npy"), &labels().mapv(|label| label as i32)).unwrap();
-    write_npy(path("train.npy"), &train().mapv(|row| row as u16)).unwrap();
+    case.file("labels.npy", npy(&labels().mapv(|label| label as i32)));
+    case.file("train.npy", npy(&rows(false).mapv(|row| row as u16)));
     assert_eq!(asked("int32 and uint16"), expected);
-    let mask: Array1<bool> = (0..N_ROWS as i64)
-        .map(|row| test().iter().any(|&tested| tested == row))
-        .collect();
-    write_npy(path("test.npy"), &mask).unwrap();
+    let mask: Array1<bool> = (0..N_ROWS).map(|row| row / 3 % 3 == 0).collect();
+    case.file("test.npy", npy(&mask));
     assert_eq!(asked("a mask"), expected);
-    write_npy(path("features.npy"), &whole).unwrap();
+    case.file("features.npy", npy(&whole));
     let expected = asked("whole float64");
-    write_npy(path("features.npy"), &whole.mapv(|value| value as i16)).unwrap();
+    case.file("features.npy", npy(&whole.mapv(|value| value as i16)));
     assert_eq!(asked("int16"), expected);
-    let two: Array1<bool> = labels().mapv(|label| label == 1);
-    write_npy(path("labels.npy"), &two.mapv(i64::from)).unwrap();
-    write_npy(
-        path("features.npy"),
-        &whole.mapv(|value| f64::from(value > 0.0)),
-    )
-    .unwrap();
+    let (two, above) = (
+        labels().mapv(|label| label == 1),
+        whole.mapv(|value| value > 0.0),
+    );
+    case.file("labels.npy", npy(&two.mapv(i64::from)));
+    case.file(
+        "features.npy",
+        npy(&above.mapv(|value| f64::from(u8::from(value)))),
+    );
     let expected = asked("two classes");
-    write_npy(path("labels.npy"), &two).unwrap();
-    write_npy(path("features.npy"), &whole.mapv(|value| value > 0.0)).unwrap();
+    case.file("labels.npy", npy(&two));
+    case.file("features.npy", npy(&above));
     assert_eq!(asked("bool"), expected);
 }
 
@@ -231,108 +201,122 @@ fn arrays_of_any_type_that_numpy_writes_are_read_as_the_same_numbers() {
 #[test]
 fn labels_of_every_form_are_answered_in_their_own_values() {
     let case = folder();
-    let predictions = ["--classifier", "linear_svm", "--predictions", "out.npy"];
-    let answered = || json(&case, &predictions)["n_correct"].as_u64().unwrap();
-    let n_correct = answered();
-    let usual: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
-    write_npy(
-        case.path("labels.npy"),
-        &labels().mapv(|n| 100.0 * n as f64 + 1.0),
-    )
-    .unwrap();
+    let answered = || json(&case, &format!("{LINEAR} --predictions out.npy"))["n_correct"].clone();
+    let (n_correct, usual) = (answered(), read(&case, "out.npy"));
+    case.file(
+        "labels.npy",
+        npy(&labels().mapv(|n| 100.0 * n as f64 + 1.0)),
+    );
     assert_eq!(answered(), n_correct);
-    let found: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
-    assert_eq!(found, usual.mapv(|label| 100 * label + 1));
-    let n_classes = labels().iter().max().unwrap() + 1;
-    let one_hot = Array2::from_shape_fn((N_ROWS, n_classes as usize), |(row, class)| {
-        f64::from(u8::from(labels()[row] == class as i64))
+    assert_eq!(read(&case, "out.npy"), usual.mapv(|label| 100 * label + 1));
+    let one_hot = Array2::from_shape_fn((N_ROWS, 3), |(row, class)| {
+        f64::from(u8::from(row % 3 == class))
     });
-    write_npy(case.path("labels.npy"), &one_hot).unwrap();
+    case.file("labels.npy", npy(&one_hot));
     assert_eq!(answered(), n_correct);
-    let found: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
-    assert_eq!(found, usual);
-    std::fs::remove_file(case.path("labels.npy")).unwrap();
-    let words: Vec<String> = labels()
-        .iter()
-        .map(|label| format!("kind {label}"))
-        .collect();
-    case.file("labels.csv", format!("{}\n", words.join("\n")));
+    assert_eq!(read(&case, "out.npy"), usual);
+    case.remove("labels.npy");
+    let words = labels().mapv(|label| format!("kind {label}\n"));
+    case.file("labels.csv", words.to_vec().concat());
     assert_eq!(answered(), n_correct);
-    let bytes = std::fs::read(case.path("out.npy")).unwrap();
+    let bytes = case.bytes("out.npy");
     assert!(String::from_utf8_lossy(&bytes[..80]).contains("'<U6'"));
-    let last = usual.last().unwrap();
-    let text: Vec<u8> = format!("kind {last}")
+    let last = format!("kind {}", usual.last().unwrap());
+    let text: Vec<u8> = last
         .chars()
         .flat_map(|c| u32::from(c).to_le_bytes())
         .collect();
     assert!(bytes.ends_with(&text));
 }
 
-#[test]
-fn arrays_of_another_type_or_shape_are_refused_by_name() {
-    let case = folder();
-    write_npy(case.path("features.npy"), &labels().mapv(|n| n as u64)).unwrap();
-    refused(&case, &LINEAR, &["features.npy", "float64, float32"]);
-    write_npy(
-        case.path("features.npy"),
-        &labels().mapv(|label| label as f64),
-    )
-    .unwrap();
-    refused(&case, &LINEAR, &["features.npy", "n × m"]);
-    write_npy(case.path("features.npy"), &features()).unwrap();
-    write_npy(case.path("labels.npy"), &labels().mapv(|n| n as f64 + 0.5)).unwrap();
-    refused(&case, &LINEAR, &["labels.npy, position 0", "int64"]);
-    write_npy(case.path("labels.npy"), &labels()).unwrap();
-    write_npy(case.path("test.npy"), &array![true, false]).unwrap();
-    refused(
-        &case,
-        &LINEAR,
-        &["test.npy", "a mask of 2 rows", "one of 60"],
-    );
-    write_npy(case.path("test.npy"), &test()).unwrap();
-    write_npy(case.path("labels.npy"), &array![0_i64, 1, 2]).unwrap();
-    refused(&case, &LINEAR, &["3 labels", "each of the 60 rows"]);
-    case.file("labels.npy", "0,1,2");
-    refused(&case, &LINEAR, &["labels.npy"]);
-    std::fs::remove_file(case.path("labels.npy")).unwrap();
-    refused(&case, &LINEAR, &["labels.npy", "cannot be read"]);
+/// Asserts that the command refuses a folder with a message that contains the words in their order, and writes no predictions.
+#[track_caller]
+fn refused(case: &Case, options: &str, words: &str) {
+    let error = case.refuses(&format!("classify . {options} --predictions out.npy"));
+    assert!(contains(&error, words), "no {words:?} in: {error}");
+    assert!(!case.path("out.npy").exists());
 }
 
 #[test]
-fn rows_that_are_not_there_or_named_twice_are_refused() {
-    let case = folder();
-    for (file, rows, words) in [
+fn arrays_that_cannot_be_trained_on_are_refused_by_name() {
+    let with_feature = |broken: f64| {
+        let mut features = features();
+        features[[7, 3]] = broken;
+        npy(&features)
+    };
+    let mut negative = labels();
+    negative[4] = -2;
+    let rows = |rows: &[i64]| npy(&Array1::from(rows.to_vec()));
+    for (name, bytes, words) in [
         (
-            "train.npy",
-            array![1_i64, 60],
-            ["train.npy, position 1: 60", "0 to 59"],
+            "features.npy",
+            with_feature(f64::NAN),
+            "features, row 7, column 3",
+        ),
+        (
+            "features.npy",
+            with_feature(f64::INFINITY),
+            "features, row 7, column 3",
+        ),
+        (
+            "features.npy",
+            npy(&labels().mapv(|n| n as u64)),
+            "features.npy … float64, float32",
+        ),
+        (
+            "features.npy",
+            npy(&labels().mapv(|n| n as f64)),
+            "features.npy … n × m",
+        ),
+        (
+            "labels.npy",
+            npy(&labels().mapv(|n| n as f64 + 0.5)),
+            "labels.npy, position 0 … int64",
+        ),
+        (
+            "labels.npy",
+            rows(&[0, 1, 2]),
+            "3 labels … each of the 60 rows",
+        ),
+        ("labels.npy", b"0,1,2".to_vec(), "labels.npy"),
+        ("labels.npy", npy(&negative), "labels.npy, position 4: -2"),
+        (
+            "test.npy",
+            npy(&array![true, false]),
+            "test.npy … a mask of 2 rows … one of 60",
         ),
         (
             "train.npy",
-            array![-1, 4],
-            ["train.npy, position 0: -1", "0 to 59"],
+            rows(&[1, 60]),
+            "train.npy, position 1: 60 … 0 to 59",
+        ),
+        (
+            "train.npy",
+            rows(&[-1, 4]),
+            "train.npy, position 0: -1 … 0 to 59",
         ),
         (
             "test.npy",
-            array![0, 7, 7],
-            ["test.npy: row 7 twice", "at most once"],
+            rows(&[0, 7, 7]),
+            "test.npy: row 7 twice … at most once",
         ),
         (
             "test.npy",
-            array![0, 3],
-            ["row 3, which train.npy names too", "at most once"],
+            rows(&[0, 3]),
+            "row 3, which train.npy names too … at most once",
         ),
-        ("test.npy", array![], ["test.npy: no rows", "at least one"]),
+        ("test.npy", rows(&[]), "test.npy: no rows … at least one"),
     ] {
-        write_npy(case.path("train.npy"), &array![1_i64, 2, 3, 4, 5, 6]).unwrap();
-        write_npy(case.path("test.npy"), &array![0_i64]).unwrap();
-        write_npy(case.path(file), &rows).unwrap();
-        refused(&case, &LINEAR, &words);
+        let case = folder();
+        if name == "test.npy" {
+            case.file("train.npy", rows(&[1, 2, 3, 4, 5, 6]));
+        }
+        case.file(name, bytes);
+        refused(&case, LINEAR, words);
     }
-    let mut labels = labels();
-    labels[4] = -2;
-    write_npy(case.path("labels.npy"), &labels).unwrap();
-    refused(&case, &LINEAR, &["labels.npy, position 4: -2"]);
+    let case = folder();
+    case.remove("labels.npy");
+    refused(&case, LINEAR, "labels.npy … cannot be read");
 }
 
 /// Returns five groups of 12 rows; each group has rows of all classes, and both sides of the split contain whole groups.
@@ -348,37 +332,31 @@ fn grouped_folder() -> Case {
         rows.filter(|row| (row / 12 % 2 == 1) == is_tested)
             .collect()
     };
-    write_npy(case.path("train.npy"), &side(false)).unwrap();
-    write_npy(case.path("test.npy"), &side(true)).unwrap();
-    write_npy(case.path("groups.npy"), &groups()).unwrap();
+    case.file("train.npy", npy(&side(false)));
+    case.file("test.npy", npy(&side(true)));
+    case.file("groups.npy", npy(&groups()));
     case
 }
 
-const GROUPED: [&str; 4] = ["--classifier", "linear_svm", "--groups", "groups.npy"];
+const GROUPED: &str = "--classifier linear_svm --groups groups.npy";
 
 #[test]
 fn groups_change_the_interval_and_the_folds_and_nothing_else() {
     let case = grouped_folder();
-    let (by_rows, by_groups) = (json(&case, &LINEAR), json(&case, &GROUPED));
+    let by_rows = json(&case, LINEAR);
+    let by_groups = json(&case, &format!("{GROUPED} --predictions out.npy"));
     assert_eq!(
         [&by_rows["split_by"], &by_groups["split_by"]],
         ["rows", "groups"]
     );
     assert!(by_rows["n_test_groups"].is_null());
-    assert_eq!(by_groups["n_train_groups"], 3);
-    assert_eq!(by_groups["n_test_groups"], 2);
+    assert_eq!(
+        [&by_groups["n_train_groups"], &by_groups["n_test_groups"]],
+        [3, 2]
+    );
     assert_eq!(by_rows["n_correct"], by_groups["n_correct"]);
     // Groups of the test rows, computed from the predictions.
-    case.succeeds(
-        &[
-            &["classify", "."],
-            &GROUPED[..],
-            &["--predictions", "out.npy"],
-        ]
-        .concat(),
-    );
-    let predicted: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
-    let tested: Array1<i64> = read_npy(case.path("test.npy")).unwrap();
+    let (predicted, tested) = (read(&case, "out.npy"), read(&case, "test.npy"));
     let rows = tested.iter().zip(&predicted);
     let rows = rows.map(|(&row, &label)| (groups()[row as usize] as usize, label == row % 3));
     let counts = count_groups(rows);
@@ -388,109 +366,96 @@ fn groups_change_the_interval_and_the_folds_and_nothing_else() {
         groups: &counts,
     };
     let (interval, _) = interval_of_groups(&[test], 0.95).unwrap();
-    assert_eq!(by_groups["accuracy_low"].as_f64(), Some(interval.low));
-    assert_eq!(by_groups["accuracy_high"].as_f64(), Some(interval.high));
-    let wider = |low: &str| by_groups[low].as_f64() < by_rows[low].as_f64();
-    assert!(wider("accuracy_low"));
+    let ends = ["accuracy_low", "accuracy_high"].map(|key| by_groups[key].as_f64().unwrap());
+    assert_eq!(ends, [interval.low, interval.high]);
+    assert!(ends[0] < by_rows["accuracy_low"].as_f64().unwrap());
     // Folds of whole groups choose on other rows.
-    let chosen = ["--c-grid", "0.01,0.1,1", "--cv-folds", "3"];
-    let validated = |of: &[&str]| json(&case, &[of, &chosen].concat())["chosen"]["tried"].clone();
-    assert_ne!(validated(&GROUPED), validated(&LINEAR));
-}
-
-#[test]
-fn people_read_that_groups_were_held_out_and_that_two_are_few() {
-    let (said, _) = grouped_folder().succeeds(&[&["classify", "."], &GROUPED[..]].concat());
-    let line = "split     by groups: 3 to train on, 2 to test; the interval comes from 2 groups, too few for a narrow interval";
-    assert!(said.contains(line), "{said}");
+    let validated = |options: &str| {
+        let said = json(
+            &case,
+            &format!("{options} --c-grid 0.01,0.1,1 --cv-folds 3"),
+        );
+        said["chosen"]["tried"].clone()
+    };
+    assert_ne!(validated(GROUPED), validated(LINEAR));
+    let (said, _) = case.succeeds(&format!("classify . {GROUPED}"));
+    says(
+        &said,
+        &[
+            "split     by groups: 3 to train on, 2 to test; the interval comes from 2 groups, too few for a narrow interval",
+        ],
+    );
 }
 
 #[test]
 fn groups_that_do_not_fit_the_rows_or_the_split_are_refused() {
-    let case = grouped_folder();
-    let with = |groups: Array1<i64>, arguments: &[&str], words: &[&str]| {
-        write_npy(case.path("groups.npy"), &groups).unwrap();
-        refused(&case, &[&GROUPED[..], arguments].concat(), words);
+    let with = |row: usize, group: i64| {
+        let mut groups = groups();
+        groups[row] = group;
+        npy(&groups)
     };
-    with(
-        array![1, 2, 3],
-        &[],
-        &["groups.npy: 3 groups", "60, one for each row of features"],
-    );
-    with(
-        Array1::zeros(N_ROWS),
-        &[],
-        &["groups.npy: group 0 of row", "train.npy", "test.npy"],
-    );
-    let mut one_row = groups();
-    one_row[30] = 7;
-    with(
-        one_row,
-        &[],
-        &["group 7 of row 30 in train.npy and row 12 in test.npy"],
-    );
-    let mut below = groups();
-    below[4] = -1;
-    with(below, &[], &["groups.npy, position 4: -1", "zero or more"]);
-    with(
-        groups(),
-        &["--c-grid", "1,10"],
-        &["folds: 5", "at most 3 with these groups"],
-    );
-    write_npy(
-        case.path("groups.npy"),
-        &groups().mapv(|group| group as f64 + 0.5),
-    )
-    .unwrap();
-    refused(
-        &case,
-        &GROUPED,
-        &["groups.npy, position 0: ", "int8 to int64", "whole floats"],
-    );
-    refused(
-        &case,
-        &["--classifier", "linear_svm", "--groups", "none.npy"],
-        &["none.npy", "cannot be read"],
-    );
+    let halves = groups().mapv(|group| group as f64 + 0.5);
+    for (groups, options, words) in [
+        (
+            npy(&array![1, 2, 3]),
+            "",
+            "groups.npy: 3 groups … 60, one for each row of features",
+        ),
+        (
+            npy(&Array1::<i64>::zeros(N_ROWS)),
+            "",
+            "groups.npy: group 0 of row … train.npy … test.npy",
+        ),
+        (
+            with(30, 7),
+            "",
+            "group 7 of row 30 in train.npy and row 12 in test.npy",
+        ),
+        (with(4, -1), "", "groups.npy, position 4: -1 … zero or more"),
+        (
+            npy(&groups()),
+            "--c-grid 1,10",
+            "folds: 5 … at most 3 with these groups",
+        ),
+        (
+            npy(&halves),
+            "",
+            "groups.npy, position 0: … int8 to int64 … whole floats",
+        ),
+    ] {
+        let case = grouped_folder();
+        case.file("groups.npy", groups);
+        refused(&case, &format!("{GROUPED} {options}"), words);
+    }
+    let case = grouped_folder();
+    case.remove("groups.npy");
+    refused(&case, GROUPED, "groups.npy … cannot be read");
 }
 
 #[test]
 fn options_out_of_range_are_refused() {
     let case = folder();
-    for (classifier, option, value, word) in [
-        (
-            "polynomial_svm",
-            "--degree",
-            "21",
-            "at least 1 and at most 20",
-        ),
-        ("polynomial_svm", "--degree", "2.5", "a whole number"),
-        ("polynomial_svm", "--coef0=-1", "", "0 to 1e6"),
-        ("rbf_svm", "--gamma", "0", "1e-12 to 1e9"),
-        ("rbf_svm", "--gamma", "NaN", "1e-12 to 1e9"),
-        ("random_forest", "--n-trees", "0", "at least 1"),
-        ("random_forest", "--max-depth", "deep", "pure"),
-        ("k_nearest", "--n-neighbours", "40", "39 training rows"),
+    for (options, words) in [
+        ("polynomial_svm --degree 21", "at least 1 and at most 20"),
+        ("polynomial_svm --degree 2.5", "a whole number"),
+        ("polynomial_svm --coef0=-1", "0 to 1e6"),
+        ("rbf_svm --gamma 0", "1e-12 to 1e9"),
+        ("rbf_svm --gamma NaN", "1e-12 to 1e9"),
+        ("random_forest --n-trees 0", "at least 1"),
+        ("random_forest --max-depth deep", "pure"),
+        ("k_nearest --n-neighbours 40", "39 training rows"),
+        ("forest", "linear_svm"),
+        ("linear_svm --gamma wide", "scale"),
+        ("linear_svm --multiclass all", "one_vs_rest"),
+        ("linear_svm --scaling robust", "overall"),
+        ("linear_svm --repeat 0", "at least 1"),
+        ("linear_svm --train-rows 40", "1 to 39"),
+        ("linear_svm --train-rows 0", "1 to 39"),
+        ("linear_svm --c 0", "above 0"),
+        ("linear_svm --tolerance 0", "above 0"),
+        ("linear_svm --threads 0", "1 to 1024"),
     ] {
-        let mut options = vec!["--classifier", classifier, option, value];
-        options.retain(|option| !option.is_empty());
-        refused(&case, &options, &[word]);
-    }
-    for (option, value, word) in [
-        ("--classifier", "forest of trees", "linear_svm"),
-        ("--gamma", "wide", "scale"),
-        ("--multiclass", "all", "one_vs_rest"),
-        ("--scaling", "robust", "overall"),
-        ("--repeat", "0", "at least 1"),
-        ("--train-rows", "40", "1 to 39"),
-        ("--train-rows", "0", "1 to 39"),
-        ("--c", "0", "above 0"),
-        ("--tolerance", "0", "above 0"),
-        ("--threads", "0", "1 to 1024"),
-    ] {
-        let named = option == "--classifier";
-        let first: &[&str] = if named { &[] } else { &LINEAR };
-        refused(&case, &[first, &[option, value]].concat(), &[word]);
+        refused(&case, &format!("--classifier {options}"), words);
     }
 }
 
@@ -506,22 +471,11 @@ fn a_saved_classifier_predicts_what_it_predicted_before() {
         dataset(values, labels).unwrap()
     };
     let (training, tested) = (rows(120, 0.0), rows(700, 0.4));
-    let classes: Vec<KeyValue> = (0..8).map(KeyValue::Integer).collect();
-    let kinds = [
-        "linear_svm",
-        "rbf_svm",
-        "laplacian_svm",
-        "polynomial_svm",
-        "nearest_centroid",
-        "naive_bayes",
-        "logistic_regression",
-        "k_nearest",
-        "random_forest",
-    ];
-    let mut classifiers: Vec<Classifier> = kinds
-        .iter()
-        .map(|&kind| Classifier::new(toml::Value::from(kind).try_into().unwrap()))
-        .collect();
+    let kinds = "linear_svm rbf_svm laplacian_svm polynomial_svm nearest_centroid naive_bayes \
+                 logistic_regression k_nearest random_forest";
+    let kinds = kinds.split_whitespace();
+    let usual = kinds.map(|kind| Classifier::new(toml::Value::from(kind).try_into().unwrap()));
+    let mut classifiers: Vec<Classifier> = usual.collect();
     for kind in [ClassifierKind::LinearSvm, ClassifierKind::RbfSvm] {
         classifiers.push(Classifier {
             multiclass: Multiclass::OneVsRest,
@@ -539,86 +493,67 @@ fn a_saved_classifier_predicts_what_it_predicted_before() {
         ..Classifier::new(ClassifierKind::LinearSvm)
     });
     for settings in classifiers {
-        let classifier = settings.train(&training, &Seed::new(3)).unwrap();
-        let kind = settings.kind;
         let path = case.path("model.json");
         let written = ModelFile {
-            kind,
-            classes: classes.clone(),
+            kind: settings.kind,
+            classes: (0..8).map(KeyValue::Integer).collect(),
             columns: None,
-            classifier,
+            classifier: settings.train(&training, &Seed::new(3)).unwrap(),
         };
         written.write(&path).unwrap();
         let read = ModelFile::read(&path).unwrap();
-        assert_eq!((read.kind, &read.classes), (kind, &written.classes));
+        assert_eq!((read.kind, &read.classes), (written.kind, &written.classes));
         let bits = |of: &ModelFile| {
             let features = tested.records.view();
+            let few = tested.records.slice(ndarray::s![..3, ..]);
             let scores = of.classifier.scores(features).unwrap();
-            (
-                scores.mapv(f64::to_bits),
-                of.classifier.labels(features).unwrap(),
-            )
+            let labels = [features, few].map(|rows| of.classifier.labels(rows).unwrap());
+            (scores.mapv(f64::to_bits), labels)
         };
         assert_eq!(bits(&read), bits(&written), "{settings:?}");
-        let few = tested.records.slice(ndarray::s![..3, ..]);
-        let labels = |of: &ModelFile| of.classifier.labels(few).unwrap();
-        assert_eq!(labels(&read), labels(&written), "{settings:?}");
     }
 }
 
 #[test]
 fn a_saved_classifier_is_applied_to_new_touches() {
     let case = folder();
-    let names: Vec<String> = labels()
-        .iter()
-        .map(|label| format!("class {label}"))
-        .collect();
+    let names = labels().mapv(|label| format!("class {label}")).to_vec();
     write_texts(&case.path("labels.npy"), &names).unwrap();
-    let save = [
-        "--classifier",
-        "rbf_svm",
-        "--save",
-        "model.json",
-        "--predictions",
-        "a.npy",
-    ];
-    let trained = json(&case, &save);
-    let applied = json(&case, &["--model", "model.json", "--predictions", "b.npy"]);
+    let trained = json(
+        &case,
+        "--classifier rbf_svm --save model.json --predictions a.npy",
+    );
+    let applied = json(&case, "--model model.json --predictions b.npy");
     assert_eq!(applied["n_correct"], trained["n_correct"]);
     assert_eq!(applied["n_rows"], trained["n_test"]);
-    let bytes = |name: &str| std::fs::read(case.path(name)).unwrap();
-    assert_eq!(bytes("a.npy"), bytes("b.npy"));
+    assert_eq!(case.bytes("a.npy"), case.bytes("b.npy"));
     // Touches without labels and without a split.
-    let new = Case::new();
-    let rows: Vec<usize> = test().iter().map(|&row| row as usize).collect();
-    write_npy(new.path("features.npy"), &features().select(Axis(0), &rows)).unwrap();
+    let rows = rows(true).mapv(|row| row as usize).to_vec();
+    let new = Case::with("features.npy", npy(&features().select(Axis(0), &rows)));
     let model = case.path("model.json");
-    let model = model.to_str().unwrap();
-    let applied = json(&new, &["--model", model, "--predictions", "c.npy"]);
+    let applied = json(
+        &new,
+        &format!("--model {} --predictions c.npy", model.display()),
+    );
     assert!(applied["accuracy"].is_null());
-    assert_eq!(bytes("a.npy"), std::fs::read(new.path("c.npy")).unwrap());
+    assert_eq!(case.bytes("a.npy"), new.bytes("c.npy"));
 }
 
 #[test]
 fn a_saved_classifier_refuses_touches_whose_columns_have_another_order() {
     let case = folder();
-    let features = features();
-    let table = |names: [&str; 2]| {
+    let table = |header: &str| {
         let line = |row: ndarray::ArrayView1<f64>| format!("{},{}\n", row[0], row[1]);
-        let lines: String = features.rows().into_iter().map(line).collect();
-        format!("{}\n{lines}", names.join(","))
+        let lines = features().rows().into_iter().map(line).collect::<String>();
+        format!("{header}\n{lines}")
     };
-    std::fs::remove_file(case.path("features.npy")).unwrap();
-    case.file("features.csv", table(["pressure", "shear"]));
-    json(
-        &case,
-        &["--classifier", "k_nearest", "--save", "model.json"],
-    );
-    let apply = words("classify . --model model.json");
-    assert_eq!(case.run(&apply).status.code(), Some(0));
-    case.file("features.csv", table(["shear", "pressure"]));
+    case.remove("features.npy");
+    case.file("features.csv", table("pressure,shear"));
+    json(&case, "--classifier k_nearest --save model.json");
+    case.succeeds("classify . --model model.json");
+    case.file("features.csv", table("shear,pressure"));
     says(
-        &case.refuses(&apply),
+        &case.refuses("classify . --model model.json"),
         &[
             "features.csv: column `shear` in the place of `pressure`; the columns of the training rows, in their order",
         ],
@@ -628,59 +563,51 @@ fn a_saved_classifier_refuses_touches_whose_columns_have_another_order() {
 #[test]
 fn another_or_a_damaged_file_of_a_classifier_is_refused() {
     let case = folder();
-    json(
-        &case,
-        &["--classifier", "nearest_centroid", "--save", "model.json"],
-    );
-    let text = std::fs::read_to_string(case.path("model.json")).unwrap();
-    let refused = |text: &str, wanted: &str| {
-        case.file("other.json", text);
-        let output = case.run(&["classify", ".", "--model", "other.json"]);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(
-            said.contains("other.json: ") && said.contains(wanted),
-            "{said}"
-        );
-        assert_eq!(said.trim().lines().count(), 1, "{said}");
-    };
-    refused("", "another format");
-    refused("{}", "another format");
-    refused(&text[..text.len() / 2], "another format");
-    refused(&text.replace("\"version\":2", "\"version\":3"), "version 3");
+    json(&case, "--classifier nearest_centroid --save model.json");
+    let text = case.read("model.json");
     let at = text.find("\"offset\":[[5],\"").unwrap() + 16;
     let digit = if &text[at..=at] == "0" { "1" } else { "0" };
     let changed = format!("{}{digit}{}", &text[..at], &text[at + 1..]);
-    refused(&changed, "was changed");
-    refused(
-        &text.replacen("\"classes\":[0,1", "\"classes\":[1,0", 1),
-        "was changed",
-    );
-    let said = case.refuses(&words("classify . --classifier linfa_svm --save m.json"));
+    for (text, words) in [
+        ("", "another format"),
+        ("{}", "another format"),
+        (&text[..text.len() / 2], "another format"),
+        (&text.replace("\"version\":2", "\"version\":3"), "version 3"),
+        (&changed, "was changed"),
+        (
+            &text.replacen("\"classes\":[0,1", "\"classes\":[1,0", 1),
+            "was changed",
+        ),
+    ] {
+        case.file("other.json", text);
+        let said = case.refuses("classify . --model other.json");
+        says(&said, &["other.json: ", words]);
+        assert_eq!(said.trim().lines().count(), 1, "{said}");
+    }
+    let said = case.refuses("classify . --classifier linfa_svm --save m.json");
     says(&said, &["cannot be saved"]);
-    let both = ["classify", ".", "--model", "model.json", "--n-trees", "3"];
-    assert_eq!(case.run(&both).status.code(), Some(2));
+    case.refuses("classify . --model model.json --n-trees 3");
 }
 
 #[test]
 fn a_label_among_the_features_is_noted() {
     let case = folder();
-    let classify = ["classify", ".", "--classifier", "nearest_centroid"];
-    let (_, said) = case.succeeds(&classify);
+    let classify = "classify . --classifier nearest_centroid";
+    let (_, said) = case.succeeds(classify);
     assert!(!said.contains("one value for each class"), "{said}");
-    let line = |row: &[f64], label: &i64| {
-        let [a, b, ..] = row else {
-            panic!("5 features")
-        };
-        format!("{a},{},{b}\n", 7 - 2 * label)
-    };
-    let (features, labels) = (features(), labels());
-    let rows = features.rows().into_iter().zip(&labels);
-    let rows = rows.map(|(row, label)| line(row.as_slice().unwrap(), label));
-    let text = "mean,label,std\n".to_owned() + &rows.collect::<String>();
-    std::fs::remove_file(case.path("features.npy")).unwrap();
-    case.file("features.csv", text);
-    let (_, said) = case.succeeds(&classify);
-    let words = "note: .: column 2 of the features has one value for each class; remove it if it is the label";
-    assert!(said.contains(words), "{said}");
+    let features = features();
+    let rows = features.rows().into_iter().zip(labels());
+    let rows = rows.map(|(row, label)| format!("{},{},{}\n", row[0], 7 - 2 * label, row[1]));
+    case.remove("features.npy");
+    case.file(
+        "features.csv",
+        format!("mean,label,std\n{}", rows.collect::<String>()),
+    );
+    let (_, said) = case.succeeds(classify);
+    says(
+        &said,
+        &[
+            "note: .: column 2 of the features has one value for each class; remove it if it is the label",
+        ],
+    );
 }

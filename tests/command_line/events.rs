@@ -48,7 +48,7 @@ fn check(event: &Value, schema: &BTreeMap<String, BTreeMap<String, String>>) {
 fn every_line_of_a_run_is_an_event_as_the_guide_has_it() {
     let case = Case::new();
     case.file("study.toml", STUDY);
-    let (said, error) = case.succeeds(&["run", "study.toml", "--json"]);
+    let (said, error) = case.succeeds("run study.toml --json");
     assert_eq!(error, "", "nothing for people");
     let (schema, events) = (schema(), events(&said));
     events.iter().for_each(|event| check(event, &schema));
@@ -82,43 +82,8 @@ fn every_line_of_a_run_is_an_event_as_the_guide_has_it() {
         .map(|event| event["run_elapsed_s"].as_f64().unwrap());
     assert!(elapsed.is_sorted());
     // In a second run all work items are finished, and the command prints a message about this.
-    let again = self::events(&case.succeeds(&["run", "study.toml", "--json"]).0);
+    let again = self::events(&case.succeeds("run study.toml --json").0);
     again.iter().for_each(|event| check(event, &schema));
     assert_eq!(again[0]["event"], "message");
     assert_eq!(again.last().unwrap()["finished_before"], 26);
-}
-
-#[test]
-fn quiet_says_nothing_but_errors() {
-    let case = Case::new();
-    case.file("study.toml", STUDY);
-    let said = case.succeeds(&["run", "study.toml", "--quiet"]);
-    assert_eq!(said, (String::new(), String::new()));
-    case.file(
-        "study.toml",
-        STUDY.replace("stroke_mm = 5.0", "stroke_mm = 4.0"),
-    );
-    let refused = case.run(&["run", "study.toml", "--quiet"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("skin.stroke_mm"));
-    assert!(refused.stdout.is_empty());
-}
-
-#[test]
-fn a_shard_is_not_finished_and_its_merge_is() {
-    let case = Case::new();
-    case.file("study.toml", STUDY);
-    let kinds = |said: String| -> Vec<String> {
-        let events = events(&said);
-        events
-            .iter()
-            .map(|event| event["event"].as_str().unwrap().to_owned())
-            .collect()
-    };
-    for shard in ["1/2", "2/2"] {
-        let (said, _) = case.succeeds(&["run", "study.toml", "--json", "--shard", shard]);
-        assert!(!kinds(said).contains(&"finished".to_owned()));
-    }
-    let (said, _) = case.succeeds(&["merge", "study.toml", "--json"]);
-    assert_eq!(kinds(said).last().unwrap(), "finished");
 }

@@ -8,7 +8,6 @@ use bubbletouch::recognition::data::dataset::dataset;
 use bubbletouch::study::read_features;
 use ndarray::{Array1, Array2, Axis};
 use ndarray_npy::read_npy;
-use std::fs;
 
 /// Study with two noise levels, two ensembles, two m and two training sizes: 16 configurations with two trials each.
 const STUDY: &str = include_str!("../fixtures/texts/features.toml");
@@ -16,16 +15,9 @@ const STUDY: &str = include_str!("../fixtures/texts/features.toml");
 fn written(case: &Case, configuration: usize, trial: usize) -> std::path::PathBuf {
     let folder = format!("cell_{configuration}_{trial}");
     let (configuration, trial) = (configuration.to_string(), trial.to_string());
-    let (said, _) = case.succeeds(&[
-        "features",
-        "study.toml",
-        "--configuration",
-        &configuration,
-        "--trial",
-        &trial,
-        "--out",
-        &folder,
-    ]);
+    let (said, _) = case.succeeds(&format!(
+        "features study.toml --configuration {configuration} --trial {trial} --out {folder}"
+    ));
     assert_eq!(said, "");
     case.path(&folder)
 }
@@ -34,7 +26,7 @@ fn written(case: &Case, configuration: usize, trial: usize) -> std::path::PathBu
 fn training_on_the_files_gives_the_accuracy_of_the_run() {
     let case = Case::new();
     case.file("study.toml", STUDY);
-    case.succeeds(&["run", "study.toml", "--out", "results"]);
+    case.succeeds("run study.toml --out results");
     let mut table = csv::Reader::from_path(case.path("results/accuracy.csv")).unwrap();
     let header = table.headers().unwrap().clone();
     let column = |name: &str| header.iter().position(|column| column == name).unwrap();
@@ -75,29 +67,16 @@ fn the_library_reads_what_the_command_writes_at_any_number_of_threads() {
     let case = Case::new();
     case.file("study.toml", STUDY);
     for threads in ["1", "3"] {
-        let configuration = ["features", "study.toml", "--configuration", "9"];
-        case.succeeds(
-            &[
-                &configuration[..],
-                &["--threads", threads, "--out", threads],
-            ]
-            .concat(),
-        );
+        let features = "features study.toml --configuration 9";
+        case.succeeds(&format!("{features} --threads {threads} --out {threads}"));
     }
-    let names = [
-        "configuration.toml",
-        "features.npy",
-        "labels.npy",
-        "manifest.json",
-        "objects.csv",
-        "test.npy",
-        "train.npy",
-    ];
-    for name in names {
-        let read = |folder| fs::read(case.path(folder).join(name)).unwrap();
+    let names =
+        "configuration.toml features.npy labels.npy manifest.json objects.csv test.npy train.npy";
+    assert_eq!(case.names_in("1").join(" "), names);
+    for name in names.split(' ') {
+        let read = |folder| case.bytes(&format!("{folder}/{name}"));
         assert!(read("1") == read("3"), "{name}");
     }
-    assert_eq!(fs::read_dir(case.path("1")).unwrap().count(), names.len());
     let set = read_features(&case.path("1")).unwrap();
     assert_eq!(set.data.records.dim().0, 72);
     assert_eq!(
@@ -105,12 +84,9 @@ fn the_library_reads_what_the_command_writes_at_any_number_of_threads() {
         set.split.train.len()
     );
     assert_eq!(set.training(Some(5)).unwrap().records.nrows(), 5);
-    let objects = fs::read_to_string(case.path("1/objects.csv")).unwrap();
+    let objects = case.read("1/objects.csv");
     assert_eq!(objects, "label,object\n0,mug\n1,banana\n2,scissors\n");
-    let settings: toml::Table = fs::read_to_string(case.path("1/configuration.toml"))
-        .unwrap()
-        .parse()
-        .unwrap();
+    let settings: toml::Table = case.read("1/configuration.toml").parse().unwrap();
     assert_eq!(
         settings["configuration"]["configuration"].as_integer(),
         Some(9)
@@ -127,13 +103,7 @@ fn groups_that_a_study_keeps_together_are_written_for_classify() {
     let groups: Array1<i64> = read_npy(folder.join("groups.npy")).unwrap();
     assert_eq!(groups.len(), 72);
     let folder = folder.display().to_string();
-    let classify = [
-        "classify",
-        &folder,
-        "--classifier",
-        "linear_svm",
-        "--groups",
-    ];
-    let (said, _) = case.succeeds(&[&classify[..], &[&format!("{folder}/groups.npy")]].concat());
+    let classify = format!("classify {folder} --classifier linear_svm");
+    let (said, _) = case.succeeds(&format!("{classify} --groups {folder}/groups.npy"));
     says(&said, &["split     by groups:"]);
 }

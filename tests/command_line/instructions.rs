@@ -17,7 +17,7 @@ use std::process::Command;
 const STUDY: &str = include_str!("../fixtures/texts/instructions.toml");
 
 /// Runs the command on this machine or on an emulated processor, and asserts success.
-fn succeeds(case: &Case, emulated: Option<(&Path, &str)>, arguments: &[&str]) -> String {
+fn succeeds(case: &Case, emulated: Option<(&Path, &str)>, line: &str) -> String {
     let command = env!("CARGO_BIN_EXE_bubbletouch");
     let mut process = match emulated {
         None => Command::new(command),
@@ -27,7 +27,10 @@ fn succeeds(case: &Case, emulated: Option<(&Path, &str)>, arguments: &[&str]) ->
             process
         }
     };
-    let output = process.args(arguments).current_dir(case.folder()).output();
+    let output = process
+        .args(line.split(' '))
+        .current_dir(case.folder())
+        .output();
     let output = output.unwrap();
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{emulated:?}: {error}");
@@ -48,7 +51,7 @@ struct Found {
 
 fn found(case: &Case, emulated: Option<(&Path, &str)>) -> Found {
     let out = emulated.map_or("here", |(_, processor)| processor);
-    let run = ["run", "study.toml", "--threads", "1", "--out", out];
+    let run = format!("run study.toml --threads 1 --out {out}");
     succeeds(case, emulated, &run);
     let file = |name: &str| case.path(out).join(name);
     let manifest = fs::read(file("manifest.json")).unwrap();
@@ -58,9 +61,9 @@ fn found(case: &Case, emulated: Option<(&Path, &str)>) -> Found {
     let gammas = gammas.filter_map(|score| score.gamma_used.take()).collect();
     let (mut duals, mut labels) = (Vec::new(), Vec::new());
     for classifier in ["linear_svm", "rbf_svm", "polynomial_svm", "laplacian_svm"] {
-        let train = ["classify", "features", "--classifier", classifier, "--json"];
-        let written = ["--threads", "1", "--predictions", "labels.npy"];
-        let said = succeeds(case, emulated, &[&train[..], &written].concat());
+        let train = format!("classify features --classifier {classifier} --json");
+        let train = train + " --threads 1 --predictions labels.npy";
+        let said = succeeds(case, emulated, &train);
         let said: Value = serde_json::from_str(&said).unwrap();
         duals.push(said["svm"]["dual_objective"].as_f64().unwrap());
         labels.push(read_npy(case.path("labels.npy")).unwrap());
@@ -81,7 +84,7 @@ fn avx2_and_plain_code_find_what_this_machine_finds() {
     };
     let case = Case::new();
     case.file("study.toml", STUDY);
-    case.succeeds(&["features", "study.toml", "--out", "features"]);
+    case.succeeds("features study.toml --out features");
     let emulator = folder.join("qemu-x86_64");
     let ours = found(&case, None);
     for (processor, instructions) in [

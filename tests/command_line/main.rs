@@ -1,5 +1,7 @@
 //! The command and its outputs: subcommands, bad input, pages, charts, pictures and recordings.
 
+#[path = "../fixtures/arrays/mod.rs"]
+mod arrays;
 #[path = "../fixtures/browser/mod.rs"]
 mod browser;
 #[path = "../fixtures/chart_tables/mod.rs"]
@@ -20,26 +22,21 @@ mod stored;
 mod study;
 
 mod audit;
-mod bad_input;
 mod calibrate;
 mod classify;
 mod events;
 mod features;
+mod full_disk;
 mod instructions;
-mod layout;
-mod mesh;
-mod outputs;
-mod own_command;
 mod own_objects;
 mod page;
-mod paths;
 mod press;
 mod printed_numbers;
 mod readme;
 mod recording;
-mod report;
+mod results;
+mod sessions;
 mod shell;
 mod simulate;
-mod surface;
 mod touches;
 mod wrong_recordings;

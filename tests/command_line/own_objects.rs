@@ -1,6 +1,9 @@
-//! Guide page on own objects: its example can be built, and it lists every shape and key.
+//! Own objects: the example of the guide can be built, its page lists every shape and key, and holes of meshes are closed only on demand.
 
+use crate::command::{Case, says};
+use bubbletouch::mesh::LengthUnit;
 use bubbletouch::objects::{Catalogue, surface_error};
+use bubbletouch::study::{ModelSpec, ObjectsSpec, load_objects};
 
 const MM: f64 = 1e-3;
 
@@ -63,4 +66,34 @@ fn the_guide_has_every_shape_and_every_key() {
     for shape in shapes.iter().filter(|name| *name != "none") {
         assert!(GUIDE.contains(&format!("| `\"{shape}\"` |")), "{shape}");
     }
+}
+
+#[test]
+fn a_study_closes_holes_only_where_it_is_told_to() {
+    let hole = include_str!("../fixtures/texts/cube_with_hole.obj");
+    let case = Case::with("meshes/cube.obj", hole);
+    let load = |model, close_holes_mm| {
+        let spec = ObjectsSpec {
+            meshes: Some(case.path("meshes").into()),
+            model: Some(model),
+            unit: Some(LengthUnit::Millimetre),
+            surface_error_mm: Some(1.0),
+            close_holes_mm,
+            ..ObjectsSpec::default()
+        };
+        load_objects(&spec, None).map(|objects| objects[0].model.clone())
+    };
+    let closed = load(ModelSpec::Packed, Some(1.0)).unwrap();
+    assert!(closed.n_spheres() > 10);
+    assert_eq!(load(ModelSpec::Mesh, Some(1.0)).unwrap().n_triangles(), 20);
+    assert_eq!(load(ModelSpec::Mesh, None).unwrap().n_triangles(), 17);
+    let said = |model, close_holes_mm| load(model, close_holes_mm).unwrap_err().to_string();
+    for too_narrow in [None, Some(0.8)] {
+        let words = ["cube.obj: a hole 0.90 mm wide", "objects.close_holes_mm"];
+        says(&said(ModelSpec::Packed, too_narrow), &words);
+    }
+    says(
+        &said(ModelSpec::VertexSpheres, Some(1.0)),
+        &["close_holes_mm"],
+    );
 }

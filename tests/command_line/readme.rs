@@ -72,26 +72,24 @@ fn copy_folder(from: &Path, to: &Path) {
     }
 }
 
-/// Creates a folder with the files of a cloned repository, and puts the command on the path. Studies have one trial each and the quickstart reads no whole
-/// frames, because the commands are tested, not the results.
-fn cloned() -> (Case, String) {
+/// Creates a folder with the files of a cloned repository. Studies have one trial of few touches and the quickstart reads no whole frames, because the commands
+/// are tested, not the results.
+fn cloned() -> Case {
     let case = Case::new();
     for folder in ["experiments", "objects"] {
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
         copy_folder(&from, &case.path(folder));
     }
-    for name in ["quickstart", "cans"] {
-        let name = format!("experiments/{name}.toml");
-        let study = fs::read_to_string(case.path(&name)).unwrap();
-        let (before, after) = study.split_once("\ntrials = ").unwrap();
-        let after = after.split_once('\n').unwrap().1;
-        let study = format!("{before}\ntrials = 1\n{after}");
-        case.file(&name, study.replace("\"identity\", ", ""));
+    let shorter = |line: &str| match line.split_once(" = ") {
+        Some(("trials", _)) => "trials = 1\n".to_owned(),
+        Some(("per_object", _)) => "per_object = 20\n".to_owned(),
+        _ => line.replace("\"identity\", ", "") + "\n",
+    };
+    for name in ["experiments/quickstart.toml", "experiments/cans.toml"] {
+        let study: String = case.read(name).lines().map(shorter).collect();
+        case.file(name, study);
     }
-    let binary = Path::new(env!("CARGO_BIN_EXE_bubbletouch"));
-    let path = std::env::var("PATH").unwrap();
-    let path = format!("{}:{path}", binary.parent().unwrap().display());
-    (case, path)
+    case
 }
 
 #[test]
@@ -99,15 +97,9 @@ fn every_command_in_the_readme_and_the_guide_works() {
     let mut n_commands = 0;
     for (document, text) in documents() {
         // The commands run one after the other in one folder, because later ones may read the output of earlier ones.
-        let (case, path) = cloned();
+        let case = cloned();
         for command in blocks(&text, "sh").iter().flat_map(|b| commands(b)) {
-            let output = Command::new("sh")
-                .args(["-e", "-c", &command])
-                .current_dir(case.folder())
-                .env("PATH", &path)
-                .env("HOME", case.folder())
-                .output()
-                .unwrap();
+            let output = case.shell(&command).output().unwrap();
             let error = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{document}: {command}\n{error}");
             println!("{document}: works: {command}");

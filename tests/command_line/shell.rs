@@ -40,7 +40,7 @@ fn completions_know_every_subcommand_and_are_accepted_by_their_shell() {
         ("fish", "--no-execute"),
         ("powershell", ""),
     ] {
-        let output = case.run(&["completions", shell]);
+        let output = case.run(&format!("completions {shell}"));
         assert!(output.status.success());
         let script = String::from_utf8(output.stdout).unwrap();
         for subcommand in SUBCOMMANDS {
@@ -52,12 +52,12 @@ fn completions_know_every_subcommand_and_are_accepted_by_their_shell() {
             assert!(is_accepted, "{shell}: {said}");
         }
     }
-    case.refuses(&["completions", "csh"]);
+    case.refuses("completions csh");
 }
 
 #[test]
 fn bash_completes_subcommands_and_options() {
-    let script = Case::new().run(&["completions", "bash"]).stdout;
+    let script = Case::new().run("completions bash").stdout;
     let ask = |words: &str, current: &str| {
         let asked = format!(
             "\nCOMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _bubbletouch bubbletouch '{current}' x; \
@@ -76,13 +76,13 @@ fn bash_completes_subcommands_and_options() {
 #[test]
 fn the_manual_has_a_page_for_each_subcommand_that_renders_without_a_warning() {
     let case = Case::new();
-    let first = case.run(&["man"]).stdout;
+    let first = case.run("man").stdout;
     assert!(String::from_utf8_lossy(&first).starts_with(".ie"), "roff");
-    let output = case.run(&["man", "--out", "man1"]);
+    let output = case.run("man --out man1");
     assert!(output.status.success());
-    assert_eq!(fs::read(case.path("man1/bubbletouch.1")).unwrap(), first);
+    assert_eq!(case.bytes("man1/bubbletouch.1"), first);
     for subcommand in SUBCOMMANDS {
-        let page = fs::read(case.path(&format!("man1/bubbletouch-{subcommand}.1"))).unwrap();
+        let page = case.bytes(&format!("man1/bubbletouch-{subcommand}.1"));
         let Some((is_accepted, said)) = accepted(
             "groff",
             &["-k", "-man", "-Tutf8", "-ww", "-P-c", "-P-b", "-P-u"],
@@ -103,21 +103,13 @@ fn the_manual_has_a_page_for_each_subcommand_that_renders_without_a_warning() {
 #[test]
 fn a_pipe_gets_no_escape_codes_and_no_color_is_respected() {
     let case = Case::new();
-    let press = [
-        "press",
-        "--object",
-        "mug",
-        "--taxels",
-        "16x16",
-        "--pitch-mm",
-        "8",
-    ];
+    let press = "press --object mug --taxels 16x16 --pitch-mm 8";
     for (name, value) in [
         ("NO_COLOR", "1"),
         ("TERM", "dumb"),
         ("TERM", "xterm-256color"),
     ] {
-        for arguments in [&press[..], &["--help"], &["objects"], &["run", "none.toml"]] {
+        for arguments in [press, "--help", "objects", "run none.toml"] {
             let output = case.command(arguments).env(name, value).output().unwrap();
             for text in [output.stdout, output.stderr] {
                 assert!(!text.contains(&0x1b), "{name}={value} {arguments:?}");

@@ -30,7 +30,7 @@ fn every_shipped_scene_says_what_it_asks_and_runs() {
         }
         let stem = scene.file_stem().unwrap().to_str().unwrap();
         let scene = scene.to_str().unwrap();
-        let (said, _) = case.succeeds(&["simulate", scene, "--out", stem, "--until-s", "0.3"]);
+        let (said, _) = case.succeeds(&format!("simulate {scene} --out {stem} --until-s 0.3"));
         says(&said, &["deepest (mm)", "at the end"]);
         let mut files = fs::read_dir(case.path(stem))
             .unwrap()
@@ -55,7 +55,7 @@ fn the_files_hold_what_the_library_computes() {
     let scene = &scenes()[0];
     assert!(scene.ends_with("arm_sweep.toml"));
     let scene_name = scene.to_str().unwrap();
-    let (said, _) = case.succeeds(&["simulate", scene_name, "--out", "o", "--quiet"]);
+    let (said, _) = case.succeeds(&format!("simulate {scene_name} --out o --quiet"));
     assert_eq!(said, "");
     let plan = ScenePlan::read(scene).unwrap();
     let mut frames: Vec<Frame> = Vec::new();
@@ -75,7 +75,7 @@ fn the_files_hold_what_the_library_computes() {
             }
         }
     }
-    let table = fs::read_to_string(case.path("o/wrenches.csv")).unwrap();
+    let table = case.read("o/wrenches.csv");
     let mut lines = table.lines();
     assert!(
         lines
@@ -96,64 +96,4 @@ fn the_files_hold_what_the_library_computes() {
     let mut simulation = Simulation::new(&resolved, Stepping::AsNeeded);
     simulation.run(&mut [&mut again]).unwrap();
     assert_eq!(frames, again);
-}
-
-#[test]
-fn what_is_not_read_of_a_robots_file_is_noted_on_standard_error() {
-    let case = Case::new();
-    case.file(
-        "r.urdf",
-        "<!-- by a plug-in -->\n<?xml version=\"1.0\"?><robot name=\"r\"><link name=\"base\"/>\n\
-         <sensor name=\"pad_tactile\"><parent link=\"base\"/><tactile/></sensor></robot>",
-    );
-    let scene = "title = \"A robot\"\nrobots = [{ name = \"robot\", urdf = \"r.urdf\" }]\npatches = [{ name = \"pad\", robot = \"robot\", \
-                 layout = { grid = { nx = 2, ny = 2, pitch_mm = 4.0 } }, stroke_mm = 5.0 }]\n";
-    let scene = case.file("s.toml", scene);
-    let scene = scene.to_str().unwrap();
-    let (_, said) = case.succeeds(&["simulate", scene, "--out", "o"]);
-    let notes: Vec<&str> = said
-        .lines()
-        .filter(|line| line.starts_with("note: "))
-        .collect();
-    let [xml, sensor] = notes.as_slice() else {
-        panic!("{said}");
-    };
-    says(
-        xml,
-        &["r.urdf: a comment or space before the XML declaration"],
-    );
-    says(
-        sensor,
-        &[
-            "r.urdf, line 3: <tactile> without taxels; an <array> or <taxel>s: tactile sensor `pad_tactile` on link `base` is not read",
-        ],
-    );
-    let (_, quiet) = case.succeeds(&["simulate", scene, "--out", "p", "--quiet"]);
-    assert_eq!(quiet, "");
-}
-
-#[test]
-fn a_scene_that_cannot_be_leaves_no_file_and_exits_with_2() {
-    let case = Case::new();
-    let bad = case.file("bad.toml", "title = \"\"\npatches = []\n");
-    let bad = bad.to_str().unwrap();
-    for arguments in [
-        &["simulate", bad, "--out", "o"][..],
-        &["simulate", "missing.toml", "--out", "o"],
-        &[
-            "simulate",
-            scenes()[0].to_str().unwrap(),
-            "--out",
-            "o",
-            "--until-s",
-            "-1",
-        ],
-    ] {
-        let said = case.refuses(arguments);
-        assert!(
-            said.starts_with("error: ") && said.lines().count() == 1,
-            "{said}"
-        );
-        assert_eq!(case.names(), ["bad.toml"]);
-    }
 }

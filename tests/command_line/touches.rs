@@ -1,6 +1,6 @@
 //! `bubbletouch touches`: the files of a data set agree with each other and with the library, and are written with little memory.
 
-use crate::command::{Case, filled, says, words};
+use crate::command::{Case, filled, says};
 use crate::study::Study;
 use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::geometry::Pose;
@@ -73,7 +73,7 @@ fn read_csv<R: serde::de::DeserializeOwned>(path: &Path) -> Vec<R> {
 fn written() -> Case {
     let case = Case::new();
     case.file("study.toml", STUDY);
-    let (said, _) = case.succeeds(&["touches", "study.toml", "--out", "data"]);
+    let (said, _) = case.succeeds("touches study.toml --out data");
     assert_eq!(said, "");
     case
 }
@@ -116,7 +116,7 @@ fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
             "[signal]\nsteps = [\"noise\", \"smoothing\"]\nnoise_std_full_scale = [0.0, 0.1]\nsmoothing_mm = 4.0\n[sensing]",
         );
     case.file("study.toml", study);
-    let (_, said) = case.succeeds(&["touches", "study.toml", "--out", "clean"]);
+    let (_, said) = case.succeeds("touches study.toml --out clean");
     says(&said, &["without noise"]);
     // Array 1 (24 × 24) with noise of 10 % is configuration 3.
     let configuration = ["--configuration", "3", "--trial", "0"];
@@ -153,10 +153,10 @@ fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
         "touches.csv",
         "objects.csv",
     ] {
-        let bytes = |folder: &str| std::fs::read(case.path(folder).join(name)).unwrap();
+        let bytes = |folder: &str| case.bytes(&format!("{folder}/{name}"));
         assert!(bytes("clean/24x24_at_2_mm") == bytes("read"), "{name}");
     }
-    case.refuses(&words("touches study.toml --out x --configuration 99"));
+    case.refuses("touches study.toml --out x --configuration 99");
 }
 
 #[test]
@@ -255,19 +255,14 @@ fn one_array_needs_no_folder_of_its_own_and_threads_change_no_byte() {
     let case = Case::new();
     case.file("study.toml", STUDY.replace("[4.0, 2.0]", "4.0"));
     for threads in ["1", "3"] {
-        case.succeeds(&[
-            "touches",
-            "study.toml",
-            "--threads",
-            threads,
-            "--out",
-            threads,
-        ]);
+        case.succeeds(&format!(
+            "touches study.toml --threads {threads} --out {threads}"
+        ));
     }
     let mut names = Vec::new();
     for entry in std::fs::read_dir(case.path("1")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
-        let read = |folder| std::fs::read(case.path(folder).join(&name)).unwrap();
+        let read = |folder| case.bytes(&format!("{folder}/{name}"));
         assert!(read("1") == read("3"), "{name}");
         names.push(name);
     }
@@ -300,7 +295,7 @@ fn peak_memory(text: &str) -> Option<u64> {
     let case = Case::new();
     case.file("study.toml", text);
     let mut child = case
-        .command(&["touches", "study.toml", "--threads", "2", "--out", "data"])
+        .command("touches study.toml --threads 2 --out data")
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
@@ -350,14 +345,14 @@ const AXES: &str = include_str!("../fixtures/texts/touches_axes.toml");
 fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
     let case = Case::new();
     case.file("study.toml", AXES);
-    case.succeeds(&["touches", "study.toml", "--out", "data"]);
+    case.succeeds("touches study.toml --out data");
     let alone = |depth: &str| {
         let (study, _) = AXES.split_once("[axes]").unwrap();
         let touches = format!("per_object = 20\ndepth_mm = {depth}");
         let study = study.replace("per_object = 20", &touches);
         case.file("alone.toml", study);
         let out = format!("alone_{depth}");
-        case.succeeds(&["touches", "alone.toml", "--out", &out]);
+        case.succeeds(&format!("touches alone.toml --out {out}"));
         Files::read(&case.path(&out)).frames
     };
     for (folder, depth) in [("data/depth_mm_1", "1.0"), ("data/depth_mm_4", "4.0")] {
@@ -381,12 +376,12 @@ fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
         "same.toml",
         same.replace("per_object = 20", "per_object = 20\ndepth_mm = 3.0"),
     );
-    case.succeeds(&["touches", "same.toml", "--out", "same"]);
+    case.succeeds("touches same.toml --out same");
     assert_eq!(Files::read(&case.path("same")).frames.dim(), (40, 8, 8));
     // Several arrays together with an axis.
     let both = AXES.replace("pitch_mm = 4.0", "pitch_mm = [4.0, 8.0]");
     case.file("both.toml", both);
-    case.succeeds(&["touches", "both.toml", "--out", "both"]);
+    case.succeeds("touches both.toml --out both");
     for folder in ["8x8_at_4_mm_depth_mm_1", "8x8_at_8_mm_depth_mm_4"] {
         assert_eq!(
             Files::read(&case.path("both").join(folder)).frames.dim(),
@@ -408,7 +403,7 @@ fn the_manifest_has_the_units_of_all_channels() {
         let json: serde_json::Value = serde_json::from_str(&text).unwrap();
         json["files"][name]["unit"].clone()
     };
-    case.succeeds(&["touches", "shear.toml", "--out", "shear"]);
+    case.succeeds("touches shear.toml --out shear");
     assert_eq!(units("shear", "frames.npy"), serde_json::json!(["m"]));
     assert_eq!(units("shear", "shear.npy"), serde_json::json!(["N", "N"]));
     let frames: Array3<f32> = read_npy(case.path("shear/frames.npy")).unwrap();
@@ -417,9 +412,7 @@ fn the_manifest_has_the_units_of_all_channels() {
     // Values in metres are within the stroke; values in newtons exceed it.
     assert!(frames.iter().all(|&d| (0.0..=5e-3).contains(&d)));
     assert!(across.iter().any(|&force| force.abs() > 5e-3));
-    case.succeeds(&words(
-        "touches shear.toml --out configuration --configuration 0",
-    ));
+    case.succeeds("touches shear.toml --out configuration --configuration 0");
     let three = serde_json::json!(["N", "N", "N"]);
     assert_eq!(units("configuration", "frames.npy"), three);
     assert!(!case.path("configuration/shear.npy").exists());

@@ -1,7 +1,6 @@
 //! Recordings with a fault, in each format of arrays: the error names the file and the array, and nothing is written.
 
-use crate::bad_input::refused;
-use crate::command::Case;
+use crate::command::{Case, says};
 use bubbletouch::study::{write_integers, write_npy};
 use ndarray::Array2;
 use ndarray_npy::NpzWriter;
@@ -109,11 +108,7 @@ fn write(case: &Case, format: Format, arrays: &Arrays) -> BTreeMap<&'static str,
 /// Asserts that the study is refused with the name of the file of the array `key`, and with these words.
 fn is_refused(case: &Case, file: &str, words: &str) {
     let before = case.names();
-    refused(
-        &case.run(&["run", "study.toml", "--out", "out"]),
-        2,
-        &[file, words],
-    );
+    says(&case.refuses("run study.toml --out out"), &[file, words]);
     assert_eq!(case.names(), before, "{words}");
 }
 
@@ -229,9 +224,9 @@ fn each_fault_of_a_recording_is_refused_in_each_format() {
     for format in [Format::Npy, Format::Npz, Format::Csv] {
         let case = Case::new();
         write(&case, format, &whole());
-        case.succeeds(&["run", "study.toml", "--out", "good", "--quiet"]);
+        case.succeeds("run study.toml --out good --quiet");
         write(&case, format, &with_test());
-        case.succeeds(&["run", "study.toml", "--out", "test", "--quiet"]);
+        case.succeeds("run study.toml --out test --quiet");
         for (arrays, key, words) in &faults {
             let files = write(&case, format, arrays);
             let file = files.get(key).map_or("study.toml", String::as_str);
@@ -250,7 +245,7 @@ fn truncated_and_empty_files_are_refused_by_their_name() {
         let case = Case::new();
         let files = write(&case, format, &whole());
         for file in files.values() {
-            let bytes = std::fs::read(case.path(file)).unwrap();
+            let bytes = case.bytes(file);
             // Half of a table of one column is a whole table of fewer touches.
             for (length, words) in [
                 (bytes.len() / 2, ""),
@@ -288,7 +283,7 @@ fn truncated_and_empty_files_are_refused_by_their_name() {
         );
     }
     write_integers(&case.path("labels.npy"), [0; N]).unwrap();
-    let text = std::fs::read_to_string(case.path("study.toml")).unwrap();
+    let text = case.read("study.toml");
     case.file(
         "study.toml",
         text.replace(
@@ -324,14 +319,7 @@ fn classes_in_two_forms_of_unicode_and_columns_that_may_be_no_taxels_are_noted()
     case.file("labels.csv", (0..N).map(word).collect::<String>());
     let group = |touch: usize| ["s7\n", "S7\n", "8\n", "08\n", "9\n"][touch % 5];
     case.file("groups.csv", (0..N).map(group).collect::<String>());
-    let audit = [
-        "audit",
-        "frames.csv",
-        "--labels",
-        "labels.csv",
-        "--groups",
-        "groups.csv",
-    ];
+    let audit = "audit frames.csv --labels labels.csv --groups groups.csv";
     let (_, said) = case.succeeds(&audit);
     let spellings = "note: the labels \"cafe\\u{301}\", \"café\" differ only by case, spaces, leading zeros or forms of Unicode, and count as 2 labels";
     assert!(said.contains(spellings), "{said}");
@@ -359,11 +347,11 @@ fn a_missing_label_is_no_class() {
             k => ["mug\n", "pen\n"][k % 2].to_owned(),
         };
         case.file("labels.csv", (0..N).map(word).collect::<String>());
-        let said = case.run(&["audit", "frames.csv", "--labels", "labels.csv"]);
+        let said = case.refuses("audit frames.csv --labels labels.csv");
         let given = format!(
             "labels.csv, position 3: \"{}\"; one class for each touch",
             missing.trim_matches('"')
         );
-        refused(&said, 2, &[&given]);
+        says(&said, &[given]);
     }
 }

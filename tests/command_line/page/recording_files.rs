@@ -8,14 +8,13 @@ use bubbletouch::report::recording::{
 use bubbletouch::signal::Quantity;
 use bubbletouch::world::Grid;
 use glam::{DQuat, DVec3};
-use ndarray::{Array1, Array2, Array3, ArrayD};
+use ndarray::{Array2, Axis};
 use ndarray_npy::NpzReader;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
-use std::time::Instant;
 
 const GRID: Grid = Grid {
     nx: 4,
@@ -102,64 +101,46 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// The arrays are read with ndarray-npy, which is independent of the project's reader.
 #[test]
 fn what_is_read_back_is_what_was_written_rounded_to_f32() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
-    {
-        for n_frames in [0, 1, 300] {
-            let frames = pushed(n_frames);
-            write(&path, &frames);
-            let read = read_recording(&path).unwrap();
-            assert_eq!(read.header, header());
-            assert_eq!(read.time.len(), n_frames);
-            assert_eq!(read.patches[0].deflection.dim(), (n_frames, 12));
-            assert_eq!(read.patches[0].force.dim(), (n_frames, 12, 1));
-            assert_eq!(read.patches[1].force.dim(), (n_frames, 5, 3));
-            for (k, frame) in frames.iter().enumerate() {
-                let same = |row: Vec<f64>, expected: &mut dyn Iterator<Item = f64>| {
-                    assert!(row.into_iter().eq(expected.map(rounded)), "frame {k}");
-                };
-                let [palm, tip] = &read.patches[..] else {
-                    panic!("two patches")
-                };
-                assert_eq!(read.time[k], frame.time);
-                same(
-                    palm.deflection.row(k).to_vec(),
-                    &mut frame.palm.iter().copied(),
-                );
-                let force = palm
-                    .force
-                    .index_axis(ndarray::Axis(0), k)
-                    .iter()
-                    .copied()
-                    .collect();
-                same(force, &mut frame.palm_force.iter().copied());
-                same(
-                    tip.deflection.row(k).to_vec(),
-                    &mut frame.tip.iter().copied(),
-                );
-                let force = tip
-                    .force
-                    .index_axis(ndarray::Axis(0), k)
-                    .iter()
-                    .copied()
-                    .collect();
-                same(
-                    force,
-                    &mut frame.tip_force.iter().flat_map(|f| f.to_array()),
-                );
-                let poses = [
-                    palm.pose[k],
-                    tip.pose[k],
-                    read.objects[0][k],
-                    read.objects[1][k],
-                ];
-                assert_eq!(poses, frame.poses);
-            }
+    for n_frames in [0, 1, 300] {
+        let frames = pushed(n_frames);
+        write(&path, &frames);
+        let read = read_recording(&path).unwrap();
+        assert_eq!(read.header, header());
+        assert_eq!(read.time.len(), n_frames);
+        let [palm, tip] = &read.patches[..] else {
+            panic!("two patches")
+        };
+        assert_eq!(palm.deflection.dim(), (n_frames, 12));
+        assert_eq!(palm.force.dim(), (n_frames, 12, 1));
+        assert_eq!(tip.force.dim(), (n_frames, 5, 3));
+        for (k, frame) in frames.iter().enumerate() {
+            let tip_force = frame.tip_force.iter().flat_map(|f| f.to_array());
+            let written = [&frame.palm[..], &frame.palm_force, &frame.tip].concat();
+            let written = written.into_iter().chain(tip_force).map(rounded);
+            let forces = [palm, tip].map(|patch| patch.force.index_axis(Axis(0), k));
+            let row = palm.deflection.row(k).into_iter().chain(forces[0].iter());
+            let row = row.chain(tip.deflection.row(k)).chain(forces[1].iter());
+            assert!(row.copied().eq(written), "frame {k}");
+            assert_eq!(read.time[k], frame.time);
+            let objects = read.objects.iter().map(|poses| poses[k]);
+            let poses = [palm.pose[k], tip.pose[k]].into_iter().chain(objects);
+            assert!(poses.eq(frame.poses), "frame {k}");
         }
     }
     assert_eq!(names(folder.path()), ["touch.npz"]);
+    let mut npz = NpzReader::new(fs::File::open(&path).unwrap()).unwrap();
+    let members = "meta, palm/centers, palm/axes, finger tip/centers, finger tip/axes, time, \
+                   palm/deflection, palm/force, palm/pose, finger tip/deflection, finger tip/force, \
+                   finger tip/pose, mug/pose, Füße ☕/pose";
+    assert_eq!(npz.names().unwrap().join(", "), members);
+    let centers: Array2<f64> = npz.by_name("palm/centers").unwrap();
+    assert_eq!(centers.dim(), (12, 3));
+    assert_eq!([centers[[7, 0]], centers[[7, 1]]], [GRID.x(3), GRID.y(1)]);
 }
 
 #[test]
@@ -191,51 +172,6 @@ fn single_rows_are_those_of_the_whole_and_vectors_have_lengths() {
     }
     let said = file.frame(0, Quantity::Force, 40).unwrap_err().to_string();
     assert!(said.ends_with("touch.npz: frame 40; 0 to 39"), "{said}");
-}
-
-/// Tests that ndarray-npy, which is independent of the project's reader, reads equal arrays.
-#[test]
-fn another_reader_of_npz_reads_the_same_arrays() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("touch.npz");
-    let frames = pushed(20);
-    write(&path, &frames);
-    let mut npz = NpzReader::new(fs::File::open(&path).unwrap()).unwrap();
-    let names = npz.names().unwrap();
-    assert_eq!(
-        names,
-        [
-            "meta",
-            "palm/centers",
-            "palm/axes",
-            "finger tip/centers",
-            "finger tip/axes",
-            "time",
-            "palm/deflection",
-            "palm/force",
-            "palm/pose",
-            "finger tip/deflection",
-            "finger tip/force",
-            "finger tip/pose",
-            "mug/pose",
-            "Füße ☕/pose",
-        ]
-    );
-    let time: Array1<f64> = npz.by_name("time").unwrap();
-    let palm: Array2<f32> = npz.by_name("palm/deflection").unwrap();
-    let force: Array3<f32> = npz.by_name("finger tip/force").unwrap();
-    let poses: Array2<f64> = npz.by_name("mug/pose").unwrap();
-    let centers: ArrayD<f64> = npz.by_name("palm/centers").unwrap();
-    assert_eq!(centers.shape(), [12, 3]);
-    assert_eq!(centers[[7, 0]], GRID.x(3));
-    assert_eq!(centers[[7, 1]], GRID.y(1));
-    for (k, frame) in frames.iter().enumerate() {
-        assert_eq!(time[k], frame.time);
-        assert_eq!(palm[(k, 5)], frame.palm[5] as f32);
-        assert_eq!(force[(k, 4, 1)], frame.tip_force[4].y as f32);
-        let (t, q) = (frame.poses[2].translation, frame.poses[2].rotation);
-        assert_eq!(poses.row(k).to_vec(), [t.x, t.y, t.z, q.w, q.x, q.y, q.z]);
-    }
 }
 
 #[test]
@@ -443,33 +379,4 @@ fn two_thousand_frames_stream_in_the_memory_of_five_hundred() {
     });
     println!("{read} bytes to read them row by row");
     assert!(read < 5 << 20, "{read}");
-}
-
-#[test]
-#[ignore = "writes 1.6 GB: a measurement of speed"]
-fn fifty_thousand_frames_of_4096_taxels() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("touch.npz");
-    let start = Instant::now();
-    let writer = RecordingWriter::create(&path, array()).unwrap();
-    let peak = crate::counting::peak_bytes(|| stream(writer, 50_000));
-    let seconds = start.elapsed().as_secs_f64();
-    let bytes = fs::metadata(&path).unwrap().len();
-    println!(
-        "{seconds:.1} s, {:.0} MB/s, {:.1} MB of memory",
-        bytes as f64 * 1e-6 / seconds,
-        peak as f64 * 1e-6
-    );
-    let start = Instant::now();
-    let plain = folder.path().join("plain");
-    let mut file = fs::File::create(&plain).unwrap();
-    let block = vec![7_u8; 8 << 20];
-    for _ in 0..bytes / block.len() as u64 {
-        file.write_all(&block).unwrap();
-    }
-    file.sync_all().unwrap();
-    println!(
-        "{:.1} s for as many bytes and nothing else",
-        start.elapsed().as_secs_f64()
-    );
 }

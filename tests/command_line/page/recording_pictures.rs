@@ -173,7 +173,7 @@ fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
     for patch in [0, 1] {
         let playback = Playback {
             speed: 0.5,
-            fps: 10.0,
+            fps: 5.0,
         };
         let mut film = |models: &[(String, Model)]| {
             let what = (Quantity::Deflection, models);
@@ -186,7 +186,7 @@ fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
         let ball = SphereUnion::new(vec![Sphere { center, radius }]).unwrap();
         let shown = film(&[("ball".to_owned(), ball.into())]);
         let frames: Vec<usize> = shown.iter().map(|shown| shown.frame).collect();
-        assert_eq!(frames, [0, 5, 10, 15, 20, 25, 30, 35, 39]);
+        assert_eq!(frames, [0, 10, 20, 30, 39]);
         let (pictures, seconds) = played(&out);
         // 0.39 s at half the speed; the last frame is shown as long as the previous one.
         assert!((seconds - 0.78 - 0.08).abs() < 1e-9, "{seconds}");
@@ -219,7 +219,7 @@ fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
                 let right = rows.flat_map(|(_, row)| row[3 * left..].to_vec());
                 right.collect::<Vec<u8>>()
             };
-            assert_ne!(part(&pictures[0]), part(&pictures[8]));
+            assert_ne!(part(&pictures[0]), part(&pictures[4]));
         }
         let scale_of_stills = colour_scale(&mut file, patch, Quantity::Deflection);
         assert_eq!(scale_of_stills.unwrap(), scale);

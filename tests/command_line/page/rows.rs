@@ -35,9 +35,7 @@ fn a_classifier_without_c_has_its_point_beside_an_svm_over_c() {
     let svg = |spec| draw(spec, &made).unwrap().svg("");
     let all = svg(accuracy[0]);
     assert_eq!(places(accuracy[0], &made).unwrap().len(), 4);
-    for name in ["linear SVM", "k nearest", "0.1", "10"] {
-        assert!(all.contains(name), "{name}");
-    }
+    says(&all, &["linear SVM", "k nearest", "0.1", "10"]);
     assert_eq!(omitted(accuracy[0], &made).unwrap(), "");
     let over_c = accuracy.iter().find(|spec| spec.x == "c").unwrap();
     let said = svg(over_c);
