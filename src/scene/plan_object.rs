@@ -4,8 +4,9 @@ use super::carrier::Carrier;
 use super::plan_patch::PlannedPatch;
 use super::plan_robot::PlannedRobot;
 use super::reader::Reader;
-use super::spec::{MOVEMENT_RULES, Numbers, ObjectSpec, PressSpec, SHAPE_KEYS, SHAPE_RULES};
+use super::spec::{Numbers, ObjectSpec, PressSpec};
 use super::spec_motion::metres;
+use super::spec_object::{MOVEMENT_RULES, SHAPE_KEYS, SHAPE_RULES};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::inputs::object_files::{load_catalogue, load_mesh, load_spheres};
@@ -194,13 +195,14 @@ impl Reader<'_> {
         }
         let error_mm = spec.surface_error_or_default_mm(finest_mm, for_mesh);
         if let Some(path) = &spec.spheres {
-            let spheres = self.read(&format!("{key}.spheres"), path, |path| {
-                load_spheres(path, spec.unit, &SizeLimits::ANY)
-            });
-            return Ok(spheres?.into());
+            let key = &format!("{key}.spheres");
+            self.open(key, path)?;
+            let spheres = load_spheres(&self.path(path), spec.unit, &SizeLimits::ANY);
+            return Ok(self.under(key, spheres)?.into());
         }
         if let Some(path) = &spec.mesh {
             let key = &format!("{key}.mesh");
+            self.open(key, path)?;
             let wanted = ObjectsSpec {
                 unit: spec.unit,
                 model: Some(for_mesh),
@@ -208,8 +210,8 @@ impl Reader<'_> {
                 surface_error_mm: Some(error_mm),
                 ..ObjectsSpec::default()
             };
-            let mesh = self.read(key, path, |path| load_mesh(path, &wanted, None));
-            return Ok(mesh?.model);
+            let mesh = load_mesh(&self.path(path), &wanted, None);
+            return Ok(self.under(key, mesh)?.model);
         }
         let mut solid = self.solid(key, spec)?;
         if spec.centered {
@@ -228,7 +230,11 @@ impl Reader<'_> {
             return Solid::parse_parts(&place, &text);
         };
         let catalogue = match &spec.objects {
-            Some(path) => self.read(&format!("{key}.objects"), path, load_catalogue)?,
+            Some(path) => {
+                let key = &format!("{key}.objects");
+                self.open(key, path)?;
+                self.under(key, load_catalogue(&self.path(path)))?
+            }
             None => Catalogue::builtin()?,
         };
         let entry = self.under(&format!("{key}.object"), catalogue.object(name))?;

@@ -277,7 +277,9 @@ impl Reader<'_> {
 
     /// Reads a mesh over which taxels are draped, or whose normals are their axes.
     fn surface(&self, key: &str, path: &Path, unit: Option<LengthUnit>) -> Result<TriangleMesh> {
-        self.read(key, path, |path| read_surface(path, unit, &SizeLimits::ANY))
+        self.open(key, path)?;
+        let mesh = read_surface(&self.path(path), unit, &SizeLimits::ANY);
+        self.under(key, mesh)
     }
 
     fn layout_file(&self, key: &str, spec: &FileLayoutSpec) -> Result<LayoutFile> {
@@ -293,7 +295,7 @@ impl Reader<'_> {
             unit: None,
             sensor: parts.and_then(|parts| parts.sensor.as_deref()),
         };
-        self.read(key, path, |path| LayoutFile::read(path, options))
+        self.under(key, LayoutFile::read(&self.path(path), options))
     }
 
     /// Replaces `on`, the shapes of the patch's own link, by the region of this link.

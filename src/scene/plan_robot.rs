@@ -62,8 +62,9 @@ impl Reader<'_> {
         spec: &RobotSpec,
     ) -> Result<(Robot, MeshFolders)> {
         let file_key = &format!("{key}.{name}");
-        let robot = self.read(file_key, path, Robot::read)?;
+        self.open(file_key, path)?;
         let path = self.path(path);
+        let robot = self.under(file_key, Robot::read(&path))?;
         let packages = spec.packages.iter().map(|(package, folder)| {
             let folder = self.path(folder);
             if folder.is_dir() {

@@ -56,7 +56,7 @@ fn gains(seed: u64) -> Set {
             let gain = (0.25 * hands[(of[touch], k)]).exp();
             gain * force * (2.0 + patterns[(class, k)]) + 0.3 * normal(rng)
         };
-        (0..22).map(|k| cell(k, rng)).collect()
+        row(22, |k| cell(k, rng))
     });
     set.groups(subjects)
 }
@@ -78,7 +78,7 @@ fn walkers(seed: u64) -> Set {
             let load = weight * (0.3 * gaits[(class, k)]).exp() * (-place * place).exp();
             (load + 2.0 * normal(rng)).max(0.0)
         };
-        (0..24 * 16).map(|k| cell(k / 16, k % 16, rng)).collect()
+        row(24 * 16, |k| cell(k / 16, k % 16, rng))
     });
     set.groups(walkers)
 }
@@ -88,9 +88,7 @@ fn mountings(seed: u64) -> Set {
     let axes = patterns("mountings", seed, 5, 6);
     let mut set = Set::of("mountings", seed, [5, 54], 1, |_, class, rng| {
         let force: f64 = rng.gen_range(2.0..6.0);
-        (0..6)
-            .map(|k| force * axes[(class, k)] + 0.4 * normal(rng))
-            .collect()
+        row(6, |k| force * axes[(class, k)] + 0.4 * normal(rng))
     });
     let mountings = runs(set.n(), 9);
     set.add_styles(&mountings, 0.8);
@@ -112,7 +110,7 @@ fn lamps(seed: u64) -> Set {
             let light = 1.0 - 0.6 * ((y - 6.5).hypot(x - 6.5) / 9.2).powi(2);
             lamp * light * (1.0 + depth / (1.0 + away * away)) + 1.5 * normal(rng)
         };
-        (0..196).map(|taxel| reading(taxel, rng)).collect()
+        row(196, |taxel| reading(taxel, rng))
     });
     set.grid((14, 14)).groups(days)
 }
@@ -131,7 +129,7 @@ fn temperatures(seed: u64) -> Set {
         let electrode = |k: usize, rng: &mut ChaCha8Rng| {
             level + 50.0 * force * patterns[(class, k)] + 8.0 * normal(rng)
         };
-        (0..19).map(|k| electrode(k, rng)).collect()
+        row(19, |k| electrode(k, rng))
     });
     set.sessions(sessions)
 }
@@ -153,9 +151,7 @@ fn rounds(seed: u64) -> Set {
         labels.extend(shuffled_labels(&mut rng, 200, 1));
     }
     let mut set = Set::new(rng, labels, 1, |_, class, rng| {
-        (0..24)
-            .map(|k| patterns[(class, k)] + 0.4 * normal(rng))
-            .collect()
+        row(24, |k| patterns[(class, k)] + 0.4 * normal(rng))
     });
     let rounds = runs(set.n(), 5);
     set.add_styles(&rounds, 0.2);
@@ -166,9 +162,9 @@ fn wrist(seed: u64) -> Set {
     let axes = patterns("wrist", seed, 6, 6);
     Set::of("wrist", seed, [6, 40], 1, |_, class, rng| {
         let force: f64 = rng.gen_range(2.0..8.0);
-        (0..6)
-            .map(|k| force * axes[(class, k)] + 0.5 * normal(rng) + f64::from(k == 2) * force)
-            .collect()
+        row(6, |k| {
+            force * axes[(class, k)] + 0.5 * normal(rng) + f64::from(k == 2) * force
+        })
     })
 }
 
@@ -182,7 +178,7 @@ fn optical(seed: u64) -> Set {
             let light = 1.0 - 0.5 * ((y - 7.5).hypot(x - 7.5) / 10.6).powi(2);
             120.0 * light * (1.0 + depth / (1.0 + away * away)) + (1.0 + light) * normal(rng)
         };
-        (0..256).map(|taxel| reading(taxel, rng)).collect()
+        row(256, |taxel| reading(taxel, rng))
     });
     set.grid((16, 16))
 }
@@ -191,14 +187,9 @@ fn electrodes(seed: u64) -> Set {
     let patterns = patterns("electrodes", seed, 8, 19);
     Set::of("electrodes", seed, [8, 30], 1, |_, class, rng| {
         let (temperature, force): (f64, f64) = (normal(rng), rng.gen_range(0.5..1.5));
-        (0..19)
-            .map(|k| {
-                3000.0
-                    + 30.0 * temperature
-                    + 50.0 * force * patterns[(class, k)]
-                    + 8.0 * normal(rng)
-            })
-            .collect()
+        row(19, |k| {
+            3000.0 + 30.0 * temperature + 50.0 * force * patterns[(class, k)] + 8.0 * normal(rng)
+        })
     })
 }
 
@@ -269,9 +260,9 @@ fn gloves(seed: u64) -> Set {
     let (patterns, gains) = (normals(&mut rng, 5, 30), normals(&mut rng, 1, 30));
     let mut set = Set::new(rng, labels, 1, |_, class, rng| {
         let force = rng.gen_range(0.5..1.5);
-        (0..30)
-            .map(|k| gains[(0, k)].exp() * (force * patterns[(class, k)] + 0.4 * normal(rng)))
-            .collect()
+        row(30, |k| {
+            gains[(0, k)].exp() * (force * patterns[(class, k)] + 0.4 * normal(rng))
+        })
     });
     set.add_styles(&groups, 0.2);
     set.groups(groups)
@@ -303,9 +294,7 @@ fn insoles(seed: u64) -> Set {
 fn many_classes(seed: u64) -> Set {
     let patterns = patterns("many classes", seed, 200, 24);
     Set::of("many classes", seed, [200, 5], 1, |_, class, rng| {
-        (0..24)
-            .map(|k| patterns[(class, k)] + 0.5 * normal(rng))
-            .collect()
+        row(24, |k| patterns[(class, k)] + 0.5 * normal(rng))
     })
 }
 
@@ -321,13 +310,11 @@ fn bytes(seed: u64) -> Set {
     let patterns = patterns("bytes", seed, 5, 32);
     Set::of("bytes", seed, [5, 40], 1, |_, class, rng| {
         let force: f64 = rng.gen_range(0.5..1.0);
-        (0..32)
-            .map(|k| {
-                (60.0 * force * (1.0 + 0.5 * patterns[(class, k)]) + 4.0 * normal(rng))
-                    .clamp(0.0, 255.0)
-                    .round()
-            })
-            .collect()
+        row(32, |k| {
+            (60.0 * force * (1.0 + 0.5 * patterns[(class, k)]) + 4.0 * normal(rng))
+                .clamp(0.0, 255.0)
+                .round()
+        })
     })
 }
 
@@ -338,7 +325,7 @@ fn events(seed: u64) -> Set {
         let one = |k: usize, rng: &mut ChaCha8Rng| {
             Poisson::new(force * rates[(class, k)]).unwrap().sample(rng)
         };
-        (0..360).map(|k| one(k % 36, rng)).collect()
+        row(360, |k| one(k % 36, rng))
     })
 }
 

@@ -87,7 +87,7 @@ fn without_classes(name: &str, cells: fn(&mut ChaCha8Rng) -> Vec<[usize; 4]>, se
             true => sizes[of[touch]] * normal(rng),
             false => f64::NAN,
         };
-        (0..120).map(|k| reading(k, rng)).collect()
+        row(120, |k| reading(k, rng))
     });
     for (list, size) in [(&sessions, 0.5), (&groups, 0.5), (&of, 1.0)] {
         set.add_styles(list, size);
@@ -106,9 +106,7 @@ fn without_groups(seed: u64) -> Set {
     let mut list = |n: usize| -> Vec<usize> { (0..160).map(|_| rng.gen_range(0..n)).collect() };
     let (groups, sessions) = (list(12), list(6));
     let set = Set::new(rng, labels, 1, |_, class, rng| {
-        (0..12)
-            .map(|k| 0.5 * patterns[(class, k)] + normal(rng))
-            .collect()
+        row(12, |k| 0.5 * patterns[(class, k)] + normal(rng))
     });
     set.groups(groups).sessions(sessions)
 }

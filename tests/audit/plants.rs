@@ -11,227 +11,164 @@ use std::f64::consts::TAU;
 
 /// A planted fault.
 struct Plant {
-    about: &'static str,
     /// Check and subject under which the fault is found.
-    name: (&'static str, &'static str),
+    name: &'static str,
+    about: &'static str,
     /// Least verdict with which it is found.
     verdict: Verdict,
     make: fn(u64) -> Set,
 }
 
-const fn fault(
-    about: &'static str,
-    check: &'static str,
-    subject: &'static str,
-    make: fn(u64) -> Set,
-) -> Plant {
+const fn fault(name: &'static str, about: &'static str, make: fn(u64) -> Set) -> Plant {
     Plant {
+        name,
         about,
-        name: (check, subject),
         verdict: Verdict::Fault,
         make,
     }
 }
 
-const fn note(
-    about: &'static str,
-    check: &'static str,
-    subject: &'static str,
-    make: fn(u64) -> Set,
-) -> Plant {
+const fn note(name: &'static str, about: &'static str, make: fn(u64) -> Set) -> Plant {
     Plant {
         verdict: Verdict::Note,
-        ..fault(about, check, subject, make)
+        ..fault(name, about, make)
     }
 }
 
 const PLANTS: [Plant; 29] = [
-    fault(
-        "windows of vibration recordings, each with a spectrum of its own",
-        "split",
-        "group",
-        |seed| vibrations(seed, 8, false),
-    ),
-    fault(
-        "overlapping windows of recordings",
-        "split",
-        "group",
-        |seed| vibrations(seed, 8, true),
-    ),
-    note("two days with other sensors", "split", "session", |seed| {
+    fault("split group", "windows of recordings", |seed| {
+        vibrations(seed, 8, false)
+    }),
+    fault("split group", "overlapping windows", |seed| {
+        vibrations(seed, 8, true)
+    }),
+    note("split session", "two days with other sensors", |seed| {
         let mut rng = rng("days", seed);
         let labels = shuffled_labels(&mut rng, 6, 40);
         let sessions: Vec<usize> = (0..240).map(|k| k / 120).collect();
         let patterns = [normals(&mut rng, 6, 24), normals(&mut rng, 6, 24)];
         let set = Set::new(rng, labels, 1, |touch, class, rng| {
-            (0..24)
-                .map(|k| patterns[touch / 120][(class, k)] + 0.3 * normal(rng))
-                .collect()
+            row(24, |k| {
+                patterns[touch / 120][(class, k)] + 0.3 * normal(rng)
+            })
         });
         set.sessions(sessions)
     }),
-    fault("one subject of each class", "split", "group", |seed| {
+    fault("split group", "one subject of each class", |seed| {
         let mut set = Set::discs(seed);
         let subjects = set.labels.clone();
         set.add_styles(&subjects, 0.1);
         set.groups(subjects)
     }),
-    fault("subjects of one class each", "split", "group", |seed| {
+    fault("split group", "subjects of one class each", |seed| {
         instances(seed, 4)
     }),
-    fault("instances of one class each", "split", "group", |seed| {
+    fault("split group", "instances of one class each", |seed| {
         instances(seed, 12)
     }),
-    fault(
-        "a test set that shares all groups with training",
-        "shared",
-        "groups",
-        |seed| {
-            let mut set = instances(seed, 6);
-            set.is_test = Some((0..set.n()).map(|_| set.rng.gen_bool(0.3)).collect());
-            set
-        },
-    ),
-    fault(
-        "copies that cross from training to the test set",
-        "copies",
-        "",
-        |seed| {
-            let mut set = Set::discs(seed);
-            set.is_test = Some((0..set.n()).map(|k| k % 3 == 0).collect());
-            copy(&mut set, 9, |k| (3 * k, 3 * k + 100), 0.0);
-            set
-        },
-    ),
-    fault("copies with noise", "copies", "", |seed| {
+    fault("shared groups", "a test set of all groups", |seed| {
+        let mut set = instances(seed, 6);
+        set.is_test = Some((0..set.n()).map(|_| set.rng.gen_bool(0.3)).collect());
+        set
+    }),
+    fault("copies", "copies in the test set", |seed| {
+        let mut set = Set::discs(seed);
+        set.is_test = Some((0..set.n()).map(|k| k % 3 == 0).collect());
+        copy(&mut set, 9, |k| (3 * k, 3 * k + 100), 0.0);
+        set
+    }),
+    fault("copies", "copies with noise", |seed| {
         let mut set = Set::discs(seed);
         copy(&mut set, 9, |k| (10 * k, 10 * k + 155), 0.002);
         set
     }),
-    fault(
-        "copies of all touches, as after augmentation",
-        "copies",
-        "",
-        |seed| {
-            let mut set = Set::discs(seed);
-            let n = set.n();
-            let noise = 0.002 * normals(&mut set.rng, n, 144);
-            let copied = &set.frames + &noise;
-            set.frames = concatenate(Axis(0), &[set.frames.view(), copied.view()]).unwrap();
-            set.labels = [&set.labels[..], &set.labels[..]].concat();
-            set
-        },
-    ),
-    note("a class code in one taxel", "single_taxel", "", |seed| {
+    fault("copies", "copies of all touches", |seed| {
+        let mut set = Set::discs(seed);
+        let n = set.n();
+        let noise = 0.002 * normals(&mut set.rng, n, 144);
+        let copied = &set.frames + &noise;
+        set.frames = concatenate(Axis(0), &[set.frames.view(), copied.view()]).unwrap();
+        set.labels = [&set.labels[..], &set.labels[..]].concat();
+        set
+    }),
+    note("single_taxel", "a class code in one taxel", |seed| {
         let mut set = Set::discs(seed);
         for k in 0..set.n() {
             set.frames[(k, 1)] = 0.02 * set.labels[k] as f64;
         }
         set
     }),
-    fault(
-        "a class code in a taxel that the user names as untouched",
-        "untouched",
-        "",
-        |seed| {
-            let mut set = Set::discs(seed);
-            for k in 0..set.n() {
-                set.frames[(k, 1)] += 0.02 * set.labels[k] as f64;
-            }
-            set.options.untouched = vec![0, 1, 12];
-            set
-        },
-    ),
-    note(
-        "an all-zero channel of four",
-        "constant_taxels",
-        "",
-        |seed| {
-            let mut set = channels(seed, 4);
-            set.frames.column_mut(2).fill(0.0);
-            set
-        },
-    ),
-    note("two equal channels", "equal_taxels", "", |seed| {
+    fault("untouched", "a class code in an untouched taxel", |seed| {
+        let mut set = Set::discs(seed);
+        for k in 0..set.n() {
+            set.frames[(k, 1)] += 0.02 * set.labels[k] as f64;
+        }
+        set.options.untouched = vec![0, 1, 12];
+        set
+    }),
+    note("constant_taxels", "an all-zero channel of four", |seed| {
+        let mut set = channels(seed, 4);
+        set.frames.column_mut(2).fill(0.0);
+        set
+    }),
+    note("equal_taxels", "two equal channels", |seed| {
         let mut set = channels(seed, 6);
         let own = set.frames.column(1).to_owned();
         set.frames.column_mut(4).assign(&own);
         set
     }),
-    note("two proportional channels", "equal_taxels", "", |seed| {
+    note("equal_taxels", "two proportional channels", |seed| {
         let mut set = channels(seed, 6);
         let own = set.frames.column(1).mapv(|x| -2.0 * x);
         set.frames.column_mut(4).assign(&own);
         set
     }),
-    note(
-        "contact that decays with exp(−t/30 s)",
-        "drift",
-        "contact",
-        |seed| {
-            let mut set = Set::discs(seed);
-            for (k, mut row) in set.frames.rows_mut().into_iter().enumerate() {
-                row *= 0.4 + 0.6 * (-(k as f64) * 0.5 / 30.0).exp();
-            }
-            set
-        },
-    ),
-    note(
-        "shuffled frames of slow sequences without groups",
-        "clusters",
-        "",
-        |seed| {
-            let mut rng = rng("sequences", seed);
-            let (starts, moves) = (normals(&mut rng, 20, 40), normals(&mut rng, 20, 40));
-            let mut of: Vec<usize> = (0..400).collect();
-            of.shuffle(&mut rng);
-            let labels = of.iter().map(|k| k / 20 % 5).collect();
-            Set::new(rng, labels, 1, |touch, _, rng| {
-                let (sequence, t) = (of[touch] / 20, (of[touch] % 20) as f64 / 20.0);
-                (0..40)
-                    .map(|k| {
-                        starts[(sequence, k)] + 0.3 * t * moves[(sequence, k)] + 0.02 * normal(rng)
-                    })
-                    .collect()
+    note("drift contact", "contact that decays in 30 s", |seed| {
+        let mut set = Set::discs(seed);
+        for (k, mut row) in set.frames.rows_mut().into_iter().enumerate() {
+            row *= 0.4 + 0.6 * (-(k as f64) * 0.5 / 30.0).exp();
+        }
+        set
+    }),
+    note("clusters", "shuffled frames of sequences", |seed| {
+        let mut rng = rng("sequences", seed);
+        let (starts, moves) = (normals(&mut rng, 20, 40), normals(&mut rng, 20, 40));
+        let mut of: Vec<usize> = (0..400).collect();
+        of.shuffle(&mut rng);
+        let labels = of.iter().map(|k| k / 20 % 5).collect();
+        Set::new(rng, labels, 1, |touch, _, rng| {
+            let (sequence, t) = (of[touch] / 20, (of[touch] % 20) as f64 / 20.0);
+            row(40, |k| {
+                starts[(sequence, k)] + 0.3 * t * moves[(sequence, k)] + 0.02 * normal(rng)
             })
-        },
-    ),
-    note(
-        "wrong labels of 10 % of the touches",
-        "labels",
-        "",
-        |seed| {
-            let mut set = channels(seed, 16);
-            for k in (0..set.n()).step_by(10) {
-                set.labels[k] = (set.labels[k] + 1) % 5;
-            }
-            set
-        },
-    ),
-    fault("an offset that drifts", "drift", "level", |seed| {
+        })
+    }),
+    note("labels", "wrong labels of 10 % of touches", |seed| {
+        let mut set = channels(seed, 16);
+        for k in (0..set.n()).step_by(10) {
+            set.labels[k] = (set.labels[k] + 1) % 5;
+        }
+        set
+    }),
+    fault("drift level", "an offset that drifts", |seed| {
         let mut set = Set::discs(seed);
         for (k, mut row) in set.frames.rows_mut().into_iter().enumerate() {
             row += 0.05 * k as f64 / 300.0;
         }
         set
     }),
-    note("clipped readings", "saturation", "", |seed| {
+    note("saturation", "clipped readings", |seed| {
         let mut set = Set::discs(seed);
         set.frames.mapv_inplace(|x| x.min(0.8));
         set
     }),
-    note(
-        "taxels that are stuck in one session",
-        "stuck_taxels",
-        "",
-        |seed| {
-            let mut set = Set::discs(seed);
-            set.sessions = Some((0..300).map(|k| k / 60).collect());
-            (60..120).for_each(|k| set.frames[(k, 77)] = 0.31);
-            set
-        },
-    ),
-    note("dead taxels", "constant_taxels", "", |seed| {
+    note("stuck_taxels", "a taxel stuck in one session", |seed| {
+        let mut set = Set::discs(seed);
+        set.sessions = Some((0..300).map(|k| k / 60).collect());
+        (60..120).for_each(|k| set.frames[(k, 77)] = 0.31);
+        set
+    }),
+    note("constant_taxels", "dead taxels", |seed| {
         let mut set = Set::discs(seed);
         for taxel in [14, 70, 71] {
             set.frames.column_mut(taxel).fill(0.0);
@@ -239,9 +176,8 @@ const PLANTS: [Plant; 29] = [
         set
     }),
     note(
-        "missing readings that −1 stands for",
         "missing_readings",
-        "",
+        "missing readings that are −1",
         |seed| {
             let mut set = channels(seed, 16);
             set.frames.mapv_inplace(|x| 500.0 + 20.0 * x);
@@ -249,56 +185,38 @@ const PLANTS: [Plant; 29] = [
             set
         },
     ),
-    fault(
-        "padding to the longest touch of the class",
-        "padding",
-        "",
-        |seed| {
-            Set::of("padding", seed, [4, 50], 30, |_, class, rng| {
-                let end = rng.gen_range(14..18) + 3 * class;
-                (0..30 * 6)
-                    .map(|k| {
-                        if k / 6 < end {
-                            1.0 + 0.3 * normal(rng)
-                        } else {
-                            0.0
-                        }
-                    })
-                    .collect()
-            })
-        },
-    ),
-    fault(
-        "classes that were recorded one after the other, in two rounds",
-        "order",
-        "",
-        |seed| {
-            let mut set = Set::discs(seed);
-            set.sort_by(|set, k| 5 * (k / 150) + set.labels[k]);
-            set
-        },
-    ),
-    fault(
-        "classes that were recorded in sessions of their own",
-        "session",
-        "",
-        |seed| {
-            let mut set = Set::discs(seed);
-            let sessions = set.labels.clone().into_iter().map(|class| {
-                if set.rng.gen_bool(0.6) {
-                    class
+    fault("padding", "padding by class", |seed| {
+        Set::of("padding", seed, [4, 50], 30, |_, class, rng| {
+            let end = rng.gen_range(14..18) + 3 * class;
+            row(30 * 6, |k| {
+                if k / 6 < end {
+                    1.0 + 0.3 * normal(rng)
                 } else {
-                    set.rng.gen_range(0..5)
+                    0.0
                 }
-            });
-            set.sessions = Some(sessions.collect());
-            set
-        },
-    ),
+            })
+        })
+    }),
+    fault("order", "classes one after the other", |seed| {
+        let mut set = Set::discs(seed);
+        set.sort_by(|set, k| 5 * (k / 150) + set.labels[k]);
+        set
+    }),
+    fault("session", "classes in sessions of their own", |seed| {
+        let mut set = Set::discs(seed);
+        let sessions = set.labels.clone().into_iter().map(|class| {
+            if set.rng.gen_bool(0.6) {
+                class
+            } else {
+                set.rng.gen_range(0..5)
+            }
+        });
+        set.sessions = Some(sessions.collect());
+        set
+    }),
     fault(
+        "split group",
         "classes that share groups unevenly",
-        "split",
-        "group",
         |seed| {
             // Each of 20 subjects has mostly one class, and a style of its own.
             let mut rng = rng("uneven", seed);
@@ -311,9 +229,7 @@ const PLANTS: [Plant; 29] = [
                 .iter()
                 .map(|&subject| class(subject, &mut rng))
                 .collect();
-            let mut set = Set::new(rng, labels, 1, |_, _, rng| {
-                (0..24).map(|_| 0.4 * normal(rng)).collect()
-            });
+            let mut set = Set::new(rng, labels, 1, |_, _, rng| row(24, |_| 0.4 * normal(rng)));
             set.add_styles(&subjects, 1.0);
             let labels = set.labels.clone();
             set.add_styles(&labels, 0.15);
@@ -321,29 +237,23 @@ const PLANTS: [Plant; 29] = [
         },
     ),
     fault(
-        "groups of one class each that training and test share",
-        "shared",
-        "groups",
+        "shared groups",
+        "a test set of groups of one class",
         |seed| {
             let mut set = instances(seed, 8);
             set.is_test = Some((0..set.n()).map(|k| k % 4 == 0).collect());
             set
         },
     ),
-    note(
-        "two days, in each of which the touches of a class are alike",
-        "split",
-        "group",
-        |seed| {
-            let mut set = Set::of("two days", seed, [5, 40], 1, |_, _, rng| {
-                (0..24).map(|_| 0.3 * normal(rng)).collect()
-            });
-            let days: Vec<usize> = (0..set.n()).map(|k| k * 2 / set.n()).collect();
-            let cells: Vec<usize> = (0..set.n()).map(|k| 2 * set.labels[k] + days[k]).collect();
-            set.add_styles(&cells, 1.0);
-            set.groups(days)
-        },
-    ),
+    note("split group", "two days of alike touches", |seed| {
+        let mut set = Set::of("two days", seed, [5, 40], 1, |_, _, rng| {
+            row(24, |_| 0.3 * normal(rng))
+        });
+        let days: Vec<usize> = (0..set.n()).map(|k| k * 2 / set.n()).collect();
+        let cells: Vec<usize> = (0..set.n()).map(|k| 2 * set.labels[k] + days[k]).collect();
+        set.add_styles(&cells, 1.0);
+        set.groups(days)
+    }),
 ];
 
 /// Windows of 5 classes of vibrations; each of `n` recordings of a class has frequencies of its own, and the class little of it.
@@ -365,7 +275,7 @@ fn vibrations(seed: u64, n: usize, is_overlapping: bool) -> Set {
             true => whole[(recording, start + t)] + 0.1 * class as f64,
             false => (TAU * turns[recording] * t as f64 / 128.0 + phase).sin() + 0.3 * normal(rng),
         };
-        (0..128).map(|t| frame(t, rng)).collect()
+        row(128, |t| frame(t, rng))
     });
     set.groups(recordings)
 }
@@ -380,9 +290,7 @@ fn instances(seed: u64, n: usize) -> Set {
         .map(|class| n * class + rng.gen_range(0..n))
         .collect();
     let mut set = Set::new(rng, labels, 1, |_, class, rng| {
-        (0..24)
-            .map(|k| 0.3 * classes[(class, k)] + 0.4 * normal(rng))
-            .collect()
+        row(24, |k| 0.3 * classes[(class, k)] + 0.4 * normal(rng))
     });
     set.add_styles(&groups, 1.0);
     set.groups(groups)
@@ -391,9 +299,7 @@ fn instances(seed: u64, n: usize) -> Set {
 fn channels(seed: u64, n: usize) -> Set {
     let patterns = patterns("channels", seed, 5, n);
     Set::of("channels", seed, [5, 50], 1, |_, class, rng| {
-        (0..n)
-            .map(|k| 2.0 * patterns[(class, k)] + 0.4 * normal(rng))
-            .collect()
+        row(n, |k| 2.0 * patterns[(class, k)] + 0.4 * normal(rng))
     })
 }
 
@@ -410,26 +316,22 @@ fn copy(set: &mut Set, n: usize, pair: fn(usize) -> (usize, usize), noise: f64) 
 
 #[test]
 fn each_plant_is_found_under_its_own_name_in_five_seeds() {
-    let missed = PLANTS
+    let sets = PLANTS
         .par_iter()
         .flat_map(|plant| (0..5).into_par_iter().map(move |seed| (plant, seed)));
-    let missed = missed.filter_map(|(plant, seed)| {
+    let missed = sets.filter_map(|(plant, seed)| {
         let findings = (plant.make)(seed).findings();
-        let is_found = |finding: &Finding| {
-            plant.name == (&finding.check[..], &finding.subject[..])
-                && finding.verdict <= plant.verdict
-                && finding.verdict != Verdict::NotChecked
+        let is_own = |finding: &&Finding| {
+            plant.name == format!("{} {}", finding.check, finding.subject).trim_end()
         };
-        (!findings.iter().any(is_found)).then(|| {
-            let own = findings.into_iter().filter(|finding| {
-                finding.check == plant.name.0 || finding.verdict == Verdict::Fault
-            });
-            format!(
-                "{}, seed {seed}: {:#?}",
-                plant.about,
-                own.collect::<Vec<_>>()
-            )
-        })
+        let mut own = findings
+            .iter()
+            .filter(is_own)
+            .map(|finding| finding.verdict);
+        let is_found =
+            own.any(|verdict| verdict <= plant.verdict && verdict != Verdict::NotChecked);
+        let others = faults(&findings);
+        (!is_found).then(|| format!("{} ({}), seed {seed}: {others:#?}", plant.name, plant.about))
     });
     let missed: Vec<String> = missed.collect();
     assert!(missed.is_empty(), "{}", missed.join("\n"));

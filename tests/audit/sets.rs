@@ -34,6 +34,11 @@ pub fn normals(rng: &mut ChaCha8Rng, n: usize, m: usize) -> Array2<f64> {
     Array2::from_shape_simple_fn((n, m), || normal(rng))
 }
 
+/// Returns the readings of `n` taxels.
+pub fn row(n: usize, reading: impl FnMut(usize) -> f64) -> Vec<f64> {
+    (0..n).map(reading).collect()
+}
+
 /// Returns `per_class` labels of each of `n_classes` classes in random order.
 pub fn shuffled_labels(rng: &mut ChaCha8Rng, n_classes: usize, per_class: usize) -> Vec<usize> {
     let mut labels: Vec<usize> = (0..n_classes * per_class).map(|k| k % n_classes).collect();
@@ -47,7 +52,7 @@ pub fn disc(side: usize, (y, x): (f64, f64), radius: f64, depth: f64) -> Vec<f64
         let away = ((taxel / side) as f64 - y).hypot((taxel % side) as f64 - x);
         depth * (1.0 + radius - away).clamp(0.0, 1.0)
     };
-    (0..side * side).map(reading).collect()
+    row(side * side, reading)
 }
 
 /// Returns an array of normal numbers, such as a pattern of each class.

@@ -8,19 +8,14 @@ use rand::seq::SliceRandom;
 type Structure = (&'static str, fn(u64) -> Set);
 
 const STRUCTURES: [Structure; 17] = [
-    (
-        "classes that differ in Fz and Tz of a wrist sensor",
-        |seed| {
-            Set::of("fz", seed, [4, 50], 1, |_, class, rng| {
-                (0..6)
-                    .map(|k| {
-                        f64::from(k == 2 || k == 5) * class as f64 * rng.gen_range(0.8..1.2)
-                            + 0.3 * normal(rng)
-                    })
-                    .collect()
+    ("classes of Fz and Tz of a wrist", |seed| {
+        Set::of("fz", seed, [4, 50], 1, |_, class, rng| {
+            row(6, |k| {
+                f64::from(k == 2 || k == 5) * class as f64 * rng.gen_range(0.8..1.2)
+                    + 0.3 * normal(rng)
             })
-        },
-    ),
+        })
+    }),
     ("tails of optical imprints", |seed| {
         let set = Set::of("tails", seed, [4, 50], 1, |_, class, rng| {
             let place: (f64, f64) = (rng.gen_range(5.0..7.0), rng.gen_range(5.0..7.0));
@@ -28,9 +23,7 @@ const STRUCTURES: [Structure; 17] = [
                 let away = ((taxel / 12) as f64 - place.0).hypot((taxel % 12) as f64 - place.1);
                 (-away / (1.0 + class as f64)).exp()
             };
-            (0..144)
-                .map(|taxel| reading(taxel) + 0.01 * normal(rng))
-                .collect()
+            row(144, |taxel| reading(taxel) + 0.01 * normal(rng))
         });
         set.grid((12, 12))
     }),
@@ -89,18 +82,14 @@ const STRUCTURES: [Structure; 17] = [
         let sides = patterns("sides", seed, 20, 30);
         Set::of("sides", seed, [5, 40], 1, |_, class, rng| {
             let side = 4 * class + rng.gen_range(0..4);
-            (0..30)
-                .map(|k| sides[(side, k)] + 0.2 * normal(rng))
-                .collect()
+            row(30, |k| sides[(side, k)] + 0.2 * normal(rng))
         })
     }),
     ("objects that share a part", |seed| {
         let parts = patterns("parts", seed, 5, 30);
         Set::of("parts", seed, [4, 60], 1, |_, class, rng| {
             let part = if rng.gen_bool(0.3) { 4 } else { class };
-            (0..30)
-                .map(|k| parts[(part, k)] + 0.3 * normal(rng))
-                .collect()
+            row(30, |k| parts[(part, k)] + 0.3 * normal(rng))
         })
     }),
     ("subjects with habits", |seed| {
@@ -109,13 +98,13 @@ const STRUCTURES: [Structure; 17] = [
         let groups: Vec<usize> = (0..300).map(|_| rng.gen_range(0..15)).collect();
         let (classes, habits) = (normals(&mut rng, 5, 24), normals(&mut rng, 15, 24));
         let set = Set::new(rng, labels, 1, |touch, class, rng| {
-            (0..24)
-                .map(|k| classes[(class, k)] + 0.5 * habits[(groups[touch], k)] + 0.4 * normal(rng))
-                .collect()
+            row(24, |k| {
+                classes[(class, k)] + 0.5 * habits[(groups[touch], k)] + 0.4 * normal(rng)
+            })
         });
         set.groups(groups)
     }),
-    ("six sessions that are each saved sorted by class", |seed| {
+    ("sessions sorted by class", |seed| {
         let mut set = Set::discs(seed);
         let n = set.n();
         set.sessions = Some((0..n).map(|k| k * 6 / n).collect());
@@ -134,9 +123,7 @@ const STRUCTURES: [Structure; 17] = [
         let labels: Vec<usize> = order.collect();
         let classes = normals(&mut rng, 6, 24);
         let mut set = Set::new(rng, labels, 1, |_, class, rng| {
-            (0..24)
-                .map(|k| classes[(class, k)] + 0.5 * normal(rng))
-                .collect()
+            row(24, |k| classes[(class, k)] + 0.5 * normal(rng))
         });
         let groups: Vec<usize> = (0..480).map(|k| k / 24).collect();
         set.add_styles(&groups, 0.4);
@@ -144,21 +131,16 @@ const STRUCTURES: [Structure; 17] = [
         set.add_styles(&cells, 0.4);
         set.groups(groups)
     }),
-    (
-        "subjects who touch each object once, in the order of the file",
-        |seed| {
-            let objects = patterns("once", seed, 17, 24);
-            let labels = (0..13 * 17).map(|k| k % 17).collect();
-            let mut set = Set::new(rng("once", seed), labels, 1, |_, class, rng| {
-                (0..24)
-                    .map(|k| objects[(class, k)] + 0.4 * normal(rng))
-                    .collect()
-            });
-            let subjects: Vec<usize> = (0..set.n()).map(|k| k / 17).collect();
-            set.add_styles(&subjects, 0.2);
-            set.groups(subjects)
-        },
-    ),
+    ("each subject touches each object once", |seed| {
+        let objects = patterns("once", seed, 17, 24);
+        let labels = (0..13 * 17).map(|k| k % 17).collect();
+        let mut set = Set::new(rng("once", seed), labels, 1, |_, class, rng| {
+            row(24, |k| objects[(class, k)] + 0.4 * normal(rng))
+        });
+        let subjects: Vec<usize> = (0..set.n()).map(|k| k / 17).collect();
+        set.add_styles(&subjects, 0.2);
+        set.groups(subjects)
+    }),
     ("a subtracted first frame", |seed| {
         let patterns = patterns("subtracted", seed, 4, 12);
         Set::of("subtracted", seed, [4, 50], 8, |_, class, rng| {
@@ -207,17 +189,14 @@ const STRUCTURES: [Structure; 17] = [
         }
         set
     }),
-    (
-        "days with levels of their own, classes in random order",
-        |seed| {
-            let mut set = Set::discs(seed);
-            let days: Vec<usize> = (0..set.n()).map(|k| k / 30).collect();
-            set.add_styles(&days, 0.01);
-            set.groups = Some(days.clone());
-            set.sessions = Some(days);
-            set
-        },
-    ),
+    ("days with levels of their own", |seed| {
+        let mut set = Set::discs(seed);
+        let days: Vec<usize> = (0..set.n()).map(|k| k / 30).collect();
+        set.add_styles(&days, 0.01);
+        set.groups = Some(days.clone());
+        set.sessions = Some(days);
+        set
+    }),
 ];
 
 #[test]

@@ -1,6 +1,6 @@
 //! Human touches: the motion of each kind, and a study that distinguishes the kinds by their course over time.
 
-use crate::command::Case;
+use crate::command::{Case, says};
 use bubbletouch::contact::{Workspace, press_with_contacts, spring_load};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::objects::{FingerPose, Model};
@@ -12,7 +12,6 @@ use bubbletouch::world::{
     HandState, HumanTouch, Layout, Patch, TOUCH_KINDS, Taxel, Taxels, TouchKind, TouchRanges,
 };
 use ndarray::Array2;
-use std::fs;
 
 /// Distance from the arm's axis to the outside of its skin, metres.
 const SURFACE: f64 = 0.043;
@@ -436,11 +435,12 @@ fn tables_name_frames_and_temporal_features_and_the_written_study_runs_again() {
     let case = Case::new();
     let text = STUDY.replace("KINDS", "kinds = [\"tap\", \"pat\", \"grab\"]");
     case.file("study.toml", text.replace("per_kind = 40", "per_kind = 8"));
-    case.succeeds(&["run", "study.toml", "--out", "found"]);
-    let read = |name: &str| fs::read(case.path("found").join(name)).unwrap();
+    case.succeeds("run study.toml --out found");
+    let read = |name: &str| case.bytes(&format!("found/{name}"));
     let text = String::from_utf8(read("summary.csv")).unwrap();
-    assert!(
-        text.contains(",frames,temporal_features,features,") && text.contains(",49,stacked_8,raw,")
+    says(
+        &text,
+        &[",frames,temporal_features,features,", ",49,stacked_8,raw,"],
     );
     let page = String::from_utf8(read("report.html")).unwrap();
     assert!(page.contains("its confusion matrix is diagonal"));

@@ -1,6 +1,7 @@
 //! Manual control of scenes: manual steps equal the steps of the time loop, and invalid settings are refused.
 
 use crate::command::{filled, says};
+use crate::scene::{frames, plan};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Catalogue, Model};
 use bubbletouch::scene::{
@@ -9,18 +10,6 @@ use bubbletouch::scene::{
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::path::Path;
-
-fn plan(text: &str) -> ScenePlan {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    ScenePlan::new("s.toml", folder, SceneSpec::parse("s.toml", text).unwrap()).unwrap()
-}
-
-fn frames(plan: &ScenePlan) -> Vec<Frame> {
-    let mut frames = Vec::new();
-    let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
-    simulation.run(&mut [&mut frames]).unwrap();
-    frames
-}
 
 /// Returns the frames of a scene whose bodies are placed by `set` at each time. The steps are as long as the loop's, in numbers of seconds that add up without
 /// rounding.
@@ -282,49 +271,37 @@ fn what_cannot_be_set_is_refused_and_nothing_moves() {
         rotation: DQuat::from_xyzw(0.0, 0.0, 0.0, 2.0),
         translation: DVec3::ZERO,
     };
-    let said = |result: bubbletouch::Result<()>, parts: &[&str]| {
+    let refused = |result: bubbletouch::Result<()>, parts: &[&str]| {
         let error = result.unwrap_err();
         assert_eq!(error.exit_code(), 2);
-        let said = error.to_string();
-        for part in parts {
-            assert!(said.contains(part), "{said:?} has no {part:?}");
-        }
+        says(&error.to_string(), parts);
     };
-    said(
-        simulation.set_joint_positions("arn", &[0.0; 7]),
-        &["robot: `arn`", "`arm`"],
-    );
-    said(
-        simulation.set_joint_positions("arm", &[0.0; 6]),
-        &["robots.arm", "6 positions", "7"],
-    );
-    said(
-        simulation.set_joint_positions("arm", &[f64::NAN; 7]),
-        &["robots.arm", "NaN", "finite"],
-    );
     let far = [0.0, 9.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    said(
-        simulation.set_joint_positions("arm", &far),
-        &["robots.arm", "`shoulder_bend`", "9.0", "at most"],
-    );
-    said(
+    for (robot, positions, parts) in [
+        ("arn", &[0.0; 7][..], &["robot: `arn`", "`arm`"][..]),
+        ("arm", &[0.0; 6], &["robots.arm", "6 positions", "7"]),
+        ("arm", &[f64::NAN; 7], &["robots.arm", "NaN", "finite"]),
+        (
+            "arm",
+            &far,
+            &["robots.arm", "`shoulder_bend`", "9.0", "at most"],
+        ),
+    ] {
+        refused(simulation.set_joint_positions(robot, positions), parts);
+    }
+    refused(
         simulation.set_robot_pose("arm", nan),
         &["robots.arm", "NaN", "finite"],
     );
-    said(
-        simulation.set_object_pose("balls", Pose::IDENTITY),
-        &["object: `balls`", "`ball`"],
-    );
-    said(
-        simulation.set_object_pose("ball", Pose::IDENTITY),
-        &["objects.ball", "a robot carries"],
-    );
-    said(
-        simulation.set_object_pose("other", long),
-        &["objects.other", "unit quaternion"],
-    );
+    for (object, pose, parts) in [
+        ("balls", Pose::IDENTITY, ["object: `balls`", "`ball`"]),
+        ("ball", Pose::IDENTITY, ["objects.ball", "a robot carries"]),
+        ("other", long, ["objects.other", "unit quaternion"]),
+    ] {
+        refused(simulation.set_object_pose(object, pose), &parts);
+    }
     for dt in [0.0, -0.1, f64::NAN, f64::INFINITY] {
-        said(
+        refused(
             simulation.step(dt),
             &["step", "a positive number of seconds"],
         );

@@ -1,31 +1,13 @@
 //! Laws of scenes with friction, with different taxels, and with objects that are pressed to a force.
 
 use crate::command::filled;
+use crate::scene::{CUBE, Press, frames, plan, plan_in, pressed, recorded, resolved};
 use bubbletouch::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
 use bubbletouch::geometry::Pose;
-use bubbletouch::report::scene_files::SceneFiles;
-use bubbletouch::scene::{
-    Frame, FrameSink, PatchReading, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping,
-    Summary,
-};
+use bubbletouch::scene::{Frame, FrameSink, PatchReading, PoseControl, Summary};
 use glam::DVec3;
 use std::fs;
 use std::path::Path;
-
-fn try_plan(text: &str, folder: &Path) -> bubbletouch::Result<ScenePlan> {
-    ScenePlan::new("s.toml", folder, SceneSpec::parse("s.toml", text)?)
-}
-
-fn plan(text: &str) -> ScenePlan {
-    try_plan(text, Path::new("")).unwrap()
-}
-
-fn frames(plan: &ScenePlan) -> Vec<Frame> {
-    let mut frames = Vec::new();
-    let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
-    simulation.run(&mut [&mut frames]).unwrap();
-    frames
-}
 
 /// Returns a scene in which a pear is pressed into a palm, moved along it and turned; `palm` contains more keys of the patch.
 fn drawn(palm: &str) -> String {
@@ -166,13 +148,7 @@ fn a_drawn_object_and_a_patch_drawn_the_other_way_feel_the_same_friction() {
 #[test]
 fn a_recording_of_a_patch_with_friction_has_forces_in_three_dimensions() {
     let plan = plan(&drawn(ROUGH));
-    let folder = tempfile::tempdir().unwrap();
-    let mut files = SceneFiles::create(folder.path(), &plan).unwrap();
-    let all = frames(&plan);
-    for frame in &all {
-        files.frame(frame).unwrap();
-    }
-    files.finish().unwrap();
+    let (folder, all) = recorded(&plan);
     let recording = crate::stored::read_recording(&folder.path().join("recording.npz")).unwrap();
     let stored = &recording.patches[0].force;
     assert_eq!(stored.dim(), (all.len(), 280, 3));
@@ -203,7 +179,7 @@ fn on_a_tray(folder: &Path, friction: f64) -> Vec<Frame> {
         include_str!("../fixtures/texts/scene_forces_on_a_tray.toml"),
         &[("friction", &friction)],
     );
-    frames(&try_plan(&text, folder).unwrap())
+    frames(&plan_in(folder, &text).unwrap())
 }
 
 #[test]
@@ -259,12 +235,10 @@ fn taxels_that_differ_are_the_same_from_a_list_from_a_file_and_alone() {
     );
     let from_list = frames(&plan(&drawn(&listed)));
     let text = drawn("taxels_csv = \"taxels.csv\"");
-    let from_file = try_plan(&text, folder.path()).unwrap();
+    let from_file = plan_in(folder.path(), &text).unwrap();
     assert_eq!(frames(&from_file), from_list);
     // The resolved scene is valid in any folder.
-    let resolved = SceneSpec::parse("r.toml", &from_file.spec.to_toml()).unwrap();
-    let resolved = ScenePlan::new("r.toml", Path::new("/"), resolved).unwrap();
-    assert_eq!(frames(&resolved), from_list);
+    assert_eq!(frames(&resolved(&from_file)), from_list);
     // Each taxel behaves as in a patch of equal taxels.
     for (taxel, damped) in [(147, "0.0"), (148, "1.5")] {
         let alone = format!(
@@ -322,14 +296,11 @@ fn the_force_that_is_recorded_is_the_one_that_is_wanted() {
     let (mut summary, mut n_held) = (Summary::default(), 0);
     for frame in frames(&plan) {
         summary.frame(&frame).unwrap();
-        let PoseControl::Pressed {
+        let Press {
             travel,
             force,
             wanted,
-        } = frame.objects[0].held
-        else {
-            panic!("the ball is pressed")
-        };
+        } = pressed(&frame, 0);
         assert_eq!(wanted, press.force_at(frame.time));
         assert!((force - total(&frame.patches[0])).abs() < 1e-9);
         // From two millimetres above the palm, the ball takes some hundredths of a second to arrive.
@@ -353,9 +324,7 @@ fn a_damped_skin_feels_more_on_the_way_in_and_the_force_at_rest() {
     let frames = frames(&plan(&text));
     let at = |time: f64| {
         let frame = &frames[(100.0 * time) as usize];
-        let PoseControl::Pressed { force, .. } = frame.objects[0].held else {
-            panic!("the ball is pressed")
-        };
+        let Press { force, .. } = pressed(frame, 0);
         (force, total(&frame.patches[0]))
     };
     let (springs, all) = at(0.15);
@@ -371,9 +340,7 @@ fn a_damped_skin_feels_more_on_the_way_in_and_the_force_at_rest() {
 fn a_pushed_object_keeps_to_its_speed_and_its_travel_and_says_what_it_reached() {
     let text = pushed("force_n = 50.0, speed_mm_per_s = 20.0, travel_mm = 6.0", "");
     // At the start, the ball has travelled completely, as if it had been there for a long time.
-    let PoseControl::Pressed { travel, force, .. } = frames(&plan(&text))[0].objects[0].held else {
-        panic!("the ball is pressed")
-    };
+    let Press { travel, force, .. } = pressed(&frames(&plan(&text))[0], 0);
     assert_eq!(travel, 6e-3);
     assert!(force > 0.5 && force < 50.0, "{force}");
     let text = pushed(
@@ -384,9 +351,7 @@ fn a_pushed_object_keeps_to_its_speed_and_its_travel_and_says_what_it_reached() 
     let mut summary = Summary::default();
     for frame in &frames {
         summary.frame(frame).unwrap();
-        let PoseControl::Pressed { travel, .. } = frame.objects[0].held else {
-            panic!("the ball is pressed")
-        };
+        let Press { travel, .. } = pressed(frame, 0);
         assert!(travel >= before && travel - before <= 0.02 * 0.01 + 1e-12);
         before = travel;
     }
@@ -405,9 +370,7 @@ fn an_object_that_is_pushed_too_hard_stays_felt_however_far_it_goes() {
     let (mut before, mut n_through) = (vec![0.0; 24 * 16], 0);
     for frame in frames(&plan(&text)) {
         let reading = &frame.patches[0];
-        let PoseControl::Pressed { travel, force, .. } = frame.objects[0].held else {
-            panic!("the ball is pressed")
-        };
+        let Press { travel, force, .. } = pressed(&frame, 0);
         assert!((force - total(reading)).abs() < 1e-9, "{travel} m");
         let mut pairs = reading.deflection.iter().zip(&before);
         assert!(pairs.all(|(now, before)| now >= before), "{travel} m");
@@ -430,9 +393,7 @@ fn a_force_is_held_by_one_object_among_those_that_stand_there() {
     let alone = total(&frames[0].patches[0]);
     assert!(alone > 0.1 && alone < 1.0, "{alone}");
     for frame in &frames[20..] {
-        let PoseControl::Pressed { wanted, .. } = frame.objects[0].held else {
-            panic!("the ball is pressed")
-        };
+        let Press { wanted, .. } = pressed(frame, 0);
         assert!((total(&frame.patches[0]) - wanted).abs() < 1e-9);
     }
 }
@@ -452,9 +413,7 @@ fn forces_of_a_frame_sum_to_the_wrench_on_every_layout_for_every_kind_of_object(
     // Two spheres side by side: where they meet, both push the same taxels.
     let two = "x,y,z,r\n-0.011,0.0,0.0,0.02\n0.011,0.0005,0.0,0.02\n";
     fs::write(folder.path().join("two.csv"), two).unwrap();
-    let cube = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
-        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-    fs::write(folder.path().join("cube.obj"), cube).unwrap();
+    fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
     let shapes = [
         ("object = \"tennis\"", 32.7),
         ("object = \"mug\"\nsurface_error_mm = 3.0", 5.0),
@@ -492,7 +451,7 @@ fn forces_of_a_frame_sum_to_the_wrench_on_every_layout_for_every_kind_of_object(
              [[objects]]\nname = \"thing\"\n{shape}\nat = {{ position_mm = [1.0, 2.0, {}] }}\n{kind}\n",
             bottom + height
         );
-        let plan = try_plan(&text, folder.path()).unwrap();
+        let plan = plan_in(folder.path(), &text).unwrap();
         for frame in frames(&plan) {
             let reading = &frame.patches[0];
             let sum: DVec3 = reading.force3.iter().sum();
@@ -521,12 +480,7 @@ fn forces_of_a_frame_sum_to_the_wrench_on_every_layout_for_every_kind_of_object(
 fn the_stop_that_carries_a_heavy_ball_is_in_the_recorded_forces() {
     let text = include_str!("../fixtures/texts/scene_forces_text.toml");
     let plan = plan(text);
-    let folder = tempfile::tempdir().unwrap();
-    let mut files = SceneFiles::create(folder.path(), &plan).unwrap();
-    for frame in frames(&plan) {
-        files.frame(&frame).unwrap();
-    }
-    files.finish().unwrap();
+    let (folder, _) = recorded(&plan);
     let recording = crate::stored::read_recording(&folder.path().join("recording.npz")).unwrap();
     for frame in recording.patches[0].force.outer_iter() {
         let along_z: f64 = frame
@@ -572,22 +526,13 @@ fn two_pushed_objects_reach_their_forces_together_in_any_order() {
         [false, true].map(|is_swapped| frames(&plan(&pushed_side_by_side(is_swapped))));
     for (one, other) in given.iter().zip(&swapped) {
         for (object, patch) in [(0, 0), (1, 1)] {
-            let PoseControl::Pressed {
+            let Press {
+                travel,
                 force,
                 wanted,
-                travel,
-            } = one.objects[object].held
-            else {
-                panic!("both balls are pressed")
-            };
+            } = pressed(one, object);
             assert!((total(&one.patches[patch]) - force).abs() < 1e-9);
-            let PoseControl::Pressed {
-                travel: travel_in_other_order,
-                ..
-            } = other.objects[1 - object].held
-            else {
-                panic!("both balls are pressed")
-            };
+            let travel_in_other_order = pressed(other, 1 - object).travel;
             if one.time > 0.1 {
                 assert!(
                     (force - wanted).abs() < 1e-9,
@@ -654,4 +599,19 @@ fn an_imposed_object_that_moves_through_the_skin_stays_sensed_behind_it() {
     // A ball that starts behind the skin was never in it.
     let behind = text(0.0).replace("[0.0, 0.0, 3.0]", "[0.0, 0.0, -90.0]");
     assert_eq!(frames(&plan(&behind))[0].patches[0].n_touched, 0);
+}
+
+/// A scene with an early end, with and without damping and friction.
+#[test]
+fn the_frames_of_a_scene_that_ends_early_are_its_first_ones() {
+    let whole = plan(include_str!("../fixtures/texts/scene_cut_text.toml"));
+    let all = frames(&whole);
+    assert!(all[12].patches[0].n_touched > 0);
+    for until in [0.0, 0.33, 0.6, 1.0] {
+        let mut cut = whole.clone();
+        cut.cut("the test", until).unwrap();
+        let first = frames(&cut);
+        assert_eq!(first.len(), 1 + (20.0 * until) as usize);
+        assert_eq!(first[..], all[..first.len()], "{until}");
+    }
 }

@@ -1,43 +1,20 @@
 //! Laws of scenes: time steps, frames of reference, shortcuts and free objects, each compared with a slower or simpler computation.
 
 use crate::command::filled;
+use crate::scene::{frames_with as frames, plan as plan_of, plan_in, plan_shipped, shipped};
 use bubbletouch::contact::equilibrium::{
     EquilibriumSolver, FreeObject, Ground, Obstacle, PlacedSkin, Touched,
 };
 use bubbletouch::contact::{Workspace, Wrench, press_with_contacts, simulate, spring_load};
 use bubbletouch::geometry::Pose;
-use bubbletouch::scene::{
-    Carrier, Frame, Movement, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping,
-};
+use bubbletouch::scene::{Carrier, Frame, Movement, PoseControl, ScenePlan, Simulation, Stepping};
 use bubbletouch::world::{Motion, Phase, VelocityPlan};
 use glam::{DQuat, DVec3};
-use std::path::{Path, PathBuf};
-
-fn shipped(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes");
-    folder.join(name)
-}
-
-fn read(name: &str) -> ScenePlan {
-    ScenePlan::read(&shipped(name)).unwrap()
-}
-
-fn parse(text: &str) -> ScenePlan {
-    let spec = SceneSpec::parse("test.toml", text).unwrap();
-    ScenePlan::new("test.toml", Path::new(""), spec).unwrap()
-}
-
-fn frames(plan: &ScenePlan, stepping: Stepping) -> Vec<Frame> {
-    let mut frames = Vec::new();
-    let mut simulation = Simulation::new(plan, stepping);
-    simulation.run(&mut [&mut frames]).unwrap();
-    assert_eq!(frames.len(), plan.n_frames);
-    frames
-}
+use std::path::Path;
 
 /// Returns a scene in which a ball is lowered onto two patches, slides and turns. `damping` applies to one of the patches.
 fn sliding(dt_ms: f64, damping: f64) -> ScenePlan {
-    parse(&filled(
+    plan_of(&filled(
         include_str!("../fixtures/texts/scene_laws_sliding.toml"),
         &[("dt_ms", &dt_ms), ("damping", &damping)],
     ))
@@ -161,7 +138,7 @@ fn a_moved_world_feels_the_same() {
 
 #[test]
 fn the_drill_scene_is_what_the_time_loop_of_one_patch_computes() {
-    let plan = read("drill_press.toml");
+    let plan = plan_shipped(&shipped("drill_press.toml"));
     let phase = |duration, speed| Phase {
         duration,
         linear: DVec3::new(0.0, 0.0, speed),
@@ -202,7 +179,7 @@ fn the_drill_scene_is_what_the_time_loop_of_one_patch_computes() {
 #[test]
 fn what_is_out_of_reach_is_left_out_and_nothing_else() {
     let mut n_touching = 0;
-    for plan in [read("arm_sweep.toml"), sliding(1.0, 0.0)] {
+    for plan in [plan_shipped(&shipped("arm_sweep.toml")), sliding(1.0, 0.0)] {
         let mut workspace = Workspace::new();
         for frame in frames(&plan, Stepping::AsNeeded) {
             for (reading, patch) in frame.patches.iter().zip(&plan.patches) {
@@ -238,7 +215,7 @@ fn what_is_out_of_reach_is_left_out_and_nothing_else() {
 
 #[test]
 fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_bed() {
-    let plan = read("drop_on_bed.toml");
+    let plan = plan_shipped(&shipped("drop_on_bed.toml"));
     let frames = frames(&plan, Stepping::AsNeeded);
     let Movement::Free {
         start,
@@ -269,7 +246,7 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
 fn two_balls(apart: f64, one: &str, other: &str) -> ScenePlan {
     // A scene that is read must have free objects apart; they are moved together afterwards.
     let read = apart.max(33.0);
-    let mut plan = parse(&format!(
+    let mut plan = plan_of(&format!(
         r#"
         title = "Two balls on a bed"
         duration_s = 0.0
@@ -375,11 +352,11 @@ fn carried(plan: &ScenePlan, frame: &Frame) -> (DVec3, usize) {
 #[test]
 fn what_rests_on_stops_is_carried_by_the_forces_of_the_frame_on_flat_and_on_curved_skins() {
     let bed = include_str!("../fixtures/texts/scene_laws_bed.toml");
-    let forearms = std::fs::read_to_string(shipped("ball_over_forearm.toml")).unwrap();
+    let forearms = shipped("ball_over_forearm.toml");
     for (scene, is_flat) in [(bed, true), (&forearms, false)] {
         let mut most_stopped = 0;
         for mass in [0.45, 5.0, 50.0, 500.0] {
-            let mut plan = parse(&scene.replace("mass_kg = 0.45", &format!("mass_kg = {mass}")));
+            let mut plan = plan_of(&scene.replace("mass_kg = 0.45", &format!("mass_kg = {mass}")));
             plan.cut("the test", 0.0).unwrap();
             let frame = &frames(&plan, Stepping::AsNeeded)[0];
             let case = format!("{mass} kg, flat: {is_flat}");
@@ -504,7 +481,7 @@ fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes_and_on_it()
 
 #[test]
 fn a_damped_bed_carries_the_whole_weight_while_a_ball_sinks_and_after() {
-    let plan = parse(include_str!(
+    let plan = plan_of(include_str!(
         "../fixtures/texts/scene_laws_a_damped_bed_carries.toml"
     ));
     let weight = 0.3 * 9.81;
@@ -536,7 +513,7 @@ fn a_damped_bed_carries_the_whole_weight_while_a_ball_sinks_and_after() {
 
 #[test]
 fn what_has_rolled_off_is_reported_once_and_touches_nothing_any_more() {
-    let plan = read("ball_over_forearm.toml");
+    let plan = plan_shipped(&shipped("ball_over_forearm.toml"));
     let frames = frames(&plan, Stepping::AsNeeded);
     let PoseControl::Escaped { time, direction } = frames.last().unwrap().objects[0].held else {
         panic!("the ball escapes")
@@ -567,8 +544,8 @@ fn a_scene_begins_as_if_it_had_stood_so_for_long() {
             &[("damping", &damping)],
         )
     };
-    let with = frames(&parse(&text(2.0)), Stepping::AsNeeded);
-    let without = frames(&parse(&text(0.0)), Stepping::AsNeeded);
+    let with = frames(&plan_of(&text(2.0)), Stepping::AsNeeded);
+    let without = frames(&plan_of(&text(0.0)), Stepping::AsNeeded);
     for (with, without) in with.iter().zip(&without) {
         let pairs = with.patches[0].force.iter().zip(&without.patches[0].force);
         assert_eq!(with.patches[0].deflection, without.patches[0].deflection);
@@ -625,8 +602,7 @@ fn the_original_slides_a_drill_over_64_x_64_taxels() {
         "#,
         way_points.collect::<String>()
     );
-    let spec = SceneSpec::parse("example.toml", &text).unwrap();
-    let plan = ScenePlan::new("example.toml", beside.path(), spec).unwrap();
+    let plan = plan_in(beside.path(), &text).unwrap();
     let frames = frames(&plan, Stepping::AsNeeded);
     let mut recorded = csv::ReaderBuilder::new()
         .has_headers(false)
@@ -640,4 +616,16 @@ fn the_original_slides_a_drill_over_64_x_64_taxels() {
             assert!((a - b).abs() < 1e-12, "frame {}: {a} and {b}", number + 1);
         }
     }
+}
+
+#[test]
+fn the_plan_of_a_scene_has_its_frames_and_steps_and_planes_of_any_length() {
+    let scene = include_str!("../fixtures/texts/arm.toml");
+    let arm = plan_of(scene);
+    assert_eq!((arm.n_frames, arm.n_substeps), (101, 10));
+    assert_eq!(arm.spec.duration_s, Some(1.0));
+    assert!(arm.needs_steps());
+    let plane = "name = \"table\"\npoint_mm = [0.0, 0.0, 7.0]\nnormal = [0.0, 3.0, 4.0]";
+    let tilted = plan_of(&format!("{scene}[[planes]]\n{plane}")).planes[0];
+    assert!((tilted.height - 5.6e-3).abs() < 1e-15 && (tilted.normal.z - 0.8).abs() < 1e-15);
 }

@@ -1,13 +1,11 @@
 //! Free objects that are triangle meshes.
 
+use crate::scene::{frames, plan_in, plan_shipped, shipped};
 use bubbletouch::contact::{Workspace, press_with_contacts};
 use bubbletouch::geometry::Pose;
-use bubbletouch::scene::{
-    Frame, Movement, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping,
-};
+use bubbletouch::scene::{Frame, Movement, PoseControl, ScenePlan};
 use glam::DVec3;
 use std::fs;
-use std::path::Path;
 
 const BOX: &str = "v -15 -11 -9\nv 15 -11 -9\nv -15 11 -9\nv 15 11 -9\nv -15 -11 9\nv 15 -11 9\nv -15 11 9\nv 15 11 9\n\
     f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
@@ -33,7 +31,7 @@ fn plan(objects: &str) -> bubbletouch::Result<ScenePlan> {
          [[patches]]\nname = \"bed\"\nlayout = {{ grid = {{ nx = 40, ny = 40, pitch_mm = 2.5 }} }}\n\
          stroke_mm = 6.0\nstiffness_n_per_m = 60.0\n{objects}"
     );
-    ScenePlan::new("s.toml", folder.path(), SceneSpec::parse("s.toml", &text)?)
+    plan_in(folder.path(), &text)
 }
 
 /// Returns a free object of a mesh file, at a position in mm.
@@ -45,10 +43,7 @@ fn mesh(name: &str, file: &str, position: [f64; 3], mass: f64) -> String {
 }
 
 fn first_frame(plan: &ScenePlan) -> Frame {
-    let mut frames: Vec<Frame> = Vec::new();
-    let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
-    simulation.run(&mut [&mut frames]).unwrap();
-    frames.remove(0)
+    frames(plan).remove(0)
 }
 
 #[test]
@@ -77,8 +72,7 @@ fn a_box_rests_in_a_tray_and_the_bed_carries_both() {
 
 #[test]
 fn a_block_in_the_shipped_cup_comes_to_rest() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes/block_in_cup.toml");
-    let frame = first_frame(&ScenePlan::read(&path).unwrap());
+    let frame = first_frame(&plan_shipped(&shipped("block_in_cup.toml")));
     let held: Vec<_> = frame.objects.iter().map(|object| object.held).collect();
     assert_eq!(held, [PoseControl::AtRest; 2]);
     let force = frame.patches[0].wrench.force.z;
@@ -89,8 +83,7 @@ fn a_block_in_the_shipped_cup_comes_to_rest() {
 /// 20 mm with both.
 #[test]
 fn a_turned_block_in_the_shipped_cup_rests_and_rises_with_the_bed() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes");
-    let shipped = fs::read_to_string(folder.join("block_in_cup.toml")).unwrap();
+    let shipped = shipped("block_in_cup.toml");
     for yaw in [20.0, 33.0, 61.0] {
         let turned = shipped
             .replace("[8.0, 5.0, 0.0]", &format!("[8.0, 5.0, {yaw:?}]"))
@@ -99,11 +92,7 @@ fn a_turned_block_in_the_shipped_cup_rests_and_rises_with_the_bed() {
                 "[[patches]]\n",
                 &format!("{RISING}[[patches]]\nrobot = \"bed\"\n"),
             );
-        let spec = SceneSpec::parse("s.toml", &turned).unwrap();
-        let plan = ScenePlan::new("s.toml", &folder, spec).unwrap();
-        let mut frames: Vec<Frame> = Vec::new();
-        let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
-        simulation.run(&mut [&mut frames]).unwrap();
+        let frames = frames(&plan_shipped(&turned));
         let height = |frame: &Frame| frame.objects[0].pose.translation.z;
         let (first, last) = (&frames[0], frames.last().unwrap());
         assert!((height(last) - height(first) - 20e-3).abs() < 1e-3, "{yaw}");
@@ -144,7 +133,6 @@ friction = 0.8
 /// The taxels hold the block by friction: half of its weight each, while it hangs above the table.
 #[test]
 fn two_fingers_grasp_a_free_mesh_and_lift_it_from_a_table() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes");
     let scene = format!(
         r#"
 title = "Grasp"
@@ -165,11 +153,7 @@ free = {{ mass_kg = 0.05 }}
         finger("left", -18.0, 90.0, 20.0),
         finger("right", 18.0, -90.0, -20.0)
     );
-    let spec = SceneSpec::parse("s.toml", &scene).unwrap();
-    let plan = ScenePlan::new("s.toml", &folder, spec).unwrap();
-    let mut frames: Vec<Frame> = Vec::new();
-    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
-    simulation.run(&mut [&mut frames]).unwrap();
+    let frames = frames(&plan_shipped(&scene));
     for frame in &frames {
         assert_eq!(frame.objects[0].held, PoseControl::AtRest);
         let imbalance = frame.objects[0].balance.unwrap().imbalance;
@@ -253,11 +237,7 @@ fn friction_holds_a_box_whose_edges_lie_on_rows_of_taxels_from_the_first_touch()
              [[objects]]\nname = \"block\"\nmesh = \"box.obj\"\nunit = \"mm\"\nmodel = \"mesh\"\n\
              at = {{ position_mm = [0.0, 0.0, 8.5] }}\nfree = {{ mass_kg = 0.05 }}\n"
         );
-        let spec = SceneSpec::parse("s.toml", &scene).unwrap();
-        let plan = ScenePlan::new("s.toml", folder.path(), spec).unwrap();
-        let mut frames: Vec<Frame> = Vec::new();
-        let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
-        simulation.run(&mut [&mut frames]).unwrap();
+        let frames = frames(&plan_in(folder.path(), &scene).unwrap());
         let case = format!("dt {dt_ms} ms, lag {lag_mm} mm, friction {friction}");
         // Where both fingers touch at once, the box stays. One finger alone presses a box that slides on the table with no force, so nothing holds it.
         let shift = if lag_mm == 0.0 { 1e-6 } else { 2e-4 };

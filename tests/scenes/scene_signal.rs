@@ -1,29 +1,20 @@
 //! Signals of skins in scenes: they equal a signal chain that is applied frame by frame, and an invalid chain is refused by its key.
 
 use crate::command::filled;
+use crate::scene::{frames, plan, recorded};
 use bubbletouch::random::Seed;
-use bubbletouch::report::scene_files::SceneFiles;
-use bubbletouch::scene::{Frame, ScenePlan, SceneSpec, Simulation, Stepping};
+use bubbletouch::scene::ScenePlan;
 use bubbletouch::signal::{
     Chain, Noise, NoiseUnit, Quantity, Recording, SensorError, SignalStep, SignalWorkspace,
 };
 use ndarray::Array2;
 use ndarray_npy::NpzReader;
-use std::path::Path;
 
-fn try_plan(signal: &str) -> bubbletouch::Result<ScenePlan> {
-    let text = filled(
+fn sensed(signal: &str) -> ScenePlan {
+    plan(&filled(
         include_str!("../fixtures/texts/scene_signal_try_plan.toml"),
         &[("signal", &signal)],
-    );
-    ScenePlan::new("s.toml", Path::new(""), SceneSpec::parse("s.toml", &text)?)
-}
-
-fn frames(plan: &ScenePlan) -> Vec<Frame> {
-    let mut frames = Vec::new();
-    let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
-    simulation.run(&mut [&mut frames]).unwrap();
-    frames
+    ))
 }
 
 const SIGNAL: &str = r#"signal = ["force", { crosstalk = 0.2 }, { smoothing_mm = 3.0 }, { gain_std = 0.1 },
@@ -31,7 +22,7 @@ const SIGNAL: &str = r#"signal = ["force", { crosstalk = 0.2 }, { smoothing_mm =
 
 #[test]
 fn the_signal_of_a_frame_is_what_the_chain_makes_of_its_forces() {
-    let (plan, bare) = (try_plan(SIGNAL).unwrap(), try_plan("").unwrap());
+    let (plan, bare) = (sensed(SIGNAL), sensed(""));
     let (frames, bare) = (frames(&plan), frames(&bare));
     assert!(bare.iter().any(|frame| frame.patches[0].n_touched > 10));
     let seed = Seed::new(2018);
@@ -73,8 +64,8 @@ fn the_signal_of_a_frame_is_what_the_chain_makes_of_its_forces() {
 
 #[test]
 fn zeros_drift_from_frame_to_frame_and_the_skin_has_the_same_faults_in_all() {
-    let plan = try_plan("signal = [{ drift_std_full_scale = 0.1 }, { stuck_fraction = 0.1 }]");
-    let frames = frames(&plan.unwrap());
+    let plan = sensed("signal = [{ drift_std_full_scale = 0.1 }, { stuck_fraction = 0.1 }]");
+    let frames = frames(&plan);
     let signal = |frame: usize| frames[frame].patches[0].signal.as_ref().unwrap();
     let n = signal(0).len();
     let stuck: Vec<usize> = (0..n).filter(|&k| signal(0)[k] != 0.0).collect();
@@ -88,17 +79,9 @@ fn zeros_drift_from_frame_to_frame_and_the_skin_has_the_same_faults_in_all() {
 
 #[test]
 fn a_recording_has_the_signal_beside_deflection_and_force() {
-    let folder = tempfile::tempdir().unwrap();
-    let plan = try_plan(SIGNAL).unwrap();
-    let mut files = SceneFiles::create(folder.path(), &plan).unwrap();
-    let mut frames = Vec::new();
-    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
-    simulation.run(&mut [&mut files, &mut frames]).unwrap();
-    files.finish().unwrap();
-    let path = std::fs::read_dir(folder.path()).unwrap().flatten();
-    let mut path = path.map(|entry| entry.path());
-    let path = path.find(|path| path.extension().is_some_and(|end| end == "npz"));
-    let mut stored = NpzReader::new(std::fs::File::open(path.unwrap()).unwrap()).unwrap();
+    let (folder, frames) = recorded(&sensed(SIGNAL));
+    let file = std::fs::File::open(folder.path().join("recording.npz"));
+    let mut stored = NpzReader::new(file.unwrap()).unwrap();
     let signal: Array2<f32> = stored.by_name("finger/signal").unwrap();
     let force: Array2<f32> = stored.by_name("finger/force").unwrap();
     assert_eq!(signal.dim(), force.dim());
@@ -111,7 +94,7 @@ fn a_recording_has_the_signal_beside_deflection_and_force() {
 #[test]
 fn steps_that_are_given_twice_draw_twice() {
     let spread = |signal: &str| {
-        let plan = try_plan(&format!("signal = [{signal}]")).unwrap();
+        let plan = sensed(&format!("signal = [{signal}]"));
         let frames = frames(&plan);
         let changes = frames.iter().flat_map(|frame| {
             let reading = &frame.patches[0];

@@ -3,6 +3,7 @@
 use crate::studies::prelude::*;
 use crate::world::Shear;
 use glam::DVec2;
+use serde::Serialize;
 
 /// Quantity that a taxel reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

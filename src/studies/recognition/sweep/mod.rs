@@ -2,5 +2,6 @@
 
 pub mod configurations;
 pub mod splits;
+pub mod training_rows;
 
-pub use self::{configurations::*, splits::*};
+pub use self::{configurations::*, splits::*, training_rows::*};
