@@ -174,7 +174,7 @@ impl ReconstructionStudy {
         for (sample, (_, name)) in touches.shown.iter().enumerate() {
             let mut add = |name: String, of_all: &Array2<f64>| {
                 let values = of_all.row(sample).to_vec();
-                let ImageShape { ny, nx } = self.plan.shape();
+                let ImageShape { ny, nx } = self.plan.array.shape();
                 let frame = Array2::from_shape_vec((ny, nx), values);
                 frames.push((name, frame.expect("one value a taxel")));
             };

@@ -85,8 +85,6 @@ pub struct ReconstructionPlan {
     pub array: TaxelArray,
     /// Distribution from which the poses of touches are drawn.
     pub placement: Placement,
-    /// Speed at which the array approaches the object when the taxels are read, m/s.
-    pub speed: f64,
     /// Unit of the noise standard deviations.
     pub noise_unit: NoiseUnit,
     /// Noise standard deviations that the study compares, in `noise_unit`.
@@ -138,7 +136,6 @@ impl ReconstructionPlan {
         Ok(Self {
             array,
             placement,
-            speed: spec.touches.speed_mm_per_s * MM,
             noise_unit,
             noise,
             dictionaries,
@@ -182,12 +179,7 @@ impl ReconstructionPlan {
     /// Returns the measurement matrix of an ensemble with `m` measurements per frame.
     pub(super) fn projection(&self, ensemble: Ensemble, m: usize) -> Result<Projection> {
         let seed = Seed::new(self.spec.seed).named("projection").numbered(0);
-        Projection::new(ensemble, self.shape(), m, &seed)
-    }
-
-    /// Returns the numbers of rows and columns of a frame of the array.
-    pub(super) fn shape(&self) -> ImageShape {
-        self.array.shape()
+        Projection::new(ensemble, self.array.shape(), m, &seed)
     }
 
     /// Returns a list with one empty slot per dictionary; each slot is computed once and shared by all threads.

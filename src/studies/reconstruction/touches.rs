@@ -89,7 +89,7 @@ impl Touches {
         self.dictionaries[plan.place_of(basis)].get(|| {
             let atoms = plan.spec.reconstruction.atoms;
             let seed = Seed::new(plan.spec.seed).named("dictionary");
-            Dictionary::learned(basis, plan.shape(), self.train.view(), atoms, &seed)
+            Dictionary::learned(basis, plan.array.shape(), self.train.view(), atoms, &seed)
         })
     }
 
@@ -111,7 +111,7 @@ fn read(
     let skin = ReadSkin {
         chains: vec![Chain::new(&plan.signal_steps(noise), plan.array.patch())?],
         taxel: *plan.array.taxel(),
-        speed: plan.speed,
+        speed: plan.spec.touches.speed_mm_per_s * MM,
         frames,
     };
     let projection = plan.projection(Ensemble::Identity, 1)?;

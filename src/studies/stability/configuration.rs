@@ -289,9 +289,10 @@ fn judge(
         None if worst > TOLERANCE => Outcome::Inaccurate,
         None => Outcome::Right,
     };
+    let mass = configuration.object_mass_kg;
     let is_whole = answer.broken.is_none();
     StabilityScore {
-        mass_ratio: configuration.mass_ratio(),
+        mass_ratio: mass.map(|mass| mass / configuration.taxel_mass_kg),
         explicit_limit_s: 2.0
             * (configuration.taxel_mass_kg / configuration.stiffness_n_per_m).sqrt(),
         damping_n_s_per_m: scene.taxel.damping,

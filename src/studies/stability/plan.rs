@@ -126,18 +126,12 @@ impl ContactMethod {
 
     /// Returns whether the results of the method are read from a table of another program.
     pub fn is_peer(self) -> bool {
-        matches!(
-            self,
-            Self::MujocoEuler | Self::MujocoImplicitfast | Self::MujocoDiscrete
-        )
+        self.word().starts_with("mujoco_")
     }
 
     /// Returns whether the method is a physics engine, to which the key `solver_iterations` applies.
     pub fn is_engine(self) -> bool {
-        matches!(
-            self,
-            Self::RapierAsItComes | Self::RapierTuned | Self::RapierSkinSim
-        )
+        self.word().starts_with("rapier_")
     }
 }
 

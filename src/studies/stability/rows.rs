@@ -52,11 +52,6 @@ impl StabilityConfiguration {
     pub fn n_taxels(&self) -> usize {
         self.taxels * self.taxels
     }
-
-    /// Returns the mass M of a free ball divided by the mass m of a taxel; `None` if the motion of the ball is imposed.
-    pub fn mass_ratio(&self) -> Option<f64> {
-        self.object_mass_kg.map(|mass| mass / self.taxel_mass_kg)
-    }
 }
 
 row! {

@@ -245,7 +245,7 @@ impl Drive<'_> {
         case: BodyCase,
         compressions: &[Compression],
     ) -> Result<Driven> {
-        let n_steps = WARM_UP + plan.n_steps();
+        let n_steps = WARM_UP + plan.spec.whole_body.steps;
         let away = [Pose::from_translation(DVec3::splat(1e6))];
         self.state
             .press(self.body, &self.object, &away, FORGOTTEN)?;

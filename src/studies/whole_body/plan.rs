@@ -166,8 +166,6 @@ pub struct WholeBodyPlan {
     pub spec: WholeBodyStudySpec,
     /// Robot that is covered with skin.
     pub robot: Robot,
-    /// Path of the robot's URDF file.
-    pub robot_file: PathBuf,
     /// Parameters that all taxels of the skin share.
     pub taxel: Taxel,
     /// Distance between neighbouring taxels, metres.
@@ -176,8 +174,6 @@ pub struct WholeBodyPlan {
     pub side: f64,
     /// Duration of a simulated step, seconds.
     pub dt: f64,
-    /// Maximum distance between the surface of an object and the surface of its sphere model, metres.
-    pub surface_error: f64,
     /// Scenes in the order of the study file.
     pub scenes: Vec<ScenePlan>,
     /// Compressions (measurement matrices), each with its name and the number of taxels in a Hadamard block. The name is `sbhe_` and this number, or `sparse`;
@@ -232,10 +228,9 @@ impl WholeBodyPlan {
     pub fn new(place: &str, folder: &Path, spec: WholeBodyStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.whole_body;
-        let robot_file = wanted.robot.within(folder);
         let covered = PlannedRobot {
             name: ROBOT.to_owned(),
-            robot: Robot::read(&robot_file)?,
+            robot: Robot::read(&wanted.robot.within(folder))?,
             meshes: MeshFolders::default(),
             base: Motion::Fixed(Pose::IDENTITY),
             joints: None,
@@ -269,7 +264,6 @@ impl WholeBodyPlan {
             pitch: MM * wanted.pitch_mm,
             side: MM * wanted.patch_mm,
             dt: MM * wanted.step_ms,
-            surface_error: MM * wanted.surface_error_mm,
             scenes,
             folder: folder.to_owned(),
             place: place.to_owned(),
@@ -277,7 +271,6 @@ impl WholeBodyPlan {
             rungs: wanted.ladders.as_ref().map_or_else(Vec::new, rungs),
             compressions,
             robot,
-            robot_file,
             spec,
             size: BodySize::default(),
         })
@@ -286,11 +279,6 @@ impl WholeBodyPlan {
     /// Returns the keys of the table `[whole_body.recognition]`.
     pub fn recognition(&self) -> &BodyRecognitionSpec {
         &self.spec.whole_body.recognition
-    }
-
-    /// Returns the number of measured steps of a scene, or of one size of a scaling series.
-    pub fn n_steps(&self) -> usize {
-        self.spec.whole_body.steps
     }
 }
 

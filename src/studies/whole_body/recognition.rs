@@ -62,8 +62,9 @@ fn measure(
 ) -> Result<Array2<f64>> {
     let wanted = plan.recognition();
     let m = plan.spec.whole_body.sensing.measurements;
+    let surface_error = MM * plan.spec.whole_body.surface_error_mm;
     let objects = wanted.objects.par_iter();
-    let unions = objects.map(|name| built_in(name, plan.surface_error));
+    let unions = objects.map(|name| built_in(name, surface_error));
     let unions = unions.collect::<Result<Vec<_>>>()?;
     progress.stage("touch", wanted.n_touches() as u64);
     let mut features = Array2::zeros((wanted.n_touches(), columns.len() * m));

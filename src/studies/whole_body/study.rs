@@ -34,7 +34,8 @@ impl Study for WholeBodyPlan {
     }
 
     fn facts(&self) -> Result<Facts> {
-        let mut content = BTreeMap::from([("robot".to_owned(), file_content(&self.robot_file)?)]);
+        let robot = file_content(&self.spec.whole_body.robot.within(&self.folder))?;
+        let mut content = BTreeMap::from([("robot".to_owned(), robot)]);
         for scene in &self.scenes {
             let object = &scene.spec.object;
             let joints = scene.spec.joints.as_ref();
