@@ -45,13 +45,11 @@ pub(super) fn measure(
 ) -> Result<(StabilityScore, StabilityTime)> {
     let scene = ConfigurationScene::new(configuration, undamped)?;
     let tries = match configuration.method {
-        ContactMethod::SemiImplicit => contact_stiffnesses(configuration, &scene)?
-            .map(Some)
-            .to_vec(),
+        ContactMethod::SemiImplicit => contact_stiffnesses(&scene)?.map(Some).to_vec(),
         _ => vec![None],
     };
     let tried = tries.into_iter().map(|contact_stiffness| {
-        let again = || simulate(configuration, &scene, contact_stiffness);
+        let again = || simulate(&scene, contact_stiffness);
         let start = Instant::now();
         let answer = again()?;
         let once_s = start.elapsed().as_secs_f64();
@@ -61,7 +59,7 @@ pub(super) fn measure(
         };
         let score = StabilityScore {
             contact_stiffness_n_per_m: contact_stiffness,
-            ..judge(configuration, &scene, &answer)
+            ..judge(&scene, &answer)
         };
         let per_simulated_s = score.simulated_s.map(|seconds| wall_s / seconds);
         let time = StabilityTime {
@@ -86,11 +84,8 @@ pub(super) fn measure(
 const SAFETY: f64 = 4.0;
 
 /// Returns two contact stiffnesses to test, N/m: the lowest that meets the tolerance, and the highest for which the time step is stable.
-fn contact_stiffnesses(
-    configuration: &StabilityConfiguration,
-    scene: &ConfigurationScene,
-) -> Result<[f64; 2]> {
-    let (taxel, truth) = (&scene.taxel, &scene.truth);
+fn contact_stiffnesses(scene: &ConfigurationScene) -> Result<[f64; 2]> {
+    let (taxel, truth) = (&scene.test_bed.taxel, &scene.truth);
     let deepest = truth.deflection.iter().copied().fold(0.0, f64::max);
     let n_at_least = |least: f64| truth.deflection.iter().filter(|d| **d >= least).count();
     // The taxels with the largest deflection share the load of the stops.
@@ -99,28 +94,23 @@ fn contact_stiffnesses(
     let needed = taxel.stiffness.max(heaviest / taxel.stroke);
     let exact = SAFETY * needed / TOLERANCE;
     let n_touched = n_at_least(f64::MIN_POSITIVE);
-    let stable =
-        SemiImplicit::stiffest(&scene.system(configuration)?, configuration.dt_s, n_touched);
+    let dt = scene.test_bed.configuration.dt_s;
+    let stable = SemiImplicit::stiffest(&scene.system()?, dt, n_touched);
     Ok([exact, stable])
 }
 
-fn simulate(
-    configuration: &StabilityConfiguration,
-    scene: &ConfigurationScene,
-    contact_stiffness: Option<f64>,
-) -> Result<Answer> {
+fn simulate(scene: &ConfigurationScene, contact_stiffness: Option<f64>) -> Result<Answer> {
+    let configuration = scene.test_bed.configuration;
     if configuration.method == ContactMethod::QuasiStatic {
         return match (configuration.scene, &scene.drive) {
-            (_, Drive::Imposed(plan)) => press_and_release(configuration, scene, plan),
+            (_, Drive::Imposed(plan)) => press_and_release(scene, plan),
             (StabilityScene::Plunger, _) => press_to_weight(scene),
-            (_, Drive::Free { mass, .. }) => {
-                put_to_rest(scene, *mass, configuration.scene.n_balls())
-            }
+            (_, Drive::Free { mass, .. }) => put_to_rest(scene, *mass),
         };
     }
-    let system = scene.system(configuration)?;
+    let system = scene.system()?;
     let mut integrator = integrator(configuration, &system, contact_stiffness)?;
-    let frames = scene.frames(configuration.dt_s);
+    let frames = scene.frames();
     let steps = Steps {
         dt: configuration.dt_s,
         n: frames[frames.len() - 1],
@@ -184,8 +174,9 @@ fn integrator(
 }
 
 /// Computes the equilibrium of one free ball, or of several balls stacked in a tube, by the quasi-static method. The balls may rotate and move sideways.
-fn put_to_rest(scene: &ConfigurationScene, mass: f64, n_balls: usize) -> Result<Answer> {
+fn put_to_rest(scene: &ConfigurationScene, mass: f64) -> Result<Answer> {
     let test_bed = &scene.test_bed;
+    let n_balls = test_bed.configuration.scene.n_balls();
     let spheres = test_bed.ball.spheres().expect("a ball is a sphere");
     let ball = FreeObject::new(spheres, mass, DVec3::ZERO)?;
     let skin = PlacedSkin::new(&test_bed.patch, Pose::IDENTITY);
@@ -236,13 +227,11 @@ fn press_to_weight(scene: &ConfigurationScene) -> Result<Answer> {
 }
 
 /// Simulates a ball with imposed motion on damped taxels by the quasi-static method.
-fn press_and_release(
-    configuration: &StabilityConfiguration,
-    scene: &ConfigurationScene,
-    plan: &VelocityPlan,
-) -> Result<Answer> {
-    let (dt, patch) = (configuration.dt_s, &scene.test_bed.patch);
-    let frames = scene.frames(dt);
+fn press_and_release(scene: &ConfigurationScene, plan: &VelocityPlan) -> Result<Answer> {
+    let test_bed = &scene.test_bed;
+    let (dt, patch) = (test_bed.configuration.dt_s, &test_bed.patch);
+    let ball = from_ref(&test_bed.ball);
+    let frames = scene.frames();
     let mut state = DamperState::at_rest(patch.n_taxels());
     let mut workspace = Workspace::new();
     let mut answer = Answer {
@@ -251,12 +240,7 @@ fn press_and_release(
     };
     for step in 1..=answer.n_steps {
         let pose = plan.pose_at(step as f64 * dt);
-        press_at_pose(
-            patch,
-            from_ref(&scene.test_bed.ball),
-            &[pose],
-            &mut workspace,
-        )?;
+        press_at_pose(patch, ball, &[pose], &mut workspace)?;
         state.step(patch.taxels(), dt, workspace.deflections());
         if step == frames[0] {
             let force: f64 = state.force.iter().sum();
@@ -268,11 +252,8 @@ fn press_and_release(
     Ok(answer)
 }
 
-fn judge(
-    configuration: &StabilityConfiguration,
-    scene: &ConfigurationScene,
-    answer: &Answer,
-) -> StabilityScore {
+fn judge(scene: &ConfigurationScene, answer: &Answer) -> StabilityScore {
+    let configuration = scene.test_bed.configuration;
     let wanted = &scene.truth.deflection;
     let all: f64 = wanted.iter().sum();
     let pairs = || answer.deflection.iter().zip(wanted);
@@ -295,7 +276,7 @@ fn judge(
         mass_ratio: mass.map(|mass| mass / configuration.taxel_mass_kg),
         explicit_limit_s: 2.0
             * (configuration.taxel_mass_kg / configuration.stiffness_n_per_m).sqrt(),
-        damping_n_s_per_m: scene.taxel.damping,
+        damping_n_s_per_m: scene.test_bed.taxel.damping,
         contact_stiffness_n_per_m: None,
         outcome,
         force_imbalance: is_whole.then_some(answer.force_imbalance),

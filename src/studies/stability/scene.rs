@@ -29,7 +29,9 @@ const LEAST_TIME: f64 = 0.5;
 
 /// Array of taxels below a ball that touches all taxels nearly at the same time.
 #[derive(Clone, Debug)]
-pub(super) struct TestBed {
+pub(super) struct TestBed<'a> {
+    pub configuration: &'a StabilityConfiguration,
+    pub taxel: Taxel,
     pub patch: Patch,
     pub ball: Model,
     /// Radius of the ball, metres.
@@ -40,9 +42,8 @@ pub(super) struct TestBed {
 
 /// Scene of a configuration; it does not depend on the simulation method.
 #[derive(Clone, Debug)]
-pub(super) struct ConfigurationScene {
-    pub test_bed: TestBed,
-    pub taxel: Taxel,
+pub(super) struct ConfigurationScene<'a> {
+    pub test_bed: TestBed<'a>,
     /// Motion of the ball: an imposed motion, or free motion under gravity.
     pub drive: Drive,
     /// Exact solution at the time of evaluation: the travel of the ball and the deflections.
@@ -57,9 +58,10 @@ pub(super) struct ConfigurationScene {
     pub energy_limit: f64,
 }
 
-impl TestBed {
-    /// Creates a square array with `side` taxels per side, and above it a ball whose radius is the side length of the array.
-    fn new(side: usize, taxel: Taxel) -> Result<Self> {
+impl<'a> TestBed<'a> {
+    /// Creates the square array of a configuration, and above it a ball whose radius is the side length of the array. The taxels have no dampers.
+    fn new(configuration: &'a StabilityConfiguration, taxel: Taxel) -> Result<Self> {
+        let side = configuration.taxels;
         let grid = Grid {
             nx: side,
             ny: side,
@@ -82,10 +84,27 @@ impl TestBed {
         let innermost = DVec3::new(0.5 * grid.pitch, 0.5 * grid.pitch, 0.0).length_squared();
         let lift = reach - 0.25 * taxel.stroke * innermost / corner;
         Ok(Self {
+            configuration,
+            taxel,
             patch: Patch::new("test_bed", layout, Taxels::Equal(taxel))?,
             ball: ball.into(),
             radius,
             pose: Pose::from_translation(lift * DVec3::Z),
+        })
+    }
+
+    /// Returns the same array with dampers, N·s/m.
+    fn damped(self, damping: f64) -> Result<Self> {
+        let taxel = Taxel {
+            damping,
+            ..self.taxel
+        };
+        let layout = self.patch.layout().clone();
+        let patch = Patch::new("test_bed", layout, Taxels::Equal(taxel))?;
+        Ok(Self {
+            taxel,
+            patch,
+            ..self
         })
     }
 
@@ -111,46 +130,39 @@ impl TestBed {
 
     /// Returns the dynamic system for methods that step through time: taxels and balls. The system contains the taxels within `reach` metres below the first
     /// ball, and the balls that are stacked on it.
-    fn system(
-        &self,
-        configuration: &StabilityConfiguration,
-        drive: &Drive,
-        reach: f64,
-    ) -> Result<System<'_>> {
+    fn system(&self, drive: &Drive, reach: f64) -> Result<System<'_>> {
         let pose = match drive {
             Drive::Free { .. } => self.pose,
             Drive::Imposed(_) => self.above(),
         };
-        let mass = configuration.taxel_mass_kg;
+        let mass = self.configuration.taxel_mass_kg;
         let system = System::new(&self.patch, mass, &self.ball, pose, drive.clone(), reach)?;
-        match (drive, configuration.scene.n_balls()) {
+        match (drive, self.configuration.scene.n_balls()) {
             (&Drive::Free { mass, .. }, n_balls @ 2..) => system.stacked(&vec![mass; n_balls - 1]),
             _ => Ok(system),
         }
     }
 }
 
-impl ConfigurationScene {
+impl<'a> ConfigurationScene<'a> {
     /// Creates the scene of a configuration, given the taxel parameters without a damper.
-    pub fn new(configuration: &StabilityConfiguration, undamped: Taxel) -> Result<Self> {
-        let test_bed = TestBed::new(configuration.taxels, undamped)?;
-        let mut scene = match configuration.object_mass_kg {
-            Some(mass) => Self::of_free(configuration, test_bed, undamped, mass)?,
-            None => Self::of_imposed(configuration, test_bed, undamped)?,
-        };
-        let layout = scene.test_bed.patch.layout().clone();
-        scene.test_bed.patch = Patch::new("test_bed", layout, Taxels::Equal(scene.taxel))?;
-        Ok(scene)
+    pub fn new(configuration: &'a StabilityConfiguration, undamped: Taxel) -> Result<Self> {
+        let test_bed = TestBed::new(configuration, undamped)?;
+        match configuration.object_mass_kg {
+            Some(mass) => Self::of_free(test_bed, mass),
+            None => Self::of_imposed(test_bed),
+        }
     }
 
     /// Returns the dynamic system for methods that step through time.
-    pub fn system(&self, configuration: &StabilityConfiguration) -> Result<System<'_>> {
-        let reach = APPROACH + REACH * self.taxel.stroke;
-        self.test_bed.system(configuration, &self.drive, reach)
+    pub fn system(&self) -> Result<System<'_>> {
+        let reach = APPROACH + REACH * self.test_bed.taxel.stroke;
+        self.test_bed.system(&self.drive, reach)
     }
 
-    /// Returns the step numbers (from 1) after which the state is evaluated: at the evaluation time and at a later end. A step takes `dt` seconds.
-    pub fn frames(&self, dt: f64) -> Vec<usize> {
+    /// Returns the step numbers (from 1) after which the state is evaluated: at the evaluation time and at a later end.
+    pub fn frames(&self) -> Vec<usize> {
+        let dt = self.test_bed.configuration.dt_s;
         let end = (self.end / dt).ceil() as usize;
         match self.judged < self.end {
             true => vec![(self.judged / dt).floor() as usize, end],
@@ -158,19 +170,15 @@ impl ConfigurationScene {
         }
     }
 
-    fn of_free(
-        configuration: &StabilityConfiguration,
-        test_bed: TestBed,
-        taxel: Taxel,
-        mass: f64,
-    ) -> Result<Self> {
+    fn of_free(test_bed: TestBed<'a>, mass: f64) -> Result<Self> {
+        let (configuration, taxel) = (test_bed.configuration, test_bed.taxel);
         let drive = Drive::Free {
             mass,
             gravity: GRAVITY,
             travel: 0.0,
         };
         let (k, m) = (taxel.stiffness, configuration.taxel_mass_kg);
-        let system = test_bed.system(configuration, &drive, REACH * taxel.stroke)?;
+        let system = test_bed.system(&drive, REACH * taxel.stroke)?;
         let truth = rest(&system).expect("a free ball over taxels comes to rest");
         let n_touched = truth.deflection.iter().filter(|d| **d > 0.0).count();
         let all = configuration.scene.n_balls() as f64 * mass;
@@ -184,23 +192,19 @@ impl ConfigurationScene {
             .max(DECAY / slowest(k, damping, share))
             .max(LEAST_STEPS * configuration.dt_s);
         Ok(Self {
-            test_bed,
+            test_bed: test_bed.damped(damping)?,
             truth,
             force: all * GRAVITY,
             judged: end,
             end,
             // The scene starts without kinetic energy. All potential energy of the fall goes into springs and dampers.
             energy_limit: all * GRAVITY * taxel.stroke,
-            taxel: Taxel { damping, ..taxel },
             drive,
         })
     }
 
-    fn of_imposed(
-        configuration: &StabilityConfiguration,
-        test_bed: TestBed,
-        taxel: Taxel,
-    ) -> Result<Self> {
+    fn of_imposed(test_bed: TestBed<'a>) -> Result<Self> {
+        let (configuration, taxel) = (test_bed.configuration, test_bed.taxel);
         let (k, m) = (taxel.stiffness, configuration.taxel_mass_kg);
         let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
         let damping = 2.0 * ratio * (k * m).sqrt();
@@ -216,7 +220,7 @@ impl ConfigurationScene {
         };
         let phases = vec![phase(way, -SPEED), phase(hold, 0.0), phase(way, SPEED)];
         let drive = Drive::Imposed(VelocityPlan::new(test_bed.above(), phases)?);
-        let system = test_bed.system(configuration, &drive, APPROACH + REACH * taxel.stroke)?;
+        let system = test_bed.system(&drive, APPROACH + REACH * taxel.stroke)?;
         let travel = APPROACH + depth;
         let starts = system.starts().iter();
         let deflection: Vec<f64> = starts.map(|start| (travel - start).max(0.0)).collect();
@@ -233,8 +237,7 @@ impl ConfigurationScene {
             judged: way + hold,
             end: way + hold + way + hold,
             energy_limit: 4.0 * most,
-            test_bed,
-            taxel: Taxel { damping, ..taxel },
+            test_bed: test_bed.damped(damping)?,
             drive,
         })
     }
@@ -282,7 +285,7 @@ mod tests {
                 stroke: 2e-3,
             };
             let scene = ConfigurationScene::new(&configuration, undamped).unwrap();
-            let system = scene.system(&configuration).unwrap();
+            let system = scene.system().unwrap();
             let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
             for &start in system.starts() {
                 low = low.min(start);
