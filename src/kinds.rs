@@ -5,9 +5,6 @@ pub use crate::studies::*;
 /// Types of recognition studies.
 pub mod recognition {
     pub use crate::studies::recognition::study::{
-        RecognitionRows, RecognitionStudy, recognition_scale, touch_content,
-    };
-    pub use crate::studies::{
-        load_recognition_study as load_study, recognition_plans as read_plans,
+        RecognitionRows, RecognitionStudy, load_study, read_plans, recognition_scale, touch_content,
     };
 }

@@ -24,13 +24,11 @@ pub use crate::studies::study::{
     About, AnyFile, AnyStudy, Facts, Outcome, Study, TableFiles, run_whole,
 };
 
-use crate::engine::axes::AxisValues;
 use crate::error::{Error, Result};
 use crate::files::{OwnedFiles, RUN, with_folder};
 use crate::inputs::keys::KeyAbout;
 use crate::inputs::params::Described;
 use crate::report::csv_tables::FAILURES_FILE;
-use crate::studies::recognition::plan::study_plan::Plan;
 use crate::table::{FileAbout, Table};
 use crate::toml_text;
 use bubbletouch_sim::own::{Own, Registry};
@@ -126,26 +124,8 @@ pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
     with_folder(source.folder.clone(), || (entry.load)(source))
 }
 
-/// Reads and checks a recognition study; returns one plan for each combination of the values in `[axes]`.
-///
-/// # Errors
-/// If the study is of another kind, or a key is unknown or out of its range.
-pub fn recognition_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
-    check_recognition(source)?;
-    recognition::study::read_plans(source)
-}
-
-/// Loads a recognition study with its objects.
-///
-/// # Errors
-/// If [`recognition_plans`] fails, an object cannot be read, or the touches exceed the memory.
-pub fn load_recognition_study(source: &Source) -> Result<recognition::study::RecognitionStudy> {
-    check_recognition(source)?;
-    recognition::study::load_study(source)
-}
-
 /// Returns an error if the study is of another kind than recognition.
-fn check_recognition(source: &Source) -> Result<()> {
+pub(crate) fn check_recognition(source: &Source) -> Result<()> {
     match about(&source.text) {
         Some(about) if about.table != RECOGNITION.about.table => {
             let recognition = RECOGNITION.about.words;

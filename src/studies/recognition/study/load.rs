@@ -5,6 +5,7 @@ use crate::inputs::memory::check_memory;
 use crate::learning::classifiers::foreign::Foreign;
 use crate::mesh::SizeLimits;
 use crate::note::note;
+use crate::studies::check_recognition;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     HumanTouches, RecordedFrames, TouchSet, note_shear_ripple,
@@ -21,8 +22,9 @@ use std::sync::Arc;
 /// Reads and checks a study file; returns one plan for each combination of the values in `[axes]`.
 ///
 /// # Errors
-/// If a key is unknown or out of its range.
+/// If the study is of another kind, or a key is unknown or out of its range.
 pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
+    check_recognition(source)?;
     let parse = || StudySpec::parse(&source.place, &source.text);
     // With `--objects`, the files of the study are in another folder.
     let mut folder = source.objects.is_none().then(|| source.folder.clone());
