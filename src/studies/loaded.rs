@@ -15,7 +15,7 @@ use crate::report::csv_tables::{FAILURES_FILE, read_rows};
 use crate::report::folder::{NamedFile, table_files, write_files};
 use crate::report::page::StudyAbout;
 use crate::report::study_content::{ChartFormat, Found};
-use crate::report::study_folder::{files_with, first_found, words_of};
+use crate::report::study_folder::files_with;
 use crate::studies::source::Source;
 use crate::studies::study::{AnyStudy, Facts, Outcome, Study, run_items};
 use crate::table::{File, Table};
@@ -30,10 +30,10 @@ pub(super) const FAILURES: File<ItemFailure> = File::new(FAILURES_FILE, "Failed 
 
 /// Loaded and checked study, with all content on which its results depend.
 pub struct Loaded<K> {
-    pub(super) kind: K,
+    kind: K,
     facts: Facts,
     identity: Identity,
-    pub(super) items: Arc<[WorkItem]>,
+    items: Arc<[WorkItem]>,
     /// Maximum memory that a run may use, bytes; `None` for no limit.
     memory: Option<u64>,
 }
@@ -77,6 +77,27 @@ impl<K: Study> Loaded<K> {
             ..RunOptions::whole(&Silent)
         };
         PendingItems::new(&self.items, &options)
+    }
+
+    /// Computes the work items that the options select, within the memory limit. Returns the tables of all finished items, and the failed items.
+    fn tables(&self, options: &RunOptions) -> Result<(Vec<Table>, Vec<ItemFailure>)> {
+        within_memory(&self.kind.scale(), self.memory, || {
+            let (rows, failures) = run_items(&self.kind, &self.items, options)?;
+            Ok((self.kind.tables(rows)?, failures))
+        })
+    }
+
+    /// Returns the numbers of `n` work items that are drawn at random, with the given seed, from those that did not fail.
+    fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
+        let failed: Vec<ItemFailure> = read_rows(&folder.join(FAILURES_FILE))?;
+        let has_failed = |number: usize| {
+            let words = || self.kind.item_words(number, &self.items[number]);
+            failed.iter().any(|row| row.work_item == words())
+        };
+        let numbers = (0..self.items.len()).filter(|&number| !has_failed(number));
+        let mut rng = Seed::new(seed).named("verify").rng();
+        let numbers: Vec<usize> = numbers.collect();
+        Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
     }
 
     /// Adds the study's notes to its tables.
@@ -136,13 +157,10 @@ impl<K: Study> AnyStudy for Loaded<K> {
     }
 
     fn run(&self, options: &RunOptions) -> Result<Outcome> {
-        let (finished, mut tables) = within_memory(&self.kind.scale(), self.memory, || {
-            let (rows, failures) = run_items(&self.kind, &self.items, options)?;
-            Ok((failures, self.kind.tables(rows)?))
-        })?;
+        let (mut tables, failures) = self.tables(options)?;
         self.note(&mut tables);
-        tables.push(FAILURES.table(&finished)?);
-        let n_failed = finished.len();
+        tables.push(FAILURES.table(&failures)?);
+        let n_failed = failures.len();
         Ok(Outcome { tables, n_failed })
     }
 
@@ -184,15 +202,8 @@ impl<K: Study> AnyStudy for Loaded<K> {
     }
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
-        let tables = &outcome.tables;
-        let found = match K::SUMMARY {
-            Some(summary) => summary(tables, width),
-            None => {
-                let answers = self.kind.answers(tables);
-                words_of(first_found(tables).as_slice(), &answers, width)
-            }
-        };
-        format!("{}\n\n{found}", self.facts.question)
+        let summary = self.kind.summary(&outcome.tables, width);
+        format!("{}\n\n{summary}", self.facts.question)
     }
 
     fn verify(
@@ -207,10 +218,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
             part: Part::Only(&chosen),
             ..RunOptions::whole(progress)
         };
-        let again = within_memory(&self.kind.scale(), self.memory, || {
-            self.kind
-                .tables(run_items(&self.kind, &self.items, &options)?.0)
-        })?;
+        let (again, _) = self.tables(&options)?;
         progress.finish("");
         let is_whole = chosen.len() == self.items.len();
         let n_rows = same_rows(folder, &again, is_whole)?;
@@ -291,21 +299,6 @@ fn write_results(
     files.extend(of_run);
     files.extend(page);
     write_files(folder, files).map(drop)
-}
-
-impl<K: Study> Loaded<K> {
-    /// Returns the numbers of `n` work items that are drawn at random, with the given seed, from those that did not fail.
-    pub(crate) fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
-        let failed: Vec<ItemFailure> = read_rows(&folder.join(FAILURES_FILE))?;
-        let has_failed = |number: usize| {
-            let words = || self.kind.item_words(number, &self.items[number]);
-            failed.iter().any(|row| row.work_item == words())
-        };
-        let numbers = (0..self.items.len()).filter(|&number| !has_failed(number));
-        let mut rng = Seed::new(seed).named("verify").rng();
-        let numbers: Vec<usize> = numbers.collect();
-        Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
-    }
 }
 
 /// Compares recomputed table rows with the rows of a result folder; returns the number of equal rows, without tables of computing times. If `is_whole` is set,

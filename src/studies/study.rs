@@ -14,6 +14,7 @@ use crate::inputs::params::{Described, joined, keys_of};
 use crate::inputs::toml_value::is_at;
 use crate::report::page::StudyAbout;
 use crate::report::study_content::{Beyond, ChartFormat};
+use crate::report::study_folder::{first_found, words_of};
 use crate::studies::recognition::spec::keys::keys_without_axes;
 use crate::studies::source::Source;
 use crate::table::{ChartSpec, Columns, File, FileAbout, Table};
@@ -221,10 +222,6 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Table files to which a study writes its results.
     const TABLES: TableFiles;
 
-    /// Function that returns the text shown at the end of a run, wrapped at the given number of characters. Without such a function, the text consists of the
-    /// first table that has a value column, and the answers.
-    const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
-
     /// Specification of a study: the keys that its file may have.
     type Spec: Described + Serialize;
 
@@ -299,6 +296,12 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Returns answers as sentences, computed from the result tables. They are shown at the top of the page and at the end of the run.
     fn answers(&self, _tables: &[Table]) -> Vec<String> {
         Vec::new()
+    }
+
+    /// Returns the text that the terminal shows at the end of a run, wrapped at `width` characters. Without another implementation, it consists of the first
+    /// table that has a value column, and the answers.
+    fn summary(&self, tables: &[Table], width: usize) -> String {
+        words_of(first_found(tables).as_slice(), &self.answers(tables), width)
     }
 
     /// Returns further pictures and sections for the page of the results.

@@ -66,7 +66,6 @@ impl Study for RecognitionStudy {
         always: charts::TABLES,
         of_parts: charts::TABLES_OF_PARTS,
     };
-    const SUMMARY: Option<fn(&[Table], usize) -> String> = Some(charts::words);
     type Spec = StudySpec;
     type Rows = RecognitionRows;
 
@@ -191,6 +190,10 @@ impl Study for RecognitionStudy {
 
     fn answers(&self, tables: &[Table]) -> Vec<String> {
         charts::answers(tables)
+    }
+
+    fn summary(&self, tables: &[Table], width: usize) -> String {
+        charts::words(tables, width)
     }
 
     fn beyond(&self, tables: &[Table]) -> Result<Beyond> {
