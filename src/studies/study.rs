@@ -10,8 +10,7 @@ use crate::engine::work_items::{
 use crate::error::{Error, Result};
 use crate::files::has_table;
 use crate::inputs::keys::{AxisPlace, KeyAbout};
-use crate::inputs::params::{Described, joined, keys_of};
-use crate::inputs::toml_value::is_at;
+use crate::inputs::params::{Described, keys_of};
 use crate::report::page::StudyAbout;
 use crate::report::study_content::{Beyond, ChartFormat};
 use crate::report::study_folder::{first_found, words_of};
@@ -345,22 +344,24 @@ pub fn shared_inputs(spec: &impl Serialize, keys: &[KeyAbout]) -> toml::Table {
     for words in ["question", "expected"] {
         table.remove(words);
     }
-    without_swept("", table, keys)
+    for key in keys {
+        remove_own(&mut table, key.path, key.axis == AxisPlace::Table);
+    }
+    table
 }
 
-fn without_swept(prefix: &str, table: toml::Table, keys: &[KeyAbout]) -> toml::Table {
-    let kept = table.into_iter().filter_map(|(name, value)| {
-        let path = joined(prefix, &name);
-        let is_swept = |key: &KeyAbout| key.path == path && key.axis == AxisPlace::Table;
-        let is_inside = |key: &KeyAbout| key.path != path && is_at(key.path, &path);
-        let value = match value {
-            Value::Table(inner) => Value::Table(without_swept(&path, inner, keys)),
-            Value::Array(_) if keys.iter().any(is_inside) => return None,
-            value => value,
-        };
-        (!keys.iter().any(is_swept)).then_some((name, value))
-    });
-    kept.collect()
+/// Removes a swept key from a table, or the list of tables that contains the key; `path` is the path of the key within the table.
+fn remove_own(table: &mut toml::Table, path: &str, is_swept: bool) {
+    let (first, rest) = path.split_once('.').unwrap_or((path, ""));
+    let is_list = match table.get_mut(first) {
+        Some(Value::Table(inner)) if !rest.is_empty() => {
+            return remove_own(inner, rest, is_swept);
+        }
+        value => value.is_some_and(|value| value.is_array()),
+    };
+    if (rest.is_empty() && is_swept) || (!rest.is_empty() && is_list) {
+        table.remove(first);
+    }
 }
 
 /// Computes the work items of a study that the options select.

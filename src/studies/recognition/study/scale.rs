@@ -49,16 +49,12 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
             items: items.flat_map(|bytes| vec![bytes; n_alike]).collect(),
         }
     });
-    let drawing = Stage {
-        bytes: DRAWING_BYTES,
-        items: Vec::new(),
-    };
     Scale {
         objects: study.of_parts(|part| part.touched.class_names().len().to_string()),
         touches,
         n_configurations: study.n_configurations(),
         bytes: CELL_BYTES * (study.n_configurations() * study.n_trials()) as f64,
-        stages: stages.chain([drawing]).collect(),
+        stages: stages.chain([Stage::of_bytes(DRAWING_BYTES)]).collect(),
     }
 }
 
