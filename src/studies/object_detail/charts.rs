@@ -5,31 +5,20 @@ use crate::studies::object_detail::rows::*;
 use crate::studies::prelude::*;
 use crate::table::short_number;
 
-/// Charts of the models: file name, column along y and column along x.
-const OF_MODELS: [[&str; 3]; 6] = {
-    let [spheres, time] = ["n_spheres_median", "us_per_touch_median"];
-    let [error, after_offset] = ["error_median_mm", "error_after_offset_median_mm"];
-    [
-        ["deflection_error_by_spheres", error, spheres],
-        [
-            "deflection_error_after_offset_by_spheres",
-            after_offset,
-            spheres,
-        ],
-        ["deflection_error_by_time", error, time],
-        ["deflection_error_after_offset_by_time", after_offset, time],
-        [
-            "surface_error_by_spheres",
-            "surface_error_median_mm",
-            spheres,
-        ],
-        [
-            "surface_error_max_by_spheres",
-            "surface_error_max_median_mm",
-            spheres,
-        ],
-    ]
-};
+/// Start of the file name and column of each deflection error of models.
+const ERRORS: [(&str, &str); 2] = [
+    ("deflection_error", "error_median_mm"),
+    (
+        "deflection_error_after_offset",
+        "error_after_offset_median_mm",
+    ),
+];
+
+/// Start of the file name and column of each distance between the surfaces of models and meshes.
+const SURFACE_ERRORS: [(&str, &str); 2] = [
+    ("surface_error", "surface_error_median_mm"),
+    ("surface_error_max", "surface_error_max_median_mm"),
+];
 
 /// Charts of classifiers against the deflection error of their training models: file name, title and column along y.
 const LEARNED: [[&str; 3]; 2] = [
@@ -47,11 +36,18 @@ const LEARNED: [[&str; 3]; 2] = [
 
 /// Returns charts of the deflection error by cost. If classifiers were trained, charts of their accuracy follow.
 pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
-    let errors = OF_MODELS.into_iter().map(|[name, y, x]| ChartSpec {
-        note: "Medians over objects with their quartiles.".to_owned(),
-        lines: vec!["method".to_owned()],
-        ..tables[3].chart(name, "{y} by {x}", (y, x))
-    });
+    let by = |errors: [(&str, &str); 2], cost: &str, x: &str| {
+        errors.map(|(name, y)| ChartSpec {
+            note: "Medians over objects with their quartiles.".to_owned(),
+            lines: vec!["method".to_owned()],
+            ..tables[3].chart(format!("{name}_by_{cost}"), "{y} by {x}", (y, x))
+        })
+    };
+    let errors = [
+        by(ERRORS, "spheres", "n_spheres_median"),
+        by(ERRORS, "time", "us_per_touch_median"),
+        by(SURFACE_ERRORS, "spheres", "n_spheres_median"),
+    ];
     let by_error = |learned: &Table| {
         LEARNED.map(|[name, title, y]| ChartSpec {
             lines: vec!["method".to_owned()],
@@ -60,7 +56,7 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
         })
     };
     let learned = learned(tables).into_iter().flat_map(by_error);
-    errors.chain(learned).collect()
+    errors.into_iter().flatten().chain(learned).collect()
 }
 
 /// Returns the answers: the most exact model, and the loss of accuracy by training on models.
