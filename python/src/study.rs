@@ -7,8 +7,7 @@ use crate::threads::{Stop, aside};
 use bubbletouch::Error;
 use bubbletouch::Result;
 use bubbletouch::kinds::{Source, about, check_folder, load, read_tables};
-use bubbletouch::report::advice::{self, Candidates, Requirement};
-use bubbletouch::report::advice_answers::{answers, answers_json};
+use bubbletouch::report::advice::{self, Candidates, Requirement, answers, answers_json};
 use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::Shard;
@@ -344,7 +343,7 @@ pub fn advise(
         let wish = match (reach, budget) {
             (Some(reach), None) => Requirement::Value(reach),
             (None, Some(most)) => Requirement::Budget(most),
-            (None, None) if !limits.is_empty() => Requirement::Best,
+            (None, None) if !limits.is_empty() => Requirement::Budget(f64::INFINITY),
             _ => {
                 let given = "both or neither of what is needed and a budget";
                 return Err(bad_input(

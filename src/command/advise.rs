@@ -1,8 +1,9 @@
 //! `bubbletouch advise`: recommends a setting that meets a requirement.
 
 use crate::command::terminal::streams::say;
-use bubbletouch::report::advice::{Advice, AdviceQuery, Candidates, Requirement};
-use bubbletouch::report::advice_answers::{Answer, answers, answers_json};
+use bubbletouch::report::advice::{
+    Advice, AdviceQuery, Answer, Candidates, Requirement, answers, answers_json,
+};
 use bubbletouch::{Error, Result, kinds};
 use bubbletouch_sim::text::spelling::counted;
 use std::path::PathBuf;
@@ -59,15 +60,11 @@ pub struct Args {
 }
 
 #[derive(clap::Args)]
+#[command(next_help_heading = "Requirements")]
 #[group(required = true, multiple = true)]
 struct RequirementArgs {
     /// Require this fraction of correct decisions, such as 0.9
-    #[arg(
-        long,
-        value_name = "SHARE",
-        allow_negative_numbers = true,
-        help_heading = "Requirements"
-    )]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     accuracy: Option<f64>,
     /// Require this value, in the unit of its column
     ///
@@ -76,51 +73,25 @@ struct RequirementArgs {
         long,
         value_name = "N",
         allow_negative_numbers = true,
-        conflicts_with = "accuracy",
-        help_heading = "Requirements"
+        conflicts_with = "accuracy"
     )]
     reach: Option<f64>,
     /// Limit the cost, in the unit of its column
     ///
     /// For example microseconds per decision, seconds of training, taxels, or measurements.
-    #[arg(
-        long,
-        value_name = "N",
-        allow_negative_numbers = true,
-        help_heading = "Requirements"
-    )]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     budget: Option<f64>,
     /// Limit the measurements of a decision
-    #[arg(
-        long,
-        value_name = "N",
-        allow_negative_numbers = true,
-        help_heading = "Requirements"
-    )]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     max_measurements: Option<f64>,
     /// Limit the number of taxels
-    #[arg(
-        long,
-        value_name = "N",
-        allow_negative_numbers = true,
-        help_heading = "Requirements"
-    )]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     max_taxels: Option<f64>,
     /// Limit the time of a decision
-    #[arg(
-        long,
-        value_name = "MS",
-        allow_negative_numbers = true,
-        help_heading = "Requirements"
-    )]
+    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
     max_answer_ms: Option<f64>,
     /// Limit the training time
-    #[arg(
-        long,
-        value_name = "S",
-        allow_negative_numbers = true,
-        help_heading = "Requirements"
-    )]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     max_training_s: Option<f64>,
 }
 
@@ -157,8 +128,7 @@ impl Args {
     fn requirement(&self) -> Requirement {
         match (self.wish.accuracy.or(self.wish.reach), self.wish.budget) {
             (Some(value), _) => Requirement::Value(value),
-            (None, Some(most)) => Requirement::Budget(most),
-            (None, None) => Requirement::Best,
+            (None, most) => Requirement::Budget(most.unwrap_or(f64::INFINITY)),
         }
     }
 

@@ -3,12 +3,9 @@
 use crate::command::terminal::output::{check_ending, terminal_width};
 use crate::command::terminal::streams::{say, write_out};
 use bubbletouch::files::{CsvFile, check_output, write_bytes};
-use bubbletouch::report::compared::{
-    differences_page, differences_text, entries_words, sentences_text,
-};
-use bubbletouch::report::differences::differences;
-use bubbletouch::report::entries::{entries, files_of_one};
-use bubbletouch::report::rank_agreement::rank_agreement;
+use bubbletouch::report::comparison::compared::Comparison;
+use bubbletouch::report::comparison::differences::differences;
+use bubbletouch::report::comparison::rank_agreement::rank_agreement;
 use bubbletouch::{Error, Result, kinds};
 use std::path::PathBuf;
 
@@ -47,43 +44,25 @@ pub fn compare(args: &Args) -> Result<()> {
     }
     let place = format!("{first_name} and {second_name}: ");
     let ranks = rank_agreement(&first, &second);
-    let found = match (differences(&first, &second), &ranks) {
+    let found = match differences(&first, &second) {
         // A simulated and a recorded study have no common setting, but their rankings of designs can be compared.
-        (Err(_), Some(_)) if args.out.is_none() => Vec::new(),
-        (found, _) => found.map_err(|error| error.under(place))?,
+        Err(_) if ranks.is_some() && args.out.is_none() => Vec::new(),
+        found => found.map_err(|error| error.under(place))?,
     };
-    let mut changed = entries_words(&found, &entries(&first, &second));
-    for (which, files) in [
-        ("first", files_of_one(&first, &second)),
-        ("second", files_of_one(&second, &first)),
-    ] {
-        if !files.is_empty() {
-            changed.push(format!("Only the {which} run has {}.", files.join(", ")));
-        }
-    }
+    let names = [&first_name[..], &second_name];
+    let comparison = Comparison::new([&first, &second], names, (found, ranks))?;
     let mut outputs = args.out.iter().chain(&args.html);
     outputs.try_for_each(|path| check_output(path))?;
     if let Some(out) = &args.out {
         let mut file = CsvFile::create(out)?;
-        for row in found.iter().flat_map(|column| &column.rows) {
+        for row in &comparison.differences {
             file.row(row)?;
         }
         file.commit()?;
     }
     if let Some(html) = &args.html {
-        let page = differences_page(
-            (&found, ranks.as_ref(), &changed),
-            (&first_name, &second_name),
-        )?;
-        write_bytes(html, &page)?;
+        write_bytes(html, &comparison.page(names)?)?;
     }
     say(format_args!("First: {first_name}; second: {second_name}."))?;
-    let width = terminal_width();
-    write_out(sentences_text(&changed, width).as_bytes())?;
-    match found.is_empty() {
-        true => say("No row of the one has all settings of a row of the other.")?,
-        false => write_out(differences_text(&found, width)?.as_bytes())?,
-    }
-    let ranks = ranks.map_or_else(Vec::new, |ranks| ranks.words());
-    write_out(sentences_text(&ranks, width).as_bytes())
+    write_out(comparison.text(terminal_width()).as_bytes())
 }

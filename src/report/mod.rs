@@ -9,7 +9,6 @@
 //! animations.
 
 pub mod advice;
-pub mod advice_answers;
 pub mod chart;
 pub mod comparison;
 pub mod csv_tables;
@@ -26,7 +25,6 @@ pub mod swept;
 pub mod terminal;
 pub mod text_width;
 
-pub use comparison::{compared, differences, entries, rank_agreement};
 pub use pictures::{
     colours, drawing, fit_picture, frame_files, heat_map, layout_picture, object_picture,
     pressure_map, snapshots,

@@ -117,14 +117,10 @@ impl Faults {
         case.file("changed.toml", self.kind.study.replacen(old, new, 1));
         case.succeeds(&["run", "changed.toml", "--out", "changed"]);
         let (said, same) = compared(case, ["whole", "whole"]);
-        assert!(
-            !same.is_empty() && said.contains("0 in the first alone, 0 in the"),
-            "{said}"
-        );
+        assert!(!same.is_empty() && said.contains("rows of both"), "{said}");
         let is_same = |row: &DifferenceRow| row.difference == 0.0 && row.significance == "same";
         assert!(same.iter().all(is_same));
         let (said, moved) = compared(case, ["whole", "changed"]);
-        assert!(said.contains("settings are in both runs"), "{said}");
         let (_, tables) = read_tables(&case.path("changed")).unwrap();
         let mut columns: Vec<(&str, &str)> = Vec::new();
         for row in &moved {
@@ -140,7 +136,7 @@ impl Faults {
         }
         // Values and costs are compared separately.
         assert!(columns.len() > 1, "{columns:?}");
-        assert!(said.contains("times that of the first run"), "{said}");
+        assert!(said.contains("Columns that differ"), "{said}");
         let page = fs::read_to_string(case.path("moved.html")).unwrap();
         assert!(page.contains("in both runs") && page.contains("Costs of both runs"));
     }

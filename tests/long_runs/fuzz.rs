@@ -10,8 +10,8 @@ use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::mesh::{LengthUnit, MeshFormat, SizeLimits};
 use bubbletouch::objects::{Catalogue, read_spheres};
 use bubbletouch::report::advice::{AdviceQuery, Candidates, Requirement};
-use bubbletouch::report::compared::differences_text;
-use bubbletouch::report::differences::differences;
+use bubbletouch::report::comparison::compared::Comparison;
+use bubbletouch::report::comparison::differences::differences;
 use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::scene::{ScenePlan, SceneSpec};
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
@@ -576,7 +576,10 @@ fn tables_of_results() {
                 let advice = offers.advise(&choices, Requirement::Budget(1.0));
                 advice.map(|advice| offers.in_words(&advice.choice)).ok();
             }
-            differences_text(&differences(&tables, &read)?, 80).map(drop)
+            let found = differences(&tables, &read)?;
+            let comparison = Comparison::new([&tables, &read], ["a", "b"], (found, None))?;
+            comparison.text(80);
+            Ok(())
         },
     }
     .run();

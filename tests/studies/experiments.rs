@@ -8,7 +8,7 @@ use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudy
 use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::random::Seed;
-use bubbletouch::report::rank_agreement::rank_agreement;
+use bubbletouch::report::comparison::rank_agreement::rank_agreement;
 use bubbletouch::study::{
     HumanTouches, Plan, RecordedFrames, StudySpec, Sweep, draw_touches, load_objects,
 };

@@ -1,36 +1,18 @@
 //! Candidates of an advice: rows of a table with a value and a cost, their Pareto front, and the advised candidate.
 
-use super::column_selector::{COST, VALUE, refuse_none};
-use super::given_condition::rows_with;
+use super::query::{AdviceQuery, COST, VALUE, refuse_none, rows_with};
 use crate::error::{Error, Result};
 use crate::report::swept::Swept;
 use crate::table::{Better, Column, Role, Scale, Table, Value, front};
 use std::collections::HashMap;
-
-/// Query for advice about a design; fields that are `None` are filled in automatically.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct AdviceQuery {
-    /// File name of the table to search.
-    pub table: Option<String>,
-    /// Name of the value column to optimise.
-    pub value: Option<String>,
-    /// Name of the cost column to minimise: a column name, or a short name that all kinds of studies accept.
-    pub cost: Option<String>,
-    /// Fixed conditions, each as text of the form `noise=0.05`.
-    pub given: Vec<String>,
-    /// Upper bounds of cost columns, as pairs (column name, bound); choices above a bound are not advised.
-    pub limits: Vec<(String, f64)>,
-}
 
 /// Requirement of the user: a bound on the value or on a cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Requirement {
     /// Minimum of the value: the cheapest choice that reaches at least this value is selected.
     Value(f64),
-    /// Maximum of the cost, positive: the choice with the best value within this budget is selected.
+    /// Maximum of the cost, positive; infinite without a maximum: the choice with the best value within this budget is selected.
     Budget(f64),
-    /// No requirement: the choice with the best value is selected at any cost.
-    Best,
 }
 
 /// Candidate for advice: a row of the table, with its value and its cost.
@@ -200,55 +182,44 @@ impl<'a> Candidates<'a> {
     /// If all choices are left out; the error names the condition in which the fewest choices are within the limits.
     pub fn worst(&self) -> Result<(Vec<Candidate>, usize)> {
         let choices = self.swept.groups(&self.swept.free_choices(), &self.rows);
-        let numbered = choices.iter().enumerate();
-        let choice_of: HashMap<usize, usize> = numbered
-            .flat_map(|(number, rows)| rows.iter().map(move |&row| (row, number)))
-            .collect();
-        let mut measured: Vec<Vec<Candidate>> = vec![Vec::new(); choices.len()];
-        let mut fewest: Option<(usize, String)> = None;
-        let conditions = self.conditions();
-        for (condition, candidates) in &conditions {
-            let kept = self.within_limits(candidates);
+        let mut within: HashMap<usize, Candidate> = HashMap::new();
+        let mut counts = Vec::new();
+        for (condition, candidates) in self.conditions() {
+            let kept = self.within_limits(&candidates);
             let kept = kept.map_err(|error| error.under(format!("with {condition}: ")))?;
-            if fewest.as_ref().is_none_or(|(n, _)| kept.len() < *n) {
-                fewest = Some((kept.len(), condition.clone()));
-            }
-            for candidate in kept {
-                measured[choice_of[&candidate.row]].push(candidate);
-            }
+            counts.push((kept.len(), condition));
+            within.extend(kept.into_iter().map(|candidate| (candidate.row, candidate)));
         }
-        let worse = |a: Candidate, b: Candidate| {
-            let cost = a.cost.max(b.cost);
-            let worse = if self.is_better(a.value, b.value) {
+        let worse = |a: Candidate, b: Candidate| Candidate {
+            cost: a.cost.max(b.cost),
+            ..if self.is_better(a.value, b.value) {
                 b
             } else {
                 a
-            };
-            Candidate { cost, ..worse }
+            }
         };
-        let everywhere = measured
-            .into_iter()
-            .filter(|of| of.len() == conditions.len());
-        let worst: Vec<Candidate> = everywhere
-            .filter_map(|of| of.into_iter().reduce(worse))
-            .collect();
-        match (worst.is_empty(), fewest) {
-            (true, Some((n, condition))) => {
-                let given = format!(
-                    "{n} of {} choices with {condition}, others elsewhere",
-                    choices.len()
-                );
-                let allowed = format!(
-                    "a choice that was measured and is within the limits in all {} conditions",
-                    conditions.len()
-                );
-                Err(Error::input("--worst", given, allowed))
-            }
-            _ => {
-                let n_left_out = choices.len() - worst.len();
-                Ok((worst, n_left_out))
-            }
+        let worst = choices.iter().filter_map(|rows| {
+            let measured: Vec<&Candidate> = rows.iter().filter_map(|row| within.get(row)).collect();
+            let is_everywhere = measured.len() == counts.len();
+            measured
+                .into_iter()
+                .copied()
+                .reduce(worse)
+                .filter(|_| is_everywhere)
+        });
+        let worst: Vec<Candidate> = worst.collect();
+        let n_conditions = counts.len();
+        let fewest = counts.into_iter().min_by_key(|(n, _)| *n);
+        if let (true, Some((n, condition))) = (worst.is_empty(), fewest) {
+            let n_choices = choices.len();
+            let given = format!("{n} of {n_choices} choices with {condition}, others elsewhere");
+            let allowed = format!(
+                "a choice that was measured and is within the limits in all {n_conditions} conditions"
+            );
+            return Err(Error::input("--worst", given, allowed));
         }
+        let n_left_out = choices.len() - worst.len();
+        Ok((worst, n_left_out))
     }
 
     /// Returns the advice for a requirement, selected from the candidates under one condition that are within all limits.
@@ -256,57 +227,49 @@ impl<'a> Candidates<'a> {
     /// # Errors
     /// If the requirement is out of range, no candidate is within the limits, or none meets the requirement; the error names the nearest candidate.
     pub fn advise(&self, candidates: &[Candidate], requirement: Requirement) -> Result<Advice> {
-        let (column, wanted, place) = match requirement {
-            Requirement::Value(wanted) => (self.value, wanted, "required value"),
-            Requirement::Budget(most) => (self.cost, most, "budget"),
-            Requirement::Best => (self.cost, f64::INFINITY, "budget"),
+        let (place, column, wanted) = match requirement {
+            Requirement::Value(wanted) => ("required value", self.value, wanted),
+            Requirement::Budget(most) => ("budget", self.cost, most),
         };
-        let given = column.phrase(&Value::Number(wanted));
-        let refuse = |allowed: String| Error::input(place, &given, allowed);
+        let refuse =
+            |allowed: &str| Error::input(place, column.phrase(&Value::Number(wanted)), allowed);
         let is_share = column.scale == Scale::Share;
         let (is_in_range, range) = match requirement {
             Requirement::Value(share) if is_share => {
                 (share > 0.0 && share <= 1.0, "more than 0, at most 1")
             }
-            Requirement::Value(wanted) => (wanted.is_finite(), "a number"),
-            Requirement::Budget(most) => (most > 0.0 && most.is_finite(), "a positive number"),
-            Requirement::Best => (true, ""),
+            Requirement::Value(value) => (value.is_finite(), "a number"),
+            Requirement::Budget(most) => (most > 0.0, "a positive number"),
         };
         if !is_in_range {
-            return Err(refuse(range.to_owned()));
+            return Err(refuse(range));
         }
-        let candidates = &self.within_limits(candidates)?;
-        let front = self.front(candidates);
-        let [cheapest, best] = [&front[0], &front[front.len() - 1]];
-        let place = match requirement {
-            Requirement::Value(wanted) => front
-                .iter()
-                .position(|candidate| self.is_enough(candidate.value, wanted)),
-            Requirement::Budget(most) => front.iter().rposition(|candidate| candidate.cost <= most),
-            Requirement::Best => Some(front.len() - 1),
+        let candidates = self.within_limits(candidates)?;
+        let front = self.front(&candidates);
+        let is_enough = |value: f64| match requirement {
+            Requirement::Value(wanted) => self.is_enough(value, wanted),
+            Requirement::Budget(_) => false,
         };
-        let Some(place) = place else {
-            return Err(refuse(match requirement {
-                Requirement::Value(_) => format!("the best here is {}", self.in_words(best)),
-                Requirement::Budget(_) | Requirement::Best => {
-                    format!("the cheapest here is {}", self.in_words(cheapest))
-                }
-            }));
-        };
-        let certain = match requirement {
-            Requirement::Value(wanted) if self.value.interval.is_some() => {
-                let candidates = candidates.iter().copied();
-                let certain = candidates
-                    .filter(|candidate| self.is_enough(self.worse_end(candidate), wanted));
-                let certain = self.front(&certain.collect::<Vec<_>>());
-                let cheapest = certain.first().copied();
-                cheapest.filter(|cheapest| *cheapest != front[place])
+        let (found, nearest, what) = match requirement {
+            Requirement::Value(_) => {
+                let found = front.iter().position(|one| is_enough(one.value));
+                (found, front.len() - 1, "best")
             }
-            _ => None,
+            Requirement::Budget(most) => (
+                front.iter().rposition(|one| one.cost <= most),
+                0,
+                "cheapest",
+            ),
         };
+        let nearest = || format!("the {what} here is {}", self.in_words(&front[nearest]));
+        let place = found.ok_or_else(|| refuse(&nearest()))?;
+        let certain = candidates
+            .into_iter()
+            .filter(|one| is_enough(self.worse_end(one)));
+        let certain = self.front(&certain.collect::<Vec<_>>()).first().copied();
         Ok(Advice {
             choice: front[place],
-            certain,
+            certain: certain.filter(|certain| *certain != front[place]),
             next_up: front.get(place + 1).copied(),
         })
     }
@@ -577,7 +540,10 @@ mod tests {
         let tables = table(&[setting("a", 5.0, 1.0, 0.0), setting("b", 4.0, 1.0, 0.0)]);
         let candidates = Candidates::new(&tables, &AdviceQuery::default()).unwrap();
         let advice = candidates
-            .advise(&candidates.by_condition()[0], Requirement::Best)
+            .advise(
+                &candidates.by_condition()[0],
+                Requirement::Budget(f64::INFINITY),
+            )
             .unwrap();
         assert_eq!(candidates.setting(&advice.choice), "design b");
     }

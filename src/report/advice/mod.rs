@@ -2,9 +2,10 @@
 //!
 //! For each condition, the advised row is the cheapest choice whose value meets a bound, or the best choice within a budget.
 
-mod candidate_texts;
+mod answers;
 mod candidates;
-mod column_selector;
-mod given_condition;
+mod query;
 
-pub use candidates::{Advice, AdviceQuery, Candidate, Candidates, Requirement};
+pub use answers::{Answer, answers, answers_json};
+pub use candidates::{Advice, Candidate, Candidates, Requirement};
+pub use query::AdviceQuery;

@@ -5,14 +5,14 @@
 //! intervals and no trials, a difference is significant if the two intervals are disjoint.
 
 use crate::error::{Error, Result};
-use crate::report::entries::{Configurations, key};
+use crate::report::comparison::changes::{Configurations, key};
 use crate::report::swept::Setting;
 use crate::row;
 use crate::statistics::comparison::TrialSize;
 use crate::statistics::many_tests::holm_of_some;
 use crate::statistics::p_status::{CONFIDENCE, PStatus};
 use crate::statistics::repeats::{Paired, Repeat};
-use crate::table::{Better, Column, Role, Table};
+use crate::table::{Column, Role, Table};
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
 
@@ -69,30 +69,18 @@ pub struct Difference {
     /// Status of the p-value: present, or the reason why it is empty.
     p_status: Option<PStatus> => Outcome "test";
     /// Minimum number of trials for which a p-value can be computed; empty if no number of trials is sufficient.
-    n_trials_needed: Option<usize> => Note "trials needed": Linear;
+    n_trials_needed: Option<usize> => Value(Neither) "trials needed": Linear;
 } }
 
-/// Differences between two folders in one column of a table.
-pub struct ColumnDifferences {
-    /// Description of the compared column.
-    pub column: Column,
-    /// Differences of all settings that have a number in both folders.
-    pub rows: Vec<Difference>,
-    /// Number of settings that both folders contain, even if the column is empty.
-    pub n_both: usize,
-    /// Number of settings that only the first folder contains.
-    pub n_first_only: usize,
-    /// Number of settings that only the second folder contains.
-    pub n_second_only: usize,
-}
-
-/// Returns the differences in all value and cost columns of the common tables. If several tables have a column for equal settings, the first one is used.
+/// Returns the differences in all value and cost columns of the common tables; the rows of a column are adjacent. If several tables have a column for equal
+/// settings, the first one is used.
 ///
 /// # Errors
 /// If no setting occurs in both folders, or the folders have no common trial of a setting.
-pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDifferences>> {
-    let mut told = HashSet::new();
+pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<Difference>> {
+    let mut known = HashSet::new();
     let mut found = Vec::new();
+    let mut has_values = false;
     // A table without a file is derived from other tables and contains nothing new.
     for second in second.iter().filter(|table| !table.csv.is_empty()) {
         let first = first.iter().find(|first| first.file == second.file);
@@ -100,24 +88,26 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
         else {
             continue;
         };
+        let pairs = second.pairs(&first);
+        let settings = second.columns.iter().map(|one| &one.column.name);
+        let settings: Vec<_> = settings.collect();
         for column in &second.table.columns {
-            let is_told = matches!(column.role, Role::Value(_) | Role::Cost);
+            let is_compared = matches!(column.role, Role::Value(_) | Role::Cost);
             let is_number = first.table.numbers(&column.name).is_some();
-            let settings = second.columns.iter().map(|one| &one.column.name);
-            let what = (settings.collect::<Vec<_>>(), &column.name);
-            if is_told && is_number && told.insert(what) {
-                found.push(of_column(column, &first, &second)?);
+            if is_compared && is_number && known.insert((settings.clone(), &column.name)) {
+                let rows = of_column(column, (&first, &second), &pairs)?;
+                has_values |= column.role != Role::Cost && !rows.is_empty();
+                found.extend(rows);
             }
         }
     }
-    let mut values = found.iter().filter(|one| one.column.role != Role::Cost);
-    match values.all(|one| one.rows.is_empty()) {
-        true => Err(Error::input(
+    match has_values {
+        true => Ok(found),
+        false => Err(Error::input(
             "two runs",
             "no row of the one has the settings of a row of the other",
             "runs of one kind that share at least one setting",
         )),
-        false => Ok(found),
     }
 }
 
@@ -154,6 +144,16 @@ impl<'a> Settings<'a> {
     /// Returns the setting of a row as text, which does not depend on the order of the columns.
     fn key(&self, row: usize) -> String {
         key(&self.columns, row, &Configurations::new())
+    }
+
+    /// Returns the rows of each setting that both tables have: in the other table, and in this table.
+    fn pairs<'s>(&'s self, other: &'s Self) -> Vec<[&'s [usize]; 2]> {
+        let known = other.groups.iter();
+        let known = known.map(|rows| (other.key(rows[0]), &rows[..]));
+        let known: HashMap<String, &[usize]> = known.collect();
+        let pairs = self.groups.iter();
+        let pairs = pairs.filter_map(|ours| Some([*known.get(&self.key(ours[0]))?, &ours[..]]));
+        pairs.collect()
     }
 
     /// Returns the settings of a row as text, limited to columns whose values vary.
@@ -201,16 +201,15 @@ impl<'a> Settings<'a> {
     }
 }
 
-fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<ColumnDifferences> {
-    let known = first.groups.iter().map(|rows| (first.key(rows[0]), rows));
-    let known: HashMap<String, &Vec<usize>> = known.collect();
+/// Compares one column in all settings that both tables have, with Holm's correction over them.
+fn of_column(
+    column: &Column,
+    (first, second): (&Settings, &Settings),
+    pairs: &[[&[usize]; 2]],
+) -> Result<Vec<Difference>> {
     let mut rows = Vec::new();
-    let mut n_both = 0;
-    for ours in &second.groups {
-        if let Some(theirs) = known.get(&second.key(ours[0])) {
-            n_both += 1;
-            rows.extend(of_setting(column, (first, theirs), (second, ours))?);
-        }
+    for &[theirs, ours] in pairs {
+        rows.extend(of_setting(column, (first, theirs), (second, ours))?);
     }
     let p_values: Vec<Option<f64>> = rows.iter().map(|row| row.p_value).collect();
     for (row, p_holm) in rows.iter_mut().zip(holm_of_some(&p_values)) {
@@ -219,13 +218,7 @@ fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<Col
             row.significance = explained(p >= 1.0 - CONFIDENCE);
         }
     }
-    Ok(ColumnDifferences {
-        column: column.clone(),
-        rows,
-        n_both,
-        n_first_only: first.groups.len() - n_both,
-        n_second_only: second.groups.len() - n_both,
-    })
+    Ok(rows)
 }
 
 fn explained(is_by_chance: bool) -> Significance {
@@ -288,18 +281,4 @@ fn of_setting(
         p_status: tested.map(|tested| tested.p_status),
         n_trials_needed: tested.and_then(|tested| tested.n_needed),
     }))
-}
-
-impl ColumnDifferences {
-    /// Returns two counts among the selected rows: improved values and worsened values. If neither direction is better, returns how many numbers became larger
-    /// and how many smaller.
-    pub fn counts(&self, is_counted: impl Fn(&Difference) -> bool) -> [usize; 2] {
-        let less = matches!(self.column.role, Role::Cost | Role::Value(Better::Less));
-        let count = |better: bool| {
-            let moved = self.rows.iter().filter(|row| row.difference != 0.0);
-            let moved = moved.filter(|row| ((row.difference > 0.0) != less) == better);
-            moved.filter(|row| is_counted(row)).count()
-        };
-        [count(true), count(false)]
-    }
 }

@@ -7,7 +7,7 @@ use crate::report_synthetic::{
 };
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::report::chart::{draw, omitted, places};
-use bubbletouch::report::entries::entries;
+use bubbletouch::report::comparison::changes::changes;
 use bubbletouch::studies::recognition::charts::{answers, charts, read_tables, tables_of, words};
 use bubbletouch::study::table::{Configuration, Limit};
 use bubbletouch::table::{ChartSpec, Mark, Table};
@@ -198,9 +198,9 @@ fn an_edit_of_any_entry_of_any_table_is_found_by_comparing() {
     }
     let first = read_tables(&kept).unwrap();
     let is_same = |second: &[Table]| {
-        let found = entries(&first, second);
-        let mut found = found.iter();
-        found.all(|table| table.columns.is_empty() && table.n_first_only + table.n_second_only == 0)
+        let (tables, changed) = changes(&first, second);
+        let mut tables = tables.iter();
+        changed.is_empty() && tables.all(|table| table.n_first_only + table.n_second_only == 0)
     };
     assert!(is_same(&read_tables(&edited).unwrap()));
     let mut n_edits = 0;

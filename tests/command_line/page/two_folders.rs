@@ -1,7 +1,7 @@
 //! Comparison of two result folders: differing entries, and the agreement of their rankings of designs.
 
-use bubbletouch::report::entries::entries;
-use bubbletouch::report::rank_agreement::rank_agreement;
+use bubbletouch::report::comparison::changes::{ChangedColumn, ComparedTable, changes};
+use bubbletouch::report::comparison::rank_agreement::rank_agreement;
 use bubbletouch::row;
 use bubbletouch::table::{File, Table};
 
@@ -62,41 +62,53 @@ fn tables(numbers: [usize; 2], edit: impl Fn(usize, &mut Scored), count: usize) 
 #[test]
 fn an_edit_of_any_entry_is_found_whatever_configurations_are_numbered() {
     let first = tables([0, 1], |_, _| {}, 9);
+    let compared = |second: Vec<Table>| changes(&first, &second);
     // Other configuration numbers alone are no difference.
-    for table in entries(&first, &tables([5, 3], |_, _| {}, 9)) {
-        assert!(table.columns.is_empty() && table.one_sided.is_empty());
+    let (rows, changed) = compared(tables([5, 3], |_, _| {}, 9));
+    assert!(changed.is_empty(), "{changed:?}");
+    assert_eq!(rows.len(), 2);
+    for table in rows {
         assert_eq!((table.n_first_only, table.n_second_only), (0, 0));
     }
     let of_scores = |edit: &dyn Fn(usize, &mut Scored)| {
-        let mut found = entries(&first, &tables([0, 1], edit, 9));
-        found.remove(0)
+        let (mut rows, changed) = compared(tables([0, 1], edit, 9));
+        (rows.remove(0), changed)
     };
-    let found = of_scores(&|row, scored| {
+    let column = |column: &str, n_same, change: &str| ChangedColumn {
+        table: "scores.csv".to_owned(),
+        column: column.to_owned(),
+        n_same,
+        n_changed: 6 - n_same,
+        change: change.to_owned(),
+    };
+    let (rows, changed) = of_scores(&|row, scored| {
         if row > 3 {
             scored.outcome = "not_finite".to_owned();
             scored.error = None;
         }
     });
-    assert_eq!((found.n_both, found.columns.len()), (6, 2));
-    let change = ("right".to_owned(), "not finite".to_owned(), 2);
-    assert_eq!(found.columns[0].changes, [change]);
-    assert_eq!(
-        (found.columns[1].n_same, found.columns[1].n_first_only),
-        (4, 2)
-    );
-    let found = of_scores(&|row, scored| scored.n_capped = usize::from(row == 2));
-    assert_eq!(found.columns[0].n_changed(), 1);
+    assert_eq!(rows.n_both, 6);
+    let wanted = [
+        column("outcome", 4, "2 from right to not finite"),
+        column("error", 4, "2 in the first run alone"),
+    ];
+    assert_eq!(changed, wanted);
+    let (_, changed) = of_scores(&|row, scored| scored.n_capped = usize::from(row == 2));
+    assert_eq!(changed, [column("n_capped", 5, "")]);
     // A setting that does not apply is a different setting.
-    let found = of_scores(&|row, scored| scored.c = (row < 2).then_some(1.0));
-    assert_eq!(
-        (found.n_both, found.n_first_only, found.n_second_only),
-        (5, 1, 1)
-    );
+    let (rows, _) = of_scores(&|row, scored| scored.c = (row < 2).then_some(1.0));
+    let wanted = ComparedTable {
+        table: "scores.csv".to_owned(),
+        n_both: 5,
+        n_first_only: 1,
+        n_second_only: 1,
+    };
+    assert_eq!(rows, wanted);
     // A configuration of a table that contains only its number.
-    let counts = &entries(&first, &tables([1, 0], |_, _| {}, 8))[1];
+    let (_, changed) = compared(tables([1, 0], |_, _| {}, 8));
     assert_eq!(
-        counts.columns[0].changes,
-        [("9".to_owned(), "8".to_owned(), 1)]
+        (&changed[0].table[..], changed[0].n_changed),
+        ("counts.csv", 1)
     );
 }
 

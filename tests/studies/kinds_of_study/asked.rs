@@ -33,11 +33,9 @@ fn axes_of_a_study_are_choices_that_are_advised_and_settings_that_are_compared()
     case.file("deeper.toml", study.replace("[1.0, 3.0]", "[3.0, 4.0]"));
     case.succeeds(&["run", "deeper.toml", "--out", "deeper"]);
     let (said, _) = case.succeeds(&["compare", "found", "deeper"]);
-    says(
-        &said,
-        &["accuracy.csv: 2 settings are in both runs, 2 in the first alone, 2 in the"],
-    );
-    says(&said, &["accuracy: 2 the same, 0 better"]);
+    let line = said.lines().find(|line| line.starts_with("accuracy.csv"));
+    let counts: Vec<&str> = line.unwrap().split_whitespace().skip(1).collect();
+    assert_eq!(counts, ["2", "2", "2"], "{said}");
 }
 
 #[test]
