@@ -18,8 +18,6 @@ pub mod pictures;
 pub mod progress;
 pub mod recording;
 pub mod scene_files;
-pub mod scene_summary;
-pub(crate) mod study_content;
 pub mod study_folder;
 pub mod swept;
 pub mod terminal;

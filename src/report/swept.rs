@@ -105,13 +105,9 @@ impl<'a> Setting<'a> {
 
     /// Returns the name and value of the setting in a row as text without what the name counts per, such as `touches 5` for touches per decision.
     fn short_phrase(&self, row: usize) -> String {
-        let name = self.column.words.split(" per ").next().unwrap_or_default();
-        let words = name.to_owned().into();
-        let column = &Column {
-            words,
-            ..self.column.clone()
-        };
-        Setting { column, ..*self }.phrase(row)
+        let words = &self.column.words[..];
+        let name = words.split(" per ").next().unwrap_or_default();
+        self.phrase(row).replacen(words, name, 1)
     }
 
     /// Returns the value of the setting in a row as text. For an absent value, returns the column's name for it, or "none".
@@ -222,7 +218,8 @@ impl<'a> Swept<'a> {
     /// no place for such a row.
     pub fn main(&self, rows: &[usize]) -> Option<Setting<'a>> {
         let numbers = self.free.iter().filter(|setting| setting.is_number());
-        let numbers = numbers.filter(|setting| numbers_are_there(setting, rows));
+        let is_there = |one: &&Setting| rows.iter().all(|&row| one.data.value(row).is_some());
+        let numbers = numbers.filter(is_there);
         let main = numbers.max_by_key(|setting| setting.levels(rows).len());
         let words = self.free.iter().find(|setting| !setting.is_number());
         main.or(words).or(self.free.first()).copied()
@@ -288,11 +285,6 @@ pub fn constant_phrases(
         .filter(has_one)
         .map(|one| one.phrase(rows[0]).replace(' ', "\u{a0}"));
     phrases.collect()
-}
-
-/// Returns whether a numeric setting has a number in every given row.
-fn numbers_are_there(setting: &Setting, rows: &[usize]) -> bool {
-    rows.iter().all(|&row| setting.data.value(row).is_some())
 }
 
 /// Returns the given settings without some of them.

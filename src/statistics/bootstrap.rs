@@ -2,11 +2,12 @@
 
 use crate::quantile::of_sorted;
 use crate::random::Seed;
+use crate::statistics::comparison::student;
 use crate::{Error, Result};
 use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
 use rand::Rng;
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal};
 use std::collections::BTreeMap;
 
 /// Minimum number of trials for a bootstrap interval; four trials give too few distinct resamples for a coverage of 95 %.
@@ -133,9 +134,7 @@ fn means_of_blocks(scores: ArrayView2<f64>, rows: &[u32], columns: &[u32]) -> Ve
 /// Returns the fraction of the sorted resampled means that is excluded at each end of the confidence interval; `n` is the number of trials.
 fn tail(n: usize, confidence: f64) -> Result<f64> {
     let n = n as f64;
-    let student = StudentsT::new(0.0, 1.0, n - 1.0)
-        .map_err(|error| Error::input("bootstrap", error, "at least two trials"))?;
-    let t = student.inverse_cdf(0.5 + 0.5 * confidence);
+    let t = student(n - 1.0)?.inverse_cdf(0.5 + 0.5 * confidence);
     Ok(Normal::standard().cdf(-(n / (n - 1.0)).sqrt() * t))
 }
 

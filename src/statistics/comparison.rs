@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::statistics::mean_squares::MeanSquares;
+use crate::statistics::variance::MeanSquares;
 use crate::{Error, Result};
 use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
@@ -199,7 +199,8 @@ impl Estimate {
     }
 }
 
-fn student(freedom: f64) -> Result<StudentsT> {
+/// Returns Student's t distribution with the given degrees of freedom.
+pub(super) fn student(freedom: f64) -> Result<StudentsT> {
     StudentsT::new(0.0, 1.0, freedom)
         .map_err(|error| Error::input("comparison", error, "at least two trials are needed"))
 }

@@ -4,7 +4,6 @@ pub mod bootstrap;
 pub mod comparison;
 pub mod grouped;
 pub mod many_tests;
-pub(crate) mod mean_squares;
 pub mod p_status;
 pub mod rank_correlation;
 pub mod repeats;

@@ -117,48 +117,46 @@ pub(super) fn rows_with(table: &Table, rows: Vec<usize>, text: &str) -> Result<V
         return Err(refuse());
     }
     let place = format!("--given {key}");
-    match table.column(key).map(|(column, _)| column.role) {
-        Some(Role::Condition) => {}
-        Some(Role::Choice) => {
-            let allowed = "a condition of the world; choices are what is advised";
-            return Err(Error::input(place, "is a choice", allowed));
-        }
-        _ => {
-            let allowed = match table.of_role(Role::Condition)[..] {
-                [] => "no such option: the study was made in one condition".to_owned(),
-                ref known => format!("one of {}", known.join(", ")),
-            };
-            let given = "is no condition of this study";
-            return Err(Error::input(place, given, allowed));
-        }
-    }
-    let data = table.column(key).map(|(_, data)| data);
-    let value_of = |row: usize| data.and_then(|data| data.value(row));
-    let mut known = table.one_of(key, rows.iter().copied());
-    if rows.iter().any(|&row| value_of(row).is_none()) {
-        known += ", none";
-    }
-    let with = |is_wanted: &dyn Fn(Option<Value>) -> bool| -> Vec<usize> {
-        let rows = rows.iter().copied();
-        rows.filter(|&row| is_wanted(value_of(row))).collect()
+    let found = table.column(key);
+    let Some((column, data)) = found.filter(|(column, _)| column.role == Role::Condition) else {
+        let is_choice = found.is_some_and(|(column, _)| column.role == Role::Choice);
+        let (given, allowed) = match &table.of_role(Role::Condition).join(", ")[..] {
+            _ if is_choice => (
+                "is a choice",
+                "a condition of the world; choices are what is advised".to_owned(),
+            ),
+            "" => (
+                "is no condition of this study",
+                "no such option: the study was made in one condition".to_owned(),
+            ),
+            known => ("is no condition of this study", format!("one of {known}")),
+        };
+        return Err(Error::input(place, given, allowed));
     };
-    let unit = table.column(key).map_or("", |(column, _)| &column.unit);
-    let wanted = given_value(value, unit).ok_or_else(|| {
-        let allowed = format!("a number, in the unit of the column: {unit}");
+    let wanted = given_value(value, &column.unit).ok_or_else(|| {
+        let allowed = format!("a number, in the unit of the column: {}", column.unit);
         Error::input(&place, value, allowed)
     })?;
+    let with = |is_wanted: &dyn Fn(Option<Value>) -> bool| -> Vec<usize> {
+        let rows = rows.iter().copied();
+        rows.filter(|&row| is_wanted(data.value(row))).collect()
+    };
     // An exact match has priority over a match within the tolerance.
-    let mut found = with(&|known| known.as_ref() == Some(&wanted));
-    if found.is_empty() {
-        found = with(&|known| known.is_some_and(|known| known.agrees(&wanted)));
-    }
-    if found.is_empty() && value == "none" {
-        found = with(&|known| known.is_none());
-    }
-    match found.is_empty() {
-        true => Err(Error::input(place, value, known)),
-        false => Ok(found),
-    }
+    let found = [
+        with(&|known| known.as_ref() == Some(&wanted)),
+        with(&|known| known.is_some_and(|known| known.agrees(&wanted))),
+        with(&|known| known.is_none() && value == "none"),
+    ];
+    found
+        .into_iter()
+        .find(|rows| !rows.is_empty())
+        .ok_or_else(|| {
+            let mut known = table.one_of(key, rows.iter().copied());
+            if !with(&|known| known.is_none()).is_empty() {
+                known += ", none";
+            }
+            Error::input(place, value, known)
+        })
 }
 
 /// Parses the value of a condition: a text, or a number with an optional unit (`0.5 mm`, `5 %`). Returns `None` if the unit differs from the column's unit.

@@ -17,14 +17,14 @@ pub(super) struct Front<'a> {
 
 /// Returns whether larger values on the y axis are better.
 pub(super) fn is_more_better(view: &View) -> bool {
-    let y = view.column(&view.spec.y).map(|y| y.column.role);
-    !matches!(y, Ok(Role::Value(Better::Less) | Role::Cost))
+    let role = view.y_column.column.role;
+    !matches!(role, Role::Value(Better::Less) | Role::Cost)
 }
 
 /// Returns the legend text for the line of the Pareto front.
 pub(super) fn words(view: &View) -> String {
-    let cost = match view.column(&view.spec.x) {
-        Ok(x) if matches!(&x.column.unit[..], "s" | "ms" | "us" | "µs") => "faster",
+    let cost = match &view.x_column.column.unit[..] {
+        "s" | "ms" | "us" | "µs" => "faster",
         _ => "cheaper",
     };
     format!("Pareto front: nothing is both {cost} and as good")
@@ -39,7 +39,7 @@ impl<'a> Front<'a> {
         let mut fronts = Vec::new();
         let panels = (0..view.panels.names.len()).filter(|_| view.spec.front);
         for panel in panels {
-            let here = view.places.iter().filter(|place| place.panel == panel);
+            let here = view.here(panel);
             let places: HashMap<usize, &Place> =
                 here.clone().map(|place| (place.row, place)).collect();
             let rows: Vec<usize> = here.map(|place| place.row).collect();

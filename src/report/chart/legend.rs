@@ -125,7 +125,7 @@ impl LegendEntry {
 
     fn draw(&self, drawing: &mut Drawing, x: f64, y: f64) {
         match self.is_series {
-            true => drawing.group(&[("toggle", &self.text)], |drawing| {
+            true => drawing.group([("toggle", self.text.clone())], |drawing| {
                 self.draw_mark_and_text(drawing, x, y);
             }),
             false => self.draw_mark_and_text(drawing, x, y),

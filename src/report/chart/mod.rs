@@ -34,7 +34,7 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
             "one at least",
         ));
     }
-    match spec.mark.fill() {
+    match view.fill {
         Some(fill) => tiles::draw(&view, fill),
         None => series::draw(&view),
     }

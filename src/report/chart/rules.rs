@@ -65,8 +65,8 @@ fn lines(view: &View, rule: &Rule, panel: usize) -> Vec<Vec<Point>> {
     let Some(numbers) = view.table.numbers(column) else {
         return Vec::new();
     };
-    let here = view.places.iter().filter(|place| place.panel == panel);
-    let mut places: Vec<(f64, f64)> = here
+    let mut places: Vec<(f64, f64)> = view
+        .here(panel)
         .filter_map(|place| {
             let along = match rule.along {
                 Along::X => place.y,

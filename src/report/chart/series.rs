@@ -177,12 +177,11 @@ impl Panel<'_> {
     fn draw(&self, drawing: &mut Drawing) {
         let view = self.view;
         let of_line = |line: usize| {
-            let places = view.places.iter();
-            places.filter(move |place| place.panel == self.panel && place.line == line)
+            view.here(self.panel)
+                .filter(move |place| place.line == line)
         };
-        let lines: Vec<Vec<&Place>> = (0..view.lines.names.len())
-            .map(|line| of_line(line).collect())
-            .collect();
+        let lines = (0..view.lines.names.len()).map(|line| of_line(line).collect());
+        let lines: Vec<Vec<&Place>> = lines.collect();
         for (line, places) in lines.iter().enumerate() {
             self.draw_series(drawing, line, |drawing| {
                 self.draw_intervals(drawing, line, places);
@@ -239,7 +238,7 @@ impl Panel<'_> {
             let name = &self.view.lines.names[line];
             let text = shorten(name, END_LABEL, WIDEST);
             drawing.line(end, (x + 10.0, y), Stroke::new(colour, 0.8));
-            drawing.group(&[("toggle", name)], |drawing| {
+            drawing.group([("toggle", name.clone())], |drawing| {
                 drawing.marker(line, (x + 12.0, y), 0.8 * MARKER_RADIUS, colour);
                 let at = (x + END_GAP - 4.0, y + 4.0);
                 drawing.text(at, &text, style);
@@ -251,7 +250,7 @@ impl Panel<'_> {
     fn draw_series(&self, drawing: &mut Drawing, line: usize, draw: impl FnOnce(&mut Drawing)) {
         match &self.view.lines.names[line][..] {
             "" => draw(drawing),
-            name => drawing.group(&[("series", name)], draw),
+            name => drawing.group([("series", name.to_owned())], draw),
         }
     }
 
@@ -330,13 +329,8 @@ impl Panel<'_> {
     /// of a labelled chart from both ends.
     fn labels(&self) -> Vec<(&Place, String)> {
         let view = self.view;
-        let here = view.places.iter().filter(|place| place.panel == self.panel);
-        if let Some(label) = view
-            .spec
-            .label
-            .as_ref()
-            .and_then(|name| view.column(name).ok())
-        {
+        let here = view.here(self.panel);
+        if let Some(label) = view.label {
             let named = here.filter(|place| label.data.value(place.row).is_some());
             let labels = named.map(|place| (place, label.label(place.row)));
             let mut labels: Vec<(&Place, String)> = labels.collect();
@@ -360,14 +354,9 @@ impl Panel<'_> {
         let marker = 2.0 * MARKER_RADIUS;
         let around = |(place, _): &(&Place, String)| Area::around(self.at(place), (marker, marker));
         let mut taken: Vec<Area> = labels.iter().map(around).collect();
-        let here = self
-            .view
-            .places
-            .iter()
-            .filter(|place| place.panel == self.panel);
-        let points: Vec<Area> = here
-            .map(|place| Area::around(self.at(place), (marker, marker)))
-            .collect();
+        let here = self.view.here(self.panel);
+        let points = here.map(|place| Area::around(self.at(place), (marker, marker)));
+        let points: Vec<Area> = points.collect();
         let (over, under) = (-8.0, 14.0);
         let (outer, inner) = match front::is_more_better(self.view) {
             true => (over, under),

@@ -35,8 +35,8 @@ struct Look<'a> {
 }
 
 /// Draws a chart of tiles, coloured by the column `fill`.
-pub(super) fn draw(view: &View, fill: &str) -> Result<Drawing> {
-    let look = Look::new(view, view.column(fill)?);
+pub(super) fn draw(view: &View, fill: Setting) -> Result<Drawing> {
+    let look = Look::new(view, fill);
     let (across, down) = (view.x.levels.len(), view.y.levels.len());
     let columns = view.panels.names.len().min(PANELS_ACROSS);
     let is_many = across.min(down) >= MANY || across * columns >= MANY;
@@ -55,8 +55,10 @@ pub(super) fn draw(view: &View, fill: &str) -> Result<Drawing> {
     for panel in 0..view.titles.len() {
         let frame = layout.frame(panel);
         layout.draw_axes(&mut drawing, view, panel);
-        let here = view.places.iter().filter(|place| place.panel == panel);
-        for place in here.filter(|place| look.fill.data.value(place.row).is_some()) {
+        for place in view
+            .here(panel)
+            .filter(|place| look.fill.data.value(place.row).is_some())
+        {
             let area = Area::around(frame.at(place.x, place.y), size);
             let (colour, sign) = (look.colour(place.row), look.sign(place.row));
             view.draw_mark(&mut drawing, place, |drawing| {

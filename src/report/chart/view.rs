@@ -24,6 +24,13 @@ pub(super) struct View<'a> {
     pub lines: Groups,
     /// Groups of rows that form the panels of the chart.
     pub panels: Groups,
+    /// Columns along the axes.
+    pub x_column: Setting<'a>,
+    pub y_column: Setting<'a>,
+    /// Column that determines the colour of the tiles, in a chart of tiles.
+    pub fill: Option<Setting<'a>>,
+    /// Column whose texts are written above the points.
+    pub label: Option<Setting<'a>>,
     pub x: Scale,
     pub y: Scale,
     /// Whether points are joined by lines along x; points at texts and named numbers are not joined.
@@ -89,7 +96,8 @@ impl<'a> View<'a> {
             Ok(Groups::new(table, &settings?, &rows))
         };
         let (lines, panels) = (groups(&spec.lines)?, groups(spec.panels.as_slice())?);
-        let is_tiles = spec.mark.fill().is_some();
+        let fill = spec.mark.fill().map(column).transpose()?;
+        let is_tiles = fill.is_some();
         let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
         x.column = spec.x_is.as_ref().unwrap_or(x.column);
         let y_values = values(&y, &rows, &[]);
@@ -132,6 +140,10 @@ impl<'a> View<'a> {
             lines,
             panels,
             rows,
+            x_column: x,
+            y_column: y,
+            fill,
+            label: spec.label.as_deref().map(column).transpose()?,
             x: x_scale,
             // A front fills its panel along both axes.
             y: scale(
@@ -212,6 +224,11 @@ impl<'a> View<'a> {
         right.is_none_or(|right| self.table.has_setting(&right.column, row, &right.value))
     }
 
+    /// Returns the positions of the rows in a panel, line by line along x.
+    pub fn here(&self, panel: usize) -> impl Iterator<Item = &Place> + Clone {
+        self.places.iter().filter(move |place| place.panel == panel)
+    }
+
     /// Returns the setting in the column with this name.
     pub fn column(&self, name: &str) -> Result<Setting<'a>> {
         column_of(self.spec, self.table, name)
@@ -219,43 +236,29 @@ impl<'a> View<'a> {
 
     /// Draws the mark of a row in an SVG group with data attributes: row number, and axis values with units.
     pub fn draw_mark(&self, drawing: &mut Drawing, place: &Place, draw: impl FnOnce(&mut Drawing)) {
-        let spec = self.spec;
-        let words = |name: &str| {
-            let column = self.column(name).ok();
-            column.map_or_else(String::new, |one| match &spec.x_is {
-                Some(column) if name == spec.x => Setting { column, ..one }.label(place.row),
-                _ => one.label(place.row),
-            })
-        };
+        let row = place.row;
+        let y = self.y_column.column;
         let mut data = vec![
-            ("row", place.row.to_string()),
-            ("x", words(&spec.x)),
-            ("y", words(&spec.y)),
+            ("row", row.to_string()),
+            ("x", self.x_column.label(row)),
+            ("y", self.y_column.label(row)),
         ];
-        let y = self.table.column(&spec.y).map(|(column, _)| column);
-        let ends = y.and_then(|y| Some((y, self.table.interval(y, place.row)?)));
-        if let Some((y, [low, high])) = ends {
+        if let Some([low, high]) = self.table.interval(y, row) {
             data.push(("interval", format!("{} to {}", y.tick(low), y.tick(high))));
         }
-        if let Some(fill) = spec.mark.fill() {
-            data.push(("fill", words(fill)));
-        }
+        data.extend(self.fill.map(|fill| ("fill", fill.label(row))));
         let panel = &self.titles[place.panel];
         if !panel.is_empty() {
             data.push(("panel", panel.clone()));
         }
-        let data: Vec<(&str, &str)> = data
-            .iter()
-            .map(|(name, value)| (*name, &value[..]))
-            .collect();
-        drawing.group(&data, draw);
+        drawing.group(data, draw);
     }
 
     /// Returns the name of the confidence interval: the part before the comma that its two column names share, or both names. Returns `None` if there is no
     /// interval.
     pub fn interval_words(&self) -> Option<String> {
         let words = |name: &str| Some(self.column(name).ok()?.column.words.as_ref());
-        let [low, high] = self.column(&self.spec.y).ok()?.column.interval.as_ref()?;
+        let [low, high] = self.y_column.column.interval.as_ref()?;
         let (low, high) = (words(low)?, words(high)?);
         Some(match (low.split_once(", "), high.split_once(", ")) {
             (Some((same, _)), Some((other, _))) if same == other => same.to_owned(),
@@ -265,48 +268,36 @@ impl<'a> View<'a> {
 
     /// Returns a text about the rows that are not drawn in the chart: their number and the reasons. The text is empty if all rows are drawn.
     pub fn omitted(&self) -> String {
-        let (n, n_shown) = (self.table.n_rows, self.rows.len());
-        let drawn = self.drawn();
-        let n_drawn = drawn.len();
+        let (n, n_shown, n_drawn) = (self.table.n_rows, self.rows.len(), self.drawn().len());
         if n_drawn == n {
             return String::new();
         }
-        let axes = [&self.spec.x[..], &self.spec.y];
-        let axes = axes.into_iter().chain(self.spec.mark.fill());
-        let axes: Vec<Setting> = axes.filter_map(|name| self.column(name).ok()).collect();
-        let lacks = |one: &&Setting| self.rows.iter().any(|&row| one.data.value(row).is_none());
-        let lacking = axes.iter().filter(lacks);
-        let lacking = lacking.map(|one| format!("no {}", one.column.words));
-        let mut reasons: Vec<String> = lacking.collect();
-        if reasons.is_empty() {
-            reasons.push("no place of their own".to_owned());
-        }
-        let mut said = Vec::new();
+        let axes = [self.x_column, self.y_column].into_iter().chain(self.fill);
+        let lacks = |one: &Setting| self.rows.iter().any(|&row| one.data.value(row).is_none());
+        let lacking = axes
+            .filter(lacks)
+            .map(|one| format!("no {}", one.column.words));
+        let reasons = match &lacking.collect::<Vec<_>>().join(" or ")[..] {
+            "" => "no place of their own".to_owned(),
+            reasons => reasons.to_owned(),
+        };
         let have = |n: usize| if n == 1 { "has" } else { "have" };
-        let n_lost = n_shown - n_drawn;
-        if n_lost > 0 {
-            said.push(format!(
-                "{n_lost} {} {}",
-                have(n_lost),
-                reasons.join(" or ")
-            ));
-        }
-        let n_others = n - n_shown;
-        if n_others > 0 {
-            said.push(format!("{n_others} {} other settings", have(n_others)));
-        }
-        format!("{n_drawn} of {n} rows are drawn; {}.", said.join(", "))
+        let said = [
+            (n_shown - n_drawn, &reasons[..]),
+            (n - n_shown, "other settings"),
+        ];
+        let said = said.into_iter().filter(|(n, _)| *n > 0);
+        let said = said.map(|(n, what)| format!("{n} {} {what}", have(n)));
+        let said = said.collect::<Vec<_>>().join(", ");
+        format!("{n_drawn} of {n} rows are drawn; {said}.")
     }
 
     /// Returns the rows whose marks are visible; a tile at the position of an earlier tile covers the earlier tile.
     pub fn drawn(&self) -> Vec<usize> {
-        let Some(fill) = self.spec.mark.fill() else {
+        let Some(fill) = self.fill else {
             return self.places.iter().map(|place| place.row).collect();
         };
-        let is_filled = |place: &&Place| {
-            let fill = self.column(fill);
-            fill.is_ok_and(|fill| fill.data.value(place.row).is_some())
-        };
+        let is_filled = |place: &&Place| fill.data.value(place.row).is_some();
         let seen = self.places.iter().filter(is_filled).map(|place| {
             let at = (place.panel, place.x.to_bits(), place.y.to_bits());
             (at, place.row)

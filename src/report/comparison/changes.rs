@@ -112,12 +112,35 @@ fn configurations(tables: &[Table]) -> Configurations {
 
 /// Returns the values of some columns in a row as text with units, which does not depend on the order of the columns. An absent entry and an absent column are
 /// treated alike: the setting does not apply.
-pub(super) fn key(columns: &[Setting], row: usize, configurations: &Configurations) -> String {
+fn key(columns: &[Setting], row: usize, configurations: &Configurations) -> String {
     let entries = columns.iter();
     let entries = entries.filter_map(|one| entry(*one, row, configurations));
     let mut entries: Vec<String> = entries.collect();
     entries.sort();
     entries.concat()
+}
+
+/// Returns the rows with equal values of the given columns in two versions of a table, one pair of lists for each combination of values that both versions
+/// have, in the order of the second version.
+pub(super) fn common_rows(
+    tables: [&Table; 2],
+    columns: &[Vec<Setting>; 2],
+    configurations: &[Configurations; 2],
+) -> Vec<[Vec<usize>; 2]> {
+    let mut places = HashMap::new();
+    let mut groups: Vec<[Vec<usize>; 2]> = Vec::new();
+    for side in [1, 0] {
+        for row in 0..tables[side].n_rows {
+            let key = key(&columns[side], row, &configurations[side]);
+            let place = *places.entry(key).or_insert(groups.len());
+            if place == groups.len() {
+                groups.push([Vec::new(), Vec::new()]);
+            }
+            groups[place][side].push(row);
+        }
+    }
+    groups.retain(|rows| rows.iter().all(|rows| !rows.is_empty()));
+    groups
 }
 
 /// Returns the entry of a row as text, with the display name and unit of its column. A configuration number is replaced by the settings of the configuration.
@@ -143,15 +166,12 @@ impl<'a> Pair<'a> {
     /// Pairs the rows of two versions of a table that have equal settings. Rows that no setting distinguishes are paired in order.
     fn new(tables: [&'a Table; 2], configurations: &'a [Configurations; 2]) -> Self {
         let columns = tables.map(|table| Setting::of_roles(table, &KEY_ROLES).collect::<Vec<_>>());
-        let key = |side: usize, row| key(&columns[side], row, &configurations[side]);
-        let mut places: HashMap<String, Vec<usize>> = HashMap::new();
-        for row in (0..tables[0].n_rows).rev() {
-            places.entry(key(0, row)).or_default().push(row);
-        }
-        let rows = (0..tables[1].n_rows)
-            .filter_map(|row| Some([places.get_mut(&key(1, row))?.pop()?, row]));
+        let common = common_rows(tables, &columns, configurations).into_iter();
+        let rows = common.flat_map(|[theirs, ours]| theirs.into_iter().zip(ours));
+        let mut rows: Vec<[usize; 2]> = rows.map(|(theirs, ours)| [theirs, ours]).collect();
+        rows.sort_by_key(|[_, ours]| *ours);
         Self {
-            rows: rows.collect(),
+            rows,
             tables,
             configurations,
         }

@@ -6,7 +6,7 @@ use super::rank_agreement::RankAgreement;
 use crate::engine::provenance::PROGRAM;
 use crate::error::Result;
 use crate::report::page::StudyAbout;
-use crate::report::study_content::Found;
+use crate::report::study_folder::Found;
 use crate::report::study_folder::{Beyond, files_with, words_of};
 use crate::spelling::counted;
 use crate::table::{Along, At, ChartSpec, File, Mark, Role, Rule, Shown, Table};

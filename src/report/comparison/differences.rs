@@ -5,7 +5,7 @@
 //! intervals and no trials, a difference is significant if the two intervals are disjoint.
 
 use crate::error::{Error, Result};
-use crate::report::comparison::changes::{Configurations, key};
+use crate::report::comparison::changes::common_rows;
 use crate::report::swept::Setting;
 use crate::row;
 use crate::statistics::comparison::TrialSize;
@@ -14,7 +14,7 @@ use crate::statistics::p_status::{CONFIDENCE, PStatus};
 use crate::statistics::repeats::{Paired, Repeat};
 use crate::table::{Column, Role, Table};
 use serde::{Deserialize, Serialize};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// Statistical significance of a difference between two runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -83,19 +83,32 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<Difference>>
     let mut has_values = false;
     // A table without a file is derived from other tables and contains nothing new.
     for second in second.iter().filter(|table| !table.csv.is_empty()) {
-        let first = first.iter().find(|first| first.file == second.file);
-        let (Some(first), Some(second)) = (first.and_then(Settings::new), Settings::new(second))
-        else {
+        let Some(first) = first.iter().find(|first| first.file == second.file) else {
             continue;
         };
-        let pairs = second.pairs(&first);
-        let settings = second.columns.iter().map(|one| &one.column.name);
-        let settings: Vec<_> = settings.collect();
-        for column in &second.table.columns {
+        let tables = [first, second];
+        let columns = tables.map(setting_columns);
+        let pairs = common_rows(tables, &columns, &Default::default());
+        let is_repeated = tables.map(|table| table.place("trial").is_some());
+        let is_alone = |side: usize| pairs.iter().all(|rows| rows[side].len() == 1);
+        // Numbers of configurations differ between runs, and rows with equal settings cannot be told apart without trials.
+        let has_cells =
+            |columns: &Vec<Setting>| columns.iter().any(|one| one.column.name == "configuration");
+        if columns
+            .iter()
+            .any(|columns| columns.is_empty() || has_cells(columns))
+            || [0, 1]
+                .iter()
+                .any(|&side| !is_repeated[side] && !is_alone(side))
+        {
+            continue;
+        }
+        let settings: Vec<_> = columns[1].iter().map(|one| &one.column.name).collect();
+        for column in &second.columns {
             let is_compared = matches!(column.role, Role::Value(_) | Role::Cost);
-            let is_number = first.table.numbers(&column.name).is_some();
+            let is_number = first.numbers(&column.name).is_some();
             if is_compared && is_number && known.insert((settings.clone(), &column.name)) {
-                let rows = of_column(column, (&first, &second), &pairs)?;
+                let rows = of_column(column, tables, &columns[1], &pairs)?;
                 has_values |= column.role != Role::Cost && !rows.is_empty();
                 found.extend(rows);
             }
@@ -111,105 +124,60 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<Difference>>
     }
 }
 
-/// Settings that occur in a table, with the row numbers of each setting.
-struct Settings<'a> {
-    table: &'a Table,
-    /// Columns whose values identify a setting.
-    columns: Vec<Setting<'a>>,
-    /// Table rows of each setting (one per trial), in the order of first occurrence.
-    groups: Vec<Vec<usize>>,
-    is_repeated: bool,
+/// Returns the columns whose values identify a setting; a setting has several trials.
+fn setting_columns(table: &Table) -> Vec<Setting<'_>> {
+    let columns = Setting::of_roles(table, &[Role::Choice, Role::Condition, Role::Subject]);
+    columns.filter(|one| one.column.name != "trial").collect()
 }
 
-impl<'a> Settings<'a> {
-    /// Groups the rows of a table by their setting. Returns `None` if the table identifies configurations by numbers, because numbers differ between runs.
-    /// Also returns `None` if several rows of a table without trials have the same setting.
-    fn new(table: &'a Table) -> Option<Self> {
-        let columns = Setting::of_roles(table, &[Role::Choice, Role::Condition, Role::Subject]);
-        let columns = columns.filter(|one| one.column.name != "trial");
-        let columns: Vec<Setting> = columns.collect();
-        let groups = Setting::groups(&columns, table, &table.all_rows());
-        let is_repeated = table.place("trial").is_some();
-        let is_told_apart = is_repeated || groups.len() == table.n_rows;
-        let has_cells = columns.iter().any(|one| one.column.name == "configuration");
-        let is_known = !columns.is_empty() && !has_cells && is_told_apart;
-        is_known.then_some(Self {
-            table,
-            columns,
-            groups,
-            is_repeated,
-        })
-    }
+/// Returns the number in a column and row as an integer; `None` if the column or the number does not exist.
+fn count(table: &Table, column: &str, row: usize) -> Option<usize> {
+    let number = table.numbers(column)?[row];
+    (!number.is_nan()).then_some(number as usize)
+}
 
-    /// Returns the setting of a row as text, which does not depend on the order of the columns.
-    fn key(&self, row: usize) -> String {
-        key(&self.columns, row, &Configurations::new())
-    }
-
-    /// Returns the rows of each setting that both tables have: in the other table, and in this table.
-    fn pairs<'s>(&'s self, other: &'s Self) -> Vec<[&'s [usize]; 2]> {
-        let known = other.groups.iter();
-        let known = known.map(|rows| (other.key(rows[0]), &rows[..]));
-        let known: HashMap<String, &[usize]> = known.collect();
-        let pairs = self.groups.iter();
-        let pairs = pairs.filter_map(|ours| Some([*known.get(&self.key(ours[0]))?, &ours[..]]));
-        pairs.collect()
-    }
-
-    /// Returns the settings of a row as text, limited to columns whose values vary.
-    fn words(&self, row: usize) -> String {
-        let columns = self.columns.iter();
-        let varying = columns.filter(|one| one.data.varies(0..self.table.n_rows));
-        let said = varying.filter_map(|one| Some(one.column.phrase(&one.data.value(row)?)));
-        said.collect::<Vec<_>>().join(", ")
-    }
-
-    /// Returns the number in a column and row as an integer; `None` if the column or the number does not exist.
-    fn count(&self, column: &str, row: usize) -> Option<usize> {
-        let number = self.table.numbers(column)?[row];
-        (!number.is_nan()).then_some(number as usize)
-    }
-
-    /// Returns the numbers of a column in the given rows as scores of trials.
-    fn repeats(&self, column: &str, rows: &[usize]) -> Vec<Repeat> {
-        let repeats = rows.iter().map(|&row| {
-            let trial = self.count("trial", row).unwrap_or(0);
-            let projection = self.count("projection", row);
-            let split = self.count("split", row).filter(|_| projection.is_some());
-            let split = self.count("distinct_split", row).or(split);
-            Repeat {
-                trial,
-                split: split.unwrap_or(trial),
-                projection,
-                score: self.table.number(column, row),
-                size: self.trial_size(row),
-            }
-        });
-        repeats.filter(|repeat| !repeat.score.is_nan()).collect()
-    }
-
-    /// Returns the numbers of training and test touches in the trial of a row; `None` if the table does not contain these numbers.
-    fn trial_size(&self, row: usize) -> Option<TrialSize> {
-        self.is_repeated.then_some(())?;
-        let n_decisions = self.count("n_test", row)?;
-        Some(TrialSize {
-            n_train: self.count("n_train", row)?,
-            // The overlap of trials is counted in touches; a decision can use several touches.
-            n_test: n_decisions * self.count("touches_per_decision", row).unwrap_or(1),
-            n_decisions,
-        })
-    }
+/// Returns the numbers of a column in the given rows as scores of trials.
+fn repeats(table: &Table, column: &str, rows: &[usize]) -> Vec<Repeat> {
+    let repeats = rows.iter().map(|&row| {
+        let count = |column: &str| count(table, column, row);
+        let trial = count("trial");
+        let projection = count("projection");
+        let split = count("split").filter(|_| projection.is_some());
+        let split = count("distinct_split").or(split).or(trial);
+        // The overlap of trials is counted in touches; a decision can use several touches.
+        let size = |n_decisions: usize| {
+            Some(TrialSize {
+                n_train: count("n_train")?,
+                n_test: n_decisions * count("touches_per_decision").unwrap_or(1),
+                n_decisions,
+            })
+        };
+        Repeat {
+            trial: trial.unwrap_or(0),
+            split: split.unwrap_or(0),
+            projection,
+            score: table.number(column, row),
+            size: trial.and_then(|_| size(count("n_test")?)),
+        }
+    });
+    repeats.filter(|repeat| !repeat.score.is_nan()).collect()
 }
 
 /// Compares one column in all settings that both tables have, with Holm's correction over them.
 fn of_column(
     column: &Column,
-    (first, second): (&Settings, &Settings),
-    pairs: &[[&[usize]; 2]],
+    tables: [&Table; 2],
+    settings: &[Setting],
+    pairs: &[[Vec<usize>; 2]],
 ) -> Result<Vec<Difference>> {
+    let n_rows = tables[1].n_rows;
+    let varying = settings.iter().filter(|one| one.data.varies(0..n_rows));
+    let varying: Vec<&Setting> = varying.collect();
     let mut rows = Vec::new();
-    for &[theirs, ours] in pairs {
-        rows.extend(of_setting(column, (first, theirs), (second, ours))?);
+    for pair in pairs {
+        let phrase = |one: &&Setting| Some(one.column.phrase(&one.data.value(pair[1][0])?));
+        let setting: Vec<String> = varying.iter().filter_map(phrase).collect();
+        rows.extend(of_setting(column, tables, pair, setting.join(", "))?);
     }
     let p_values: Vec<Option<f64>> = rows.iter().map(|row| row.p_value).collect();
     for (row, p_holm) in rows.iter_mut().zip(holm_of_some(&p_values)) {
@@ -228,23 +196,21 @@ fn explained(is_by_chance: bool) -> Significance {
     }
 }
 
-type Rows<'a> = (&'a Settings<'a>, &'a [usize]);
-
 /// Compares the numbers of one setting in the two folders; returns `None` if a number is missing.
 fn of_setting(
     column: &Column,
-    (first, theirs): Rows,
-    (second, ours): Rows,
+    [first, second]: [&Table; 2],
+    [theirs, ours]: &[Vec<usize>; 2],
+    setting: String,
 ) -> Result<Option<Difference>> {
-    let [ours_told, theirs_told] =
-        [(second, ours), (first, theirs)].map(|(of, rows)| of.repeats(&column.name, rows));
-    if ours_told.is_empty() || theirs_told.is_empty() {
+    let our_scores = repeats(second, &column.name, ours);
+    let their_scores = repeats(first, &column.name, theirs);
+    if our_scores.is_empty() || their_scores.is_empty() {
         return Ok(None);
     }
-    let paired = Paired::new(&ours_told, &theirs_told);
-    let setting = second.words(ours[0]);
+    let paired = Paired::new(&our_scores, &their_scores);
     if paired.n_trials() == 0 {
-        let given = format!("{}: {setting}: no trial is in both", second.table.file);
+        let given = format!("{}: {setting}: no trial is in both", second.file);
         let allowed = "runs that share their trials";
         return Err(Error::input("two runs", given, allowed));
     }
@@ -254,11 +220,15 @@ fn of_setting(
     };
     let tested = tested.as_ref();
     let (ours_mean, theirs_mean) = paired.means();
-    let intervals = first.table.interval(column, theirs[0]);
-    let intervals = intervals.zip(second.table.interval(column, ours[0]));
+    // Intervals of single trials do not apply to the means over trials.
+    let interval_of = |table: &Table, row: usize| match table.place("trial") {
+        Some(_) => None,
+        None => table.interval(column, row),
+    };
+    let intervals = interval_of(first, theirs[0]).zip(interval_of(second, ours[0]));
     let interval = tested.and_then(|tested| tested.interval);
     Ok(Some(Difference {
-        table: second.table.file.to_owned(),
+        table: second.file.to_owned(),
         column: column.name.to_string(),
         setting,
         row: ours[0],
@@ -270,11 +240,8 @@ fn of_setting(
         difference_high: interval.map(|interval| interval.high),
         significance: match intervals {
             _ if ours_mean == theirs_mean => Significance::Same,
-            // Intervals of single trials do not apply to the means over trials.
-            Some(([low, high], [from, to])) if !first.is_repeated && !second.is_repeated => {
-                explained(low <= to && from <= high)
-            }
-            _ => Significance::Untested,
+            Some(([low, high], [from, to])) => explained(low <= to && from <= high),
+            None => Significance::Untested,
         },
         p_value: tested.and_then(|tested| tested.p_value),
         p_holm: None,

@@ -1,11 +1,12 @@
 //! Page of a study of any kind.
 
-use super::choices::choices_html;
-use super::frame::{Section, figure, html, png_element, sentences_html, unbroken};
-use super::provenance::provenance_html;
+use super::frame::{Section, definition, figure, html, png_element, sentences_html, unbroken};
 use super::table::table_html;
+use crate::engine::provenance::Manifest;
+use crate::report::advice::{AdviceQuery, Candidates};
 use crate::report::pictures::drawing::escape;
-use crate::report::study_content::{Beyond, ChartFormat, Found, NamedPicture, StudyAbout};
+use crate::report::study_folder::{Beyond, ChartFormat, Found, NamedPicture, StudyAbout};
+use crate::spelling::counted;
 use crate::table::{ChartSpec, Table, short_number};
 
 /// Maximum size of all charts on a page together, bytes. With a larger value, the page is slow; with a smaller value, charts of some hundred points become
@@ -174,5 +175,95 @@ fn foot(about: &StudyAbout, tables: &[Table]) -> String {
         "<p>{}. The tables behind this page lie beside it: {}. Times differ from run to run; all else does not.</p>",
         escape(&about.program),
         escape(&files.join(", "))
+    )
+}
+
+/// Returns an HTML table of the best choices. For each condition, the table lists the choices that are better than all choices of equal or
+/// lower cost. The HTML is empty if no table has choices with costs.
+fn choices_html(found: &Found) -> String {
+    let Ok(offers) = Candidates::new(found.tables, &AdviceQuery::default()) else {
+        return String::new();
+    };
+    let (table, value) = (offers.table, offers.value);
+    if !table.compares_choices() {
+        return String::new();
+    }
+    format!(
+        "<p class=\"quiet\">The Pareto front of “{}”: each row reaches its {} for the least {}. Each condition of the world has a front of its own. \
+         <code>bubbletouch advise</code> selects a row by a value, a budget or another cost.</p>{}",
+        escape(table.title),
+        escape(&value.words),
+        escape(&offers.cost.words),
+        front_html(&offers)
+    )
+}
+
+fn front_html(offers: &Candidates) -> String {
+    let conditions = offers.by_condition();
+    let fronts = conditions.iter().flat_map(|of_one| offers.front(of_one));
+    // With one condition, the table has no column for it.
+    let first = usize::from(conditions.len() < 2);
+    let line = |tag: &str, cells: [String; 4]| {
+        let classes = [" class=word", "", "", " class=word"];
+        let cells = cells.iter().zip(classes).skip(first);
+        let cells = cells.map(|(cell, class)| format!("<{tag}{class}>{}</{tag}>", escape(cell)));
+        format!("<tr>{}</tr>\n", cells.collect::<String>())
+    };
+    let [value, cost] = [&offers.value.words, &offers.cost.words].map(|words| words.to_string());
+    let label = format!("Pareto front: {} and {}", escape(&value), escape(&cost));
+    let head = line(
+        "th",
+        ["condition".to_owned(), value, cost, "choice".to_owned()],
+    );
+    let rows = fronts.map(|offer| {
+        let value = offers.table.bounded(offers.value, offer.row);
+        let cost = offers.cost.number_words(offer.cost);
+        line(
+            "td",
+            [
+                offers.condition(&offer),
+                value,
+                cost,
+                offers.setting(&offer),
+            ],
+        )
+    });
+    format!(
+        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{label}\"><table><thead>{head}</thead><tbody>\n{}</tbody></table></div>",
+        rows.collect::<String>()
+    )
+}
+
+/// Returns the provenance as HTML: program, machine, times and hashes.
+fn provenance_html(manifest: &Manifest) -> String {
+    let Manifest { program, cpu, .. } = manifest;
+    let [cores, threads] = [(manifest.cores, "core"), (manifest.threads, "thread")]
+        .map(|(number, one)| counted(number, one));
+    let rows = [
+        ("Program", format!("{program}, commit {}", manifest.commit)),
+        (
+            "Built",
+            format!("{} for {}", manifest.rustc, manifest.target),
+        ),
+        ("Machine", format!("{cpu}, {cores}, {threads} used")),
+        (
+            "Run (UTC)",
+            format!("{} to {}", manifest.started, manifest.ended),
+        ),
+        (
+            "Work items",
+            format!(
+                "{}; {} were finished before this run, {} failed",
+                manifest.n_configurations, manifest.n_finished_before, manifest.n_failed
+            ),
+        ),
+        ("Seed", manifest.seed.to_string()),
+        ("Hash of the sources", manifest.source.clone()),
+        ("SHA-256 of study.toml", manifest.study_sha256.clone()),
+    ];
+    let rows = rows.iter().map(|(name, value)| definition(name, value));
+    format!(
+        "<dl>{}</dl><p class=\"quiet\">manifest.json lists the hashes of all tables and objects, and the methods of intervals and p-values.</p>",
+        rows.collect::<String>()
     )
 }

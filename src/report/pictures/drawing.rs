@@ -252,10 +252,14 @@ impl Drawing {
     }
 
     /// Draws elements inside an SVG group with `data-` attributes. The group is only written by `svg_with_data`.
-    pub fn group(&mut self, data: &[(&str, &str)], draw: impl FnOnce(&mut Self)) {
-        let attributes = data
-            .iter()
-            .map(|(name, value)| format!("data-{name}=\"{}\"", escape(value)));
+    pub fn group<'n>(
+        &mut self,
+        data: impl IntoIterator<Item = (&'n str, String)>,
+        draw: impl FnOnce(&mut Self),
+    ) {
+        let attributes = data.into_iter();
+        let attributes =
+            attributes.map(|(name, value)| format!("data-{name}=\"{}\"", escape(&value)));
         self.elements.push(Primitive::GroupStart {
             transform: None,
             title: None,

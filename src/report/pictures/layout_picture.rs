@@ -4,9 +4,8 @@ use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::report::pictures::colours::{GRID, INK, LINES, MUTED, PAINT, Rgb, text_on};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
-use crate::report::pictures::picture_axes::draw_scale_bar;
-use crate::report::recording::cells::{Cells, typical_spacing};
-use crate::report::recording::projected::view_from;
+use crate::report::pictures::picture_axes::{draw_scale_bar, round_up};
+use crate::report::recording::cells::{Cells, typical_spacing, view_from};
 use crate::report::recording::{ForceKind, RecordedPatch};
 use crate::report::text_width::text_width;
 use crate::world::Layout;
@@ -92,7 +91,7 @@ fn draw_map(drawing: &mut Drawing, cells: &Cells, (patch, step): (&RecordedPatch
     let every = if has_all {
         1
     } else {
-        round_step(n.div_ceil(MAX_NUMBERS))
+        round_up(n.div_ceil(MAX_NUMBERS) as f64) as usize
     };
     let is_numbered = |taxel: usize| taxel.is_multiple_of(every) && cells.block == 1;
     // Marked taxels are drawn last, so that no other taxel covers them.
@@ -131,17 +130,6 @@ fn draw_map(drawing: &mut Drawing, cells: &Cells, (patch, step): (&RecordedPatch
             false => -cells.radius - 2.0,
         };
         drawing.text((place.x, place.y + below), &text, style.colour(colour));
-    }
-}
-
-/// Returns the smallest of 1, 2, 5, 10, 20, … that is at least `least`.
-fn round_step(least: usize) -> usize {
-    let mut power = 1;
-    loop {
-        if let Some(step) = [1, 2, 5].into_iter().find(|step| step * power >= least) {
-            return step * power;
-        }
-        power *= 10;
     }
 }
 

@@ -113,12 +113,17 @@ pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
 
 /// Returns a step size of 1, 2 or 5 times a power of ten that divides a length into about five steps.
 pub(crate) fn tick_step(length: f64) -> f64 {
-    let raw = length / 5.0;
-    let power = 10f64.powf(raw.log10().floor());
-    let factor = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|f| f * power >= raw * 0.999);
-    factor.unwrap_or(10.0) * power
+    round_up(length / 5.0)
+}
+
+/// Returns the smallest of 1, 2 or 5 times a power of ten that is at least `least`, up to a rounding of 0.1 %.
+pub(crate) fn round_up(least: f64) -> f64 {
+    let power = 10f64.powf(least.log10().floor());
+    let mut factors = [1.0, 2.0, 5.0].into_iter();
+    factors
+        .find(|factor| factor * power >= least * 0.999)
+        .unwrap_or(10.0)
+        * power
 }
 
 #[cfg(test)]

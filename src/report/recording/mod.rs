@@ -25,7 +25,6 @@
 pub mod animation;
 pub(super) mod cells;
 mod header;
-pub(super) mod projected;
 mod reader;
 mod scene_view;
 pub mod skin_picture;

@@ -8,7 +8,7 @@ use crate::engine::progress::Silent;
 use crate::engine::provenance::Manifest;
 use crate::engine::work_items::{Part, RunOptions};
 use crate::report::page::StudyAbout;
-use crate::report::study_content::ChartFormat;
+use crate::report::study_folder::ChartFormat;
 use crate::studies::{AnyStudy, Loaded, Source};
 use saturation::SaturationStudy;
 use std::fs;

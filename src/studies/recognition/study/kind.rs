@@ -2,7 +2,7 @@
 
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::snapshots;
-use crate::report::study_content::{Beyond, NamedPicture};
+use crate::report::study_folder::{Beyond, NamedPicture};
 use crate::studies::prelude::*;
 use crate::studies::recognition::charts;
 use crate::studies::recognition::frames::Samples;

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::files::has_table;
 use crate::learning::classifiers::ClassifierKind;
 use crate::report::csv_tables::LIMITS_FILE;
-use crate::report::swept::Swept;
+use crate::report::swept::{Setting, Swept};
 use crate::statistics::bootstrap::coverage_of_95;
 use crate::statistics::grouped::FEW_GROUPS;
 use crate::statistics::p_status::CONFIDENCE;
@@ -412,49 +412,39 @@ pub(crate) const CHANGED_TO: &str = "changed_to";
 /// Returns the table of configurations. If single settings are changed, two columns name the changed setting and its value. The settings are in descending order
 /// of the accuracy that they cost at most.
 fn with_changes(table: Table) -> Table {
+    let mut alone = Swept::of(&table).one_at_a_time;
+    if alone.is_empty() {
+        return table;
+    }
     let rows = table.all_rows();
-    let alone = Swept::of(&table).one_at_a_time;
-    let change = |row: usize| alone.iter().position(|one| one.varies(&[0, row]));
-    let least = |place: usize| {
-        let own = rows.iter().filter(|&&row| change(row) == Some(place));
+    let least = |one: &Setting| {
+        let own = rows.iter().filter(|&&row| one.varies(&[0, row]));
         let accuracy = own.map(|&row| table.number("accuracy", row));
         accuracy.fold(f64::INFINITY, f64::min)
     };
-    let mut order: Vec<usize> = (0..alone.len()).collect();
-    order.sort_by(|&a, &b| least(a).total_cmp(&least(b)));
-    let base = std::iter::once(UNCHANGED.to_owned());
-    let names = order
+    alone.sort_by(|a, b| least(a).total_cmp(&least(b)));
+    let change = |row: usize| alone.iter().position(|one| one.varies(&[0, row]));
+    let names = alone.iter().map(|one| one.column.words.to_string());
+    let codes = rows
         .iter()
-        .map(|&place| alone[place].column.words.to_string());
-    let of_row = |row| {
-        change(row).map_or(0, |place| {
-            1 + order.iter().position(|p| *p == place).unwrap_or(0)
-        })
-    };
+        .map(|&row| change(row).map_or(0, |place| 1 + place as u32));
     let names = Data::Words {
-        levels: base.chain(names).collect(),
-        codes: rows.iter().map(|&row| of_row(row) as u32).collect(),
+        levels: [UNCHANGED.to_owned()].into_iter().chain(names).collect(),
+        codes: codes.collect(),
     };
-    let labels = rows
-        .iter()
-        .map(|&row| change(row).map_or_else(String::new, |place| alone[place].label(row)));
+    let label =
+        |&row: &usize| change(row).map_or_else(String::new, |place| alone[place].label(row));
     let values = Data::Words {
-        levels: labels.collect(),
-        codes: rows.iter().map(|&row| row as u32).collect(),
+        levels: rows.iter().map(label).collect(),
+        codes: (0..table.n_rows as u32).collect(),
     };
     let column = |name: &'static str, words: &'static str| {
         Column::new(name, Role::Note, words, "", Scale::Words)
     };
-    match alone.is_empty() {
-        true => table,
-        false => table
-            .with(
-                (table.file, table.title),
-                [
-                    (column(CHANGED, "changed setting"), names),
-                    (column(CHANGED_TO, "changed to"), values),
-                ],
-            )
-            .noted(table.note.clone()),
-    }
+    let changes = [
+        (column(CHANGED, "changed setting"), names),
+        (column(CHANGED_TO, "changed to"), values),
+    ];
+    let changed = table.with((table.file, table.title), changes);
+    changed.noted(table.note.clone())
 }

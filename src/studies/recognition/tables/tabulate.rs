@@ -5,7 +5,7 @@ use crate::learning::evaluation::metrics::ConfusionMatrix;
 use crate::studies::recognition::rows::conditions::most_accurate;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
-    Confusion, Recall, SelectedTaxel, Tables, TrialScore,
+    ConfigurationScore, Confusion, Recall, SelectedTaxel, Tables, TrialScore,
 };
 use crate::studies::recognition::spec::study::{ConfusionMatrices, Metric, ReportSpec};
 use crate::studies::recognition::tables::summary::{
@@ -79,36 +79,22 @@ pub fn tabulate(
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
     // Confusions of single touches are more informative than confusions of decisions on several touches.
-    let configurations = || {
-        tables
-            .summary
-            .iter()
-            .map(|(configuration, _)| configuration)
+    let summary = || tables.summary.iter();
+    let configurations = || summary().map(|(configuration, _)| configuration);
+    let accuracy = |(configuration, score): &(Configuration, ConfigurationScore)| {
+        (configuration.configuration, score.accuracy)
     };
-    let fewest = configurations()
-        .map(|configuration| configuration.touches_per_decision)
-        .min()
-        .unwrap_or(1);
-    let single = tables.summary.iter();
-    let single = single.filter(|(configuration, _)| configuration.touches_per_decision == fewest);
-    let accuracies =
-        single.map(|(configuration, score)| (configuration.configuration, score.accuracy));
-    if let Some(best) = most_accurate(accuracies) {
+    let n_touches = configurations().map(|configuration| configuration.touches_per_decision);
+    let fewest = n_touches.min().unwrap_or(1);
+    let single = summary().filter(|row| row.0.touches_per_decision == fewest);
+    if let Some(best) = most_accurate(single.map(accuracy)) {
         let fused = max_touches_per_decision(configurations(), best);
         tables.confused = most_confused(&tables.confusion, best, fused)?;
         if report.confusion == ConfusionMatrices::Best {
-            let all = tables.summary.iter();
-            let charted = most_accurate(
-                all.map(|(configuration, score)| (configuration.configuration, score.accuracy)),
-            );
-            let kept = [
-                Some(best),
-                fused.map(|(configuration, _)| configuration),
-                charted,
-            ];
-            tables
-                .confusion
-                .retain(|row| kept.contains(&Some(row.configuration)));
+            let charted = most_accurate(summary().map(accuracy));
+            let kept = [Some(best), fused.map(|(number, _)| number), charted];
+            let confusion = &mut tables.confusion;
+            confusion.retain(|row| kept.contains(&Some(row.configuration)));
         }
     }
     tables.pareto = pareto(&tables.accuracy, &tables.timing)?;
