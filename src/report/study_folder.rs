@@ -144,21 +144,21 @@ const NAME_DIGITS: usize = 12;
 /// Returns the charts with names that are distinct file names, also if the file system ignores case. The end of a long name is replaced by a hash of the name;
 /// a repeated name gets a number. Other names are unchanged.
 fn with_file_names(charts: &[ChartSpec]) -> Vec<ChartSpec> {
-    let names = charts.iter().map(|chart| short_name(&chart.name));
-    let names: Vec<String> = names.collect();
-    let given: HashSet<String> = names.iter().map(|name| name.to_lowercase()).collect();
+    let mut charts = charts.to_vec();
+    for chart in &mut charts {
+        chart.name = short_name(&chart.name);
+    }
+    let given = charts.iter().map(|chart| chart.name.to_lowercase());
+    let given: HashSet<String> = given.collect();
     let mut known = HashSet::new();
-    let named = charts.iter().zip(names).map(|(chart, name)| {
-        let numbered = (2..).map(|n| format!("{name}_{n}"));
-        let mut numbered = numbered.filter(|name| !given.contains(&name.to_lowercase()));
-        let mut candidates = std::iter::once(name.clone()).chain(&mut numbered);
+    for chart in &mut charts {
+        let numbered = (2..).map(|n| format!("{}_{n}", chart.name));
+        let numbered = numbered.filter(|name| !given.contains(&name.to_lowercase()));
+        let mut candidates = std::iter::once(chart.name.clone()).chain(numbered);
         let name = candidates.find(|name| known.insert(name.to_lowercase()));
-        ChartSpec {
-            name: name.expect("numbers do not end"),
-            ..chart.clone()
-        }
-    });
-    named.collect()
+        chart.name = name.expect("numbers do not end");
+    }
+    charts
 }
 
 /// Returns a name of at most [`MAX_NAME`] bytes, which ends in a hash of the given name if that is longer.

@@ -197,11 +197,6 @@ impl<'a> Swept<'a> {
         swept
     }
 
-    /// Groups rows by the values of the given settings, in the order in which the values first occur.
-    pub fn groups(&self, settings: &[Setting], rows: &[usize]) -> Vec<Vec<usize>> {
-        Setting::groups(settings, self.table, rows)
-    }
-
     /// Returns the varying settings that have the given role.
     pub fn of_role(&self, role: Role) -> Vec<Setting<'a>> {
         let of_role = self.varying().filter(|one| one.column.role == role);
@@ -266,7 +261,7 @@ impl<'a> Swept<'a> {
 
     /// Groups rows by condition, in the order in which the conditions first occur.
     pub fn by_condition(&self, rows: &[usize]) -> Vec<Vec<usize>> {
-        self.groups(&self.of_role(Role::Condition), rows)
+        Setting::groups(&self.of_role(Role::Condition), self.table, rows)
     }
 }
 

@@ -8,7 +8,6 @@ use comfy_table::{
     CellAlignment, ColumnConstraint, ContentArrangement, Table as TextTable, TableComponent, Width,
     presets,
 };
-use std::io::IsTerminal;
 
 /// Maximum number of rows of a table that are shown on the terminal.
 const MAX_LINES: usize = 40;
@@ -33,14 +32,10 @@ pub enum Ink {
 impl Ink {
     /// Returns the range of colours that standard output supports.
     pub fn of_stdout() -> Self {
-        let variable = |name: &str| std::env::var(name).unwrap_or_default();
-        let refused = !variable("NO_COLOR").is_empty() || variable("TERM") == "dumb";
-        if refused || !std::io::stdout().is_terminal() {
-            return Self::Plain;
-        }
-        match variable("COLORTERM").as_str() {
-            "truecolor" | "24bit" => Self::TrueColour,
-            _ => Self::Colours256,
+        match (console::colors_enabled(), console::true_colors_enabled()) {
+            (false, _) => Self::Plain,
+            (true, false) => Self::Colours256,
+            (true, true) => Self::TrueColour,
         }
     }
 

@@ -61,20 +61,17 @@ impl Bootstrap {
         if n_rows < FEWEST || (2..FEWEST).contains(&n_columns) {
             return Ok(None);
         }
-        let n = match n_columns {
-            1 => n_rows,
-            _ => n_rows.min(n_columns),
-        };
-        let mut means = match n_columns {
+        let (n, mut means) = match n_columns {
             1 => {
                 let scores: Vec<f64> = scores.iter().copied().collect();
-                means_of_rows(&scores, self.drawn("trials", n_rows))
+                (n_rows, means_of_rows(&scores, self.drawn("trials", n_rows)))
             }
             _ => {
                 self.drawn("projections", n_columns);
                 self.drawn("splits", n_rows);
                 let (rows, columns) = (("splits", n_rows), ("projections", n_columns));
-                means_of_blocks(scores, &self.drawn[&rows], &self.drawn[&columns])
+                let means = means_of_blocks(scores, &self.drawn[&rows], &self.drawn[&columns]);
+                (n_rows.min(n_columns), means)
             }
         };
         means.sort_unstable_by(f64::total_cmp);

@@ -81,6 +81,16 @@ impl ChartSpec {
     }
 }
 
+impl Shown {
+    /// Creates the filter of the rows with a value in a column.
+    pub fn new(column: impl Into<String>, value: impl Into<Value>) -> Self {
+        Self {
+            column: column.into(),
+            value: value.into(),
+        }
+    }
+}
+
 impl Rule {
     /// Creates a reference line at a constant value of an axis.
     pub fn at(along: Along, value: f64, words: impl Into<String>) -> Self {

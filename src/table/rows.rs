@@ -27,9 +27,7 @@ impl Table {
 
     /// Returns a filter for rows that have the value of `row` in a column; `None` if the value is absent.
     pub fn shown(&self, column: &str, row: usize) -> Option<Shown> {
-        let value = self.column(column)?.1.value(row)?;
-        let column = column.to_owned();
-        Some(Shown { column, value })
+        Some(Shown::new(column, self.column(column)?.1.value(row)?))
     }
 
     /// Returns the indices of all rows.

@@ -61,24 +61,19 @@ pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Ve
 /// Returns the answers as JSON: the table, its value and cost columns, and the advised choices for each condition.
 pub fn answers_json(offers: &Candidates, answers: &[Answer]) -> serde_json::Value {
     let in_json = |offer: &Candidate| offers.json(offer);
-    let answers = answers.iter().map(
-        |Answer {
-             condition,
-             advice,
-             n_left_out,
-         }| match advice {
-            Ok(advice) => serde_json::json!({
-                "condition": condition,
-                "choice": in_json(&advice.choice),
-                "certain": advice.certain.as_ref().map(in_json),
-                "next_up": advice.next_up.as_ref().map(in_json),
-                "n_left_out": n_left_out,
-            }),
-            Err(refused) => {
-                serde_json::json!({ "condition": condition, "refused": refused.to_string() })
-            }
-        },
-    );
+    let answers = answers.iter().map(|answer| match &answer.advice {
+        Ok(advice) => serde_json::json!({
+            "condition": answer.condition,
+            "choice": in_json(&advice.choice),
+            "certain": advice.certain.as_ref().map(in_json),
+            "next_up": advice.next_up.as_ref().map(in_json),
+            "n_left_out": answer.n_left_out,
+        }),
+        Err(refused) => {
+            let refused = refused.to_string();
+            serde_json::json!({ "condition": answer.condition, "refused": refused })
+        }
+    });
     serde_json::json!({
         "table": offers.table.file,
         "value": offers.value.name,

@@ -2,7 +2,7 @@
 
 use super::query::{AdviceQuery, COST, VALUE, refuse_none, rows_with};
 use crate::error::{Error, Result};
-use crate::report::swept::Swept;
+use crate::report::swept::{Setting, Swept};
 use crate::table::{Better, Column, Role, Scale, Table, Value, front};
 use std::collections::HashMap;
 
@@ -181,7 +181,7 @@ impl<'a> Candidates<'a> {
     /// # Errors
     /// If all choices are left out; the error names the condition in which the fewest choices are within the limits.
     pub fn worst(&self) -> Result<(Vec<Candidate>, usize)> {
-        let choices = self.swept.groups(&self.swept.free_choices(), &self.rows);
+        let choices = Setting::groups(&self.swept.free_choices(), self.table, &self.rows);
         let mut within: HashMap<usize, Candidate> = HashMap::new();
         let mut counts = Vec::new();
         for (condition, candidates) in self.conditions() {

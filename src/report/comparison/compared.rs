@@ -117,14 +117,13 @@ fn chart(
     words: &str,
     [first, second]: [&str; 2],
 ) -> ChartSpec {
-    let shown = |column: &str, value: &str| Shown {
-        column: column.to_owned(),
-        value: value.into(),
-    };
     let name = format!("{}_{column}", table.trim_end_matches(".csv"));
     ChartSpec {
         note: format!("Up: {second}. Across: {first}. Each point is a setting of {table}."),
-        shown: vec![shown("table", table), shown("column", column)],
+        shown: vec![
+            Shown::new("table", &table[..]),
+            Shown::new("column", &column[..]),
+        ],
         lines: vec!["significance".to_owned()],
         mark: Mark::Points,
         square: true,

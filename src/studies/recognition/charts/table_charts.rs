@@ -442,10 +442,8 @@ fn time_charts(configurations: &Table, chart: &ChartSpec, pareto: Option<bool>) 
 
 /// Returns the filter of the rows in which a setting has the value of the first row of its table.
 fn first_value(setting: &Setting) -> Shown {
-    Shown {
-        column: name_of(setting),
-        value: setting.data.value(0).unwrap_or_else(|| Value::from("")),
-    }
+    let value = setting.data.value(0);
+    Shown::new(name_of(setting), value.unwrap_or_else(|| "".into()))
 }
 
 /// Returns the row of the most accurate configuration; the first one if several are equal.
