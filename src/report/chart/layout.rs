@@ -1,7 +1,7 @@
 //! Pixel layout of a chart: a heading, and below it a grid of panels with tick labels and titles.
 
 use super::legend::{Heading, LEFT, LegendEntry, RIGHT};
-use super::scale::{Scale, Tick, thin};
+use super::scale::{AxisScale, Tick, thin};
 use super::view::View;
 use crate::report::pictures::colours::{GRID, INK, MUTED, PAPER};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
@@ -216,7 +216,7 @@ fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
 
 impl XLabels {
     /// Wraps the labels of the horizontal axis into lines of at most `width` pixels. If one label is too wide or has too many lines, all labels are rotated.
-    fn new(scale: &Scale, width: f64) -> Self {
+    fn new(scale: &AxisScale, width: f64) -> Self {
         let labels = scale.ticks.iter().map(|tick| &tick.label[..]);
         let mut is_turned = false;
         let lines: Vec<Vec<String>> = if scale.is_words {
@@ -255,7 +255,7 @@ impl XLabels {
         }
     }
 
-    fn draw(&self, drawing: &mut Drawing, scale: &Scale, frame: Area) {
+    fn draw(&self, drawing: &mut Drawing, scale: &AxisScale, frame: Area) {
         let style = TextStyle::new(TICK as u32);
         for (tick, lines) in scale.ticks.iter().zip(&self.lines) {
             let (x, bottom) = frame.at(tick.at, 0.0);

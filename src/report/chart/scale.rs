@@ -1,16 +1,16 @@
 //! Axis scale of charts: maps values to fractions of an axis.
 
 use crate::report::pictures::picture_axes::{even_ticks, tick_step};
-use crate::table::{Along, Column, Role, Scale as Spacing};
+use crate::table::{Along, Column, Role, Scale};
 
 /// Fraction of the length of a logarithmic axis that is reserved for the value zero.
 pub(super) const SHELF: f64 = 0.09;
 /// Maximum number of values of a swept setting for which the axis has a tick at each value. With more values, ticks are at round numbers.
 const MAX_SWEPT: usize = 40;
 
-/// Scale of an axis, which converts values to fractions of the axis length.
+/// AxisScale of an axis, which converts values to fractions of the axis length.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scale {
+pub(super) struct AxisScale {
     /// Values at the ends of a continuous axis, or their logarithms.
     ends: (f64, f64),
     /// Values of an axis of texts or tiles, each with its position on the axis; empty for a continuous axis.
@@ -37,18 +37,18 @@ pub(super) struct Tick {
     pub is_round: bool,
 }
 
-impl Scale {
+impl AxisScale {
     /// Creates a continuous scale that covers the given values of a column along an axis of the chart.
     pub fn new(column: &Column, values: &[f64], along: Along) -> Self {
         let is_swept = matches!(column.role, Role::Choice | Role::Condition | Role::Subject);
         let distinct = distinct(values);
-        let is_log = column.scale == Spacing::Log;
+        let is_log = column.scale == Scale::Log;
         let shelf = (is_log && distinct.contains(&0.0)).then_some(SHELF);
         let (low, high) = match (is_log, along) {
             (true, _) => log_ends(&distinct),
             (_, Along::Y) if !is_swept => {
                 let (low, high) = round_ends(&distinct);
-                match column.scale == Spacing::Share && column.unit.is_empty() {
+                match column.scale == Scale::Share && column.unit.is_empty() {
                     // Fractions always include 0 to 1, so that charts can be compared by eye.
                     true => (low.min(0.0), high.max(1.0)),
                     false => (low, high),
@@ -80,7 +80,7 @@ impl Scale {
 
     /// Creates a scale with one position for each value of a column. Words keep the given order (from the top along y); numbers of tiles are ascending.
     pub fn of_levels(column: &Column, (values, words): (&[f64], &[String]), along: Along) -> Self {
-        let is_words = column.scale == Spacing::Words;
+        let is_words = column.scale == Scale::Words;
         let levels: Vec<f64> = match is_words {
             true => (0..words.len()).map(|word| word as f64).collect(),
             false => distinct(values),
@@ -229,18 +229,18 @@ pub(super) fn thin(ticks: &[Tick], half: impl Fn(&Tick) -> f64) -> Vec<bool> {
 mod tests {
     use super::*;
 
-    fn column(scale: Spacing, role: Role) -> Column {
+    fn column(scale: Scale, role: Role) -> Column {
         Column::new("a", role, "a", "", scale)
     }
 
-    fn labels(scale: &Scale) -> Vec<&str> {
+    fn labels(scale: &AxisScale) -> Vec<&str> {
         scale.ticks.iter().map(|tick| &tick.label[..]).collect()
     }
 
     #[test]
     fn a_logarithmic_axis_has_decades_of_one_length_and_zero_apart() {
         let values = [0.0, 1e-6, 1e-3, 1.0];
-        let scale = Scale::new(&column(Spacing::Log, Role::Cost), &values, Along::X);
+        let scale = AxisScale::new(&column(Scale::Log, Role::Cost), &values, Along::X);
         let at = |value| scale.place(value).unwrap();
         assert!((at(1e-3) - at(1e-6) - (at(1.0) - at(1e-3))).abs() < 1e-12);
         assert!(at(0.0) < SHELF && at(1e-6) > SHELF && at(1.0) < 1.0);
@@ -249,17 +249,17 @@ mod tests {
             ["0", "10⁻⁶", "10⁻⁵", "0.0001", "0.001", "0.01", "0.1", "1"]
         );
         assert_eq!(scale.place(-1.0), None);
-        let none = Scale::new(&column(Spacing::Log, Role::Cost), &[], Along::X);
+        let none = AxisScale::new(&column(Scale::Log, Role::Cost), &[], Along::X);
         assert!(!none.ticks.is_empty() && none.place(0.0).is_none());
     }
 
     #[test]
     fn a_share_reaches_from_nothing_to_all_and_a_swept_value_has_a_tick() {
-        let share = Scale::new(&column(Spacing::Share, Role::Note), &[0.3, 0.4], Along::Y);
+        let share = AxisScale::new(&column(Scale::Share, Role::Note), &[0.3, 0.4], Along::Y);
         assert_eq!(labels(&share), ["0", "0.2", "0.4", "0.6", "0.8", "1"]);
         assert_eq!((share.place(0.0), share.place(1.0)), (Some(0.0), Some(1.0)));
-        let swept = Scale::new(
-            &column(Spacing::Linear, Role::Choice),
+        let swept = AxisScale::new(
+            &column(Scale::Linear, Role::Choice),
             &[7.0, 1.5, 7.0],
             Along::X,
         );
@@ -287,7 +287,7 @@ mod tests {
         let values: Vec<f64> = (0..=30)
             .map(|step| 10f64.powf(0.1 * f64::from(step)))
             .collect();
-        let scale = Scale::new(&column(Spacing::Log, Role::Choice), &values, Along::X);
+        let scale = AxisScale::new(&column(Scale::Log, Role::Choice), &values, Along::X);
         let shown = thin(&scale.ticks, |_| 0.06);
         let kept = scale.ticks.iter().zip(&shown).filter(|(_, kept)| **kept);
         let kept: Vec<&str> = kept.map(|(tick, _)| &tick.label[..]).collect();

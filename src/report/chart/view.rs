@@ -1,10 +1,10 @@
 //! Data of a chart: the groups that form lines and panels, and the position of each row.
 
-use super::scale::Scale;
+use super::scale::AxisScale;
 use crate::error::{Error, Result};
 use crate::report::pictures::drawing::Drawing;
 use crate::report::swept::{Setting, constant_phrases};
-use crate::table::{Along, At, ChartSpec, Data, Mark, Scale as Spacing, Table, Value};
+use crate::table::{Along, At, ChartSpec, Data, Mark, Scale, Table, Value};
 use std::collections::{HashMap, HashSet};
 
 /// Maximum number of lines for which confidence intervals are drawn as bands. More bands would hide each other, so error bars replace them.
@@ -31,8 +31,8 @@ pub(super) struct View<'a> {
     pub fill: Option<Setting<'a>>,
     /// Column whose texts are written above the points.
     pub label: Option<Setting<'a>>,
-    pub x: Scale,
-    pub y: Scale,
+    pub x: AxisScale,
+    pub y: AxisScale,
     /// Whether points are joined by lines along x; points at texts and named numbers are not joined.
     pub is_joined: bool,
     /// Title of each panel, such as `noise 10 %` or `RBF SVM`; empty if there is one panel.
@@ -126,10 +126,10 @@ impl<'a> View<'a> {
             along = [both.clone(), both];
         }
         let scale = |one: &Setting, own: &(Vec<f64>, Vec<String>), all: &[f64], side| match is_tiles
-            || one.column.scale == Spacing::Words
+            || one.column.scale == Scale::Words
         {
-            true => Scale::of_levels(one.column, (&own.0, &own.1), side),
-            false => Scale::new(one.column, all, side),
+            true => AxisScale::of_levels(one.column, (&own.0, &own.1), side),
+            false => AxisScale::new(one.column, all, side),
         };
         let x_scale = scale(&x, &x_values, &along[0], Along::X);
         let is_broken = x_scale.is_words || x.column.has_named_numbers();

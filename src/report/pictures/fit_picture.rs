@@ -62,7 +62,7 @@ pub fn fit_picture(
         hit.map_or(0.0, |hit| original.distance(canvas.point(ray, hit.height)))
     };
     let distances: Vec<f64> = seen.par_iter().enumerate().map(distance).collect();
-    let scale = Scale::new(&seen, &distances);
+    let scale = DistanceScale::new(&seen, &distances);
     let paint = |_: usize, _: &Hit| PAINT;
     picture.paint(&canvas, [0, 0], &whole, Lighting::Plain, &paint);
     picture.paint(&canvas, [tile, 0], &seen, Lighting::Plain, &paint);
@@ -148,14 +148,14 @@ fn march(solid: &Solid, start: DVec3, direction: DVec3, length: f64) -> Option<(
 }
 
 /// Colour scale of the third panel: distances between the spheres and the original object, metres.
-struct Scale {
+struct DistanceScale {
     lowest: f64,
     highest: f64,
     /// Largest absolute distance on the colour scale, which covers −`end` to `end`.
     end: f64,
 }
 
-impl Scale {
+impl DistanceScale {
     /// Creates a colour scale that covers all visible distances except the most extreme 1 %.
     fn new(seen: &[Option<Hit>], distances: &[f64]) -> Self {
         let of_hit = |(hit, &distance): (&Option<Hit>, &f64)| hit.is_some().then_some(distance);

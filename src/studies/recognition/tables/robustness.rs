@@ -224,15 +224,14 @@ fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
 /// # Errors
 /// If an accuracy of the summary is not between 0 and 1, or a row cannot be written to a file.
 pub(crate) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Table>> {
-    let accuracies = (0..summary.n_rows).map(|row| summary.number("accuracy", row));
-    if let Some((row, accuracy)) = (2..)
-        .zip(accuracies)
-        .find(|(_, accuracy)| !(0.0..=1.0).contains(accuracy))
-    {
-        let place = format!("{}:{row}, accuracy", summary.file);
-        return Err(Error::input(place, accuracy, "between 0 and 1"));
+    let accuracies = summary.numbers("accuracy").unwrap_or_default();
+    if let Some(row) = accuracies.iter().position(|one| !(0.0..=1.0).contains(one)) {
+        // The first line of the file is its header.
+        let place = format!("{}:{}, accuracy", summary.file, row + 2);
+        return Err(Error::input(place, accuracies[row], "between 0 and 1"));
     }
-    let mut curves = Vec::new();
+    let chances = ChanceLevels::new(confusion);
+    let mut rows = Vec::new();
     let swept = Swept::of(summary);
     let choices = swept.one_at_a_time.iter();
     let choices = choices.filter(|one| one.column.role == Role::Choice);
@@ -251,30 +250,20 @@ pub(crate) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
         let others = [Role::Choice, Role::Condition].map(|role| summary.of_role(role));
         let mut others = others.concat();
         others.retain(|column| *column != condition && !(is_choice && follows(column)));
-        for mut along in summary.groups(&others, 0..summary.n_rows) {
+        let curves = summary.groups(&others, 0..summary.n_rows).into_iter();
+        let curves = curves.filter_map(|mut along| {
             along.retain(|&row| setting.position(row).is_some_and(f64::is_finite));
             along.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
             let repeats = |pair: &[usize]| values[pair[0]] == values[pair[1]];
-            if along.len() >= MIN_VALUES && !along.windows(2).any(repeats) {
-                curves.push((condition, along));
-            }
-        }
-    }
-    let chances = ChanceLevels::new(confusion);
-    let of_condition = curves.chunk_by(|a, b| a.0 == b.0);
-    let rows = of_condition.flat_map(|curves| {
-        let rows: Vec<usize> = curves
-            .iter()
-            .flat_map(|(_, along)| along)
-            .copied()
-            .collect();
-        let settings = Swept::new(summary, &rows).free;
-        let rows = curves.par_iter().flat_map_iter(|(condition, along)| {
-            both_sides(summary, &chances, (condition, along), &settings)
+            (along.len() >= MIN_VALUES && !along.windows(2).any(repeats)).then_some(along)
         });
-        rows.collect::<Vec<_>>()
-    });
-    let rows: Vec<Robustness> = rows.collect();
+        let curves: Vec<Vec<usize>> = curves.collect();
+        let settings = Swept::new(summary, &curves.concat()).free;
+        let sides = curves
+            .par_iter()
+            .flat_map_iter(|along| both_sides(summary, &chances, (condition, along), &settings));
+        rows.par_extend(sides);
+    }
     match rows.is_empty() {
         true => Ok(None),
         false => ROBUSTNESS.table(&rows).map(Some),
@@ -292,16 +281,15 @@ fn both_sides(
         let rows = along.iter();
         rows.map(|&row| summary.number(column, row)).collect()
     };
-    let accuracy = numbers("accuracy");
-    let ends = numbers("accuracy_low")
-        .into_iter()
-        .zip(numbers("accuracy_high"));
-    let n_test = accuracy.iter().zip(ends);
-    let n_test = n_test.map(|(&accuracy, (low, high))| rows_of_interval(accuracy, high - low));
+    let n_test = along.iter().map(|&row| {
+        let [accuracy, low, high] =
+            ["accuracy", "accuracy_low", "accuracy_high"].map(|column| summary.number(column, row));
+        rows_of_interval(accuracy, high - low)
+    });
     let mut curve = Curve {
         values: numbers(condition),
         n_test: n_test.collect(),
-        accuracy,
+        accuracy: numbers("accuracy"),
         chance: 0.0,
     };
     let best = curve.best();

@@ -18,6 +18,13 @@ use std::collections::BTreeMap;
 /// Row of the table `accuracy.csv`: a configuration, and its score in one trial.
 type Row = (Configuration, TrialScore);
 
+/// Returns the rows of each configuration, which are adjacent.
+pub(super) fn by_configuration<T>(
+    rows: &[(Configuration, T)],
+) -> impl Iterator<Item = &[(Configuration, T)]> {
+    rows.chunk_by(|a, b| a.0.configuration == b.0.configuration)
+}
+
 /// Returns one row per configuration, which summarises its trials. The argument has one row per configuration and trial; the trials of a configuration are
 /// adjacent. For each of these rows, `groups` contains the tested groups, if there are any. `n_folds` returns the number of folds of a configuration, or 1
 /// without folds.
@@ -131,9 +138,7 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
 /// # Errors
 /// If a trial has no training or test rows.
 pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
-    let configurations: Vec<&[Row]> = rows
-        .chunk_by(|a, b| a.0.configuration == b.0.configuration)
-        .collect();
+    let configurations: Vec<&[Row]> = by_configuration(rows).collect();
     let mut best = vec![0; configurations.len()];
     for alike in by_condition(configurations.iter().map(|trials| &trials[0].0))? {
         let accuracies = alike
@@ -255,12 +260,8 @@ pub fn pareto(
     rows: &[Row],
     times: &[(Configuration, TrialTime)],
 ) -> Result<Vec<(Configuration, Pareto)>> {
-    let same_cell = |a: &(Configuration, TrialTime), b: &(Configuration, TrialTime)| {
-        a.0.configuration == b.0.configuration
-    };
-    let mut table: Vec<(Configuration, Pareto)> = rows
-        .chunk_by(|a, b| a.0.configuration == b.0.configuration)
-        .zip(times.chunk_by(same_cell))
+    let mut table: Vec<(Configuration, Pareto)> = by_configuration(rows)
+        .zip(by_configuration(times))
         .map(|(trials, times)| {
             let n_trials = times.len() as f64;
             let mean_time = |time: fn(&TrialTime) -> f64| {

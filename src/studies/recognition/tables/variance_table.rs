@@ -6,6 +6,7 @@ use crate::statistics::repeats::scores;
 use crate::statistics::variance::{Component, components};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{Source, TrialScore, Variance};
+use crate::studies::recognition::tables::summary::by_configuration;
 
 /// Returns the rows of `variance.csv`: three for each configuration whose trials combine every split with every projection. Configurations without all
 /// combinations have no rows.
@@ -14,7 +15,7 @@ use crate::studies::recognition::rows::table_rows::{Source, TrialScore, Variance
 /// If the scores of a configuration cannot be decomposed.
 pub fn variances(rows: &[(Configuration, TrialScore)]) -> Result<Vec<Variance>> {
     let mut table = Vec::new();
-    for trials in rows.chunk_by(|a, b| a.0.configuration == b.0.configuration) {
+    for trials in by_configuration(rows) {
         let trials_of = trials.iter().map(|(_, score)| score.repeat(1));
         let scores = scores(&trials_of.collect::<Vec<_>>());
         let Some(scores) = scores.filter(|scores| scores.ncols() > 1 && scores.nrows() > 1) else {
