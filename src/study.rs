@@ -34,10 +34,10 @@ pub use crate::studies::recognition::frames::recorded_skin::{RecordedSkinFiles, 
 pub use crate::studies::recognition::frames::samples::sample_frames;
 pub use crate::studies::recognition::frames::shear_ripple::ShearRipple;
 pub use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-pub use crate::studies::recognition::plan::group::MeasurementGroup;
 pub use crate::studies::recognition::plan::pose_groups::KeepTogether;
 pub use crate::studies::recognition::plan::sensed::Sensed;
 pub use crate::studies::recognition::plan::signal::Condition;
+pub use crate::studies::recognition::plan::study_plan::MeasurementGroup;
 pub use crate::studies::recognition::plan::study_plan::Plan;
 pub use crate::studies::recognition::plan::taxel_array;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;

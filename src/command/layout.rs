@@ -2,6 +2,7 @@
 
 use crate::command::terminal::streams::{note, say};
 use bubbletouch::Result;
+use bubbletouch::geometry::Aabb;
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutFormat, LayoutOptions};
 use bubbletouch::inputs::object_files::read_surface;
 use bubbletouch::mesh::{LengthUnit, SizeLimits};
@@ -70,13 +71,11 @@ pub fn layout(args: &Args) -> Result<()> {
 
 fn describe(file: &LayoutFile) -> Result<()> {
     let layout = &file.layout;
-    let centers = layout.centers();
-    let low = centers.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = centers
-        .iter()
-        .copied()
-        .fold(DVec3::NEG_INFINITY, DVec3::max);
-    let size = 1e3 * (high - low);
+    let points = layout.centers().iter().map(|&point| Aabb {
+        min: point,
+        max: point,
+    });
+    let size = 1e3 * Aabb::around(points).map_or(DVec3::ZERO, |bounds| bounds.size());
     say(format_args!(
         "{} taxels within {:.1} × {:.1} × {:.1} mm",
         layout.n_taxels(),

@@ -12,8 +12,6 @@ mod features;
 mod layout;
 mod merge;
 mod objects;
-mod objects_pack;
-mod objects_show;
 mod options;
 mod plan;
 mod press;

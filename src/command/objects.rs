@@ -1,19 +1,29 @@
-//! `bubbletouch objects`: lists or draws the objects that can be touched.
+//! `bubbletouch objects`: lists, draws, inspects and packs the objects that can be touched.
 
-use super::{objects_pack, objects_show};
 use crate::command::options::unused::check_used;
-use crate::command::options::which_object::catalogue;
+use crate::command::options::which_object::{WhichObject, catalogue};
 use crate::command::terminal::output::check_ending;
 use crate::command::terminal::streams::say;
 use bubbletouch::Result;
-use bubbletouch::files::write_bytes;
+use bubbletouch::files::{write_bytes, write_whole};
 use bubbletouch::mesh::{LengthUnit, MeshReport, SizeLimits};
-use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
+use bubbletouch::objects::{
+    Catalogue, Entry, Object, Solid, SphereUnion, surface_error, write_spheres,
+};
+use bubbletouch::packing::{DistanceStatistics, PackingError, packing_error};
+use bubbletouch::report::fit_picture::{Original, fit_picture};
 use bubbletouch::report::object_picture::contact_sheet;
 use bubbletouch::report::terminal::rows_text;
-use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh, read_mesh_file};
+use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh, load_spheres, read_mesh_file};
 use rayon::prelude::*;
 use std::path::PathBuf;
+
+const MM: f64 = 1e-3;
+/// Number of points on a mesh at which the surface error is measured.
+const N_POINTS: usize = 100_000;
+/// Approximate maximum number of points of the box around a solid at which the distance to its surface is measured. Larger: gigabytes at tolerances of a
+/// micrometre.
+const MAX_POINTS: f64 = 1e6;
 
 /// Side length of the picture of one object, pixels.
 const PICTURE: usize = 640;
@@ -70,8 +80,8 @@ pub struct Args {
 #[derive(clap::Subcommand)]
 enum Action {
     Mesh(MeshArgs),
-    Pack(objects_pack::Args),
-    Show(objects_show::Args),
+    Pack(PackArgs),
+    Show(ShowArgs),
 }
 
 /// Print the size, closedness and faults of a mesh
@@ -87,14 +97,70 @@ struct MeshArgs {
     unit: Option<LengthUnit>,
 }
 
+/// Pack an object with few spheres to a surface error
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch objects pack mug --surface-error-mm 0.5 --out mug.csv"
+)]
+struct PackArgs {
+    #[command(flatten)]
+    object: WhichObject,
+    /// Limit the distance between spheres and surface
+    #[arg(long, value_name = "MM", help_heading = "Packing")]
+    surface_error_mm: f64,
+    /// Write the spheres: columns x, y, z, r, metres
+    #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
+    out: PathBuf,
+}
+
+/// Draw an object, its spheres and the error between them
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch objects show mug --surface-error-mm 0.5 --out fit.png"
+)]
+struct ShowArgs {
+    #[command(flatten)]
+    object: WhichObject,
+    /// Pack to this surface error
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = 0.5,
+        help_heading = "Packing"
+    )]
+    surface_error_mm: f64,
+    /// Show the spheres of a CSV file (columns x,y,z,r)
+    #[arg(
+        long,
+        value_name = "FILE.csv",
+        conflicts_with = "surface_error_mm",
+        help_heading = "Packing"
+    )]
+    spheres: Option<PathBuf>,
+    /// Set the unit of --spheres: m, cm, mm or in [default: m]
+    #[arg(long, value_name = "UNIT", help_heading = "Packing")]
+    spheres_unit: Option<LengthUnit>,
+    /// Write the picture to this file
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
+    out: PathBuf,
+    /// Set the side of each of three panels, 200 to 6000 pixels
+    #[arg(
+        long,
+        value_name = "PIXELS",
+        default_value_t = 560,
+        help_heading = "Output"
+    )]
+    panel_px: usize,
+}
+
 /// Object, preceded by the name of its set.
 type Listed = (String, Object);
 
 pub fn objects(args: &Args) -> Result<()> {
     match &args.action {
         Some(Action::Mesh(args)) => return report(args),
-        Some(Action::Pack(args)) => return objects_pack::pack(args),
-        Some(Action::Show(args)) => return objects_show::show(args),
+        Some(Action::Pack(args)) => return pack(args),
+        Some(Action::Show(args)) => return show(args),
         None => {}
     }
     let (unit, is_mesh) = (args.unit, args.mesh.is_some());
@@ -169,4 +235,64 @@ fn table(listed: &[Listed]) -> String {
         ]
     });
     rows_text(&header, &[0, 1, 4], rows)
+}
+
+/// Packs a mesh or a built-in object with few spheres, and measures the surface error.
+fn pack(args: &PackArgs) -> Result<()> {
+    check_ending(Some(&args.out), "csv")?;
+    let object = args.object.load()?;
+    let tolerance = args.surface_error_mm * MM;
+    let spheres = args.object.pack(&object, tolerance)?;
+    write_whole(&args.out, |sink| write_spheres(&spheres, sink))?;
+    say(format_args!("spheres     {}", spheres.n_spheres()))?;
+    match object {
+        Original::Solid(solid) => say(describe_solid(&solid, &spheres, tolerance))?,
+        Original::Mesh(surface, body) => {
+            say(describe(&packing_error(&surface, body, &spheres, N_POINTS)))?;
+        }
+    }
+    Ok(())
+}
+
+fn describe_solid(solid: &Solid, spheres: &SphereUnion, tolerance: f64) -> String {
+    let size = solid.bounds().size();
+    let around = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
+    let finest = (around / MAX_POINTS).sqrt();
+    let spacing = (size.length() / 200.0).min(20.0 * tolerance).max(finest);
+    let error = surface_error(solid, spheres, spacing);
+    format!(
+        "gap         max {:.4} mm\nprotrusion  max {:.4} mm\nmeasured at {} points of the surface",
+        error.gap / MM,
+        error.protrusion / MM,
+        error.n_surface_points
+    )
+}
+
+fn describe(error: &PackingError) -> String {
+    let line = |spread: &DistanceStatistics| {
+        let [mean, p95, max] = [spread.mean, spread.p95, spread.max].map(|length| length / MM);
+        format!("mean {mean:.4}, 95 % {p95:.4}, max {max:.4} mm")
+    };
+    format!(
+        "gap         {}\nprotrusion  {}\nmeasured at {} points of the outer surface; {:.2} % of all lie inside other parts",
+        line(&error.gap),
+        line(&error.protrusion),
+        error.n_points,
+        100.0 * error.buried_share
+    )
+}
+
+/// Draws an object, its spheres, and the error between them in three panels.
+fn show(args: &ShowArgs) -> Result<()> {
+    check_ending(Some(&args.out), "png")?;
+    let (unit, has_spheres) = (args.spheres_unit, args.spheres.is_some());
+    check_used("--spheres-unit", unit.is_some(), has_spheres, "--spheres")?;
+    let object = args.object.load()?;
+    let spheres = match &args.spheres {
+        Some(path) => load_spheres(path, args.spheres_unit, &SizeLimits::ANY)?,
+        None => args.object.pack(&object, args.surface_error_mm * 1e-3)?,
+    };
+    let name = args.object.name();
+    let picture = fit_picture(&name, &object, &spheres, args.panel_px)?;
+    write_bytes(&args.out, &picture.png()?)
 }

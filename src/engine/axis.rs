@@ -30,6 +30,15 @@ impl<T: Clone> Axis<T> {
         let values = axis.as_ref().map(Self::values);
         values.map_or(vec![None], |values| values.into_iter().map(Some).collect())
     }
+
+    /// Returns the values of a key that may be missing, for settings under which the key acts. For other settings, a key that is given has the single value
+    /// `idle`.
+    pub fn active_values(axis: &Option<Self>, is_active: bool, idle: T) -> Vec<Option<T>> {
+        match is_active {
+            true => Self::optional_values(axis),
+            false => vec![axis.as_ref().map(|_| idle)],
+        }
+    }
 }
 
 /// Deserialises one value or a list of values. The implementation is not derived, because an untagged enum does not report which value is wrong and what is

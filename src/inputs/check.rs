@@ -125,23 +125,6 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Returns the value of a key.
-    ///
-    /// # Errors
-    /// If `is_allowed` returns false; the error contains the words `allowed`.
-    pub fn value(
-        &self,
-        key: &str,
-        value: f64,
-        is_allowed: impl Fn(f64) -> bool,
-        allowed: &str,
-    ) -> Result<f64> {
-        if is_allowed(value) {
-            return Ok(value);
-        }
-        Err(self.error(key, value, allowed))
-    }
-
     /// Checks that the count given under `key` is between 1 and `most`.
     pub(crate) fn count(&self, key: &str, count: usize, most: usize) -> Result<usize> {
         match count {

@@ -3,6 +3,7 @@
 use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::params::words;
 use crate::inputs::range::Range;
+use crate::inputs::toml_value::number_value;
 use crate::random::Seed;
 use crate::signal::{
     MAX_OWN_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength,
@@ -43,25 +44,84 @@ pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)>
     ALL.iter().copied()
 }
 
-/// Returns descriptions of the study keys that set the strengths of sensor errors, in the order of [`all_strengths`].
-pub fn strength_keys() -> &'static [KeyAbout] {
-    static KEYS: LazyLock<Vec<KeyAbout>> = LazyLock::new(|| {
-        let about = |(_, strength): (SensorError, &'static Strength)| {
+/// Numeric key of `[signal]`: the standard deviation of the noise or of the smoothing, or a strength of a sensor error.
+pub(crate) struct SignalKey {
+    /// Description of the key.
+    pub about: KeyAbout,
+    /// Meaning of the key, for the reference page.
+    pub words: String,
+    /// Whether the numbers of the key are whole.
+    pub is_whole: bool,
+    /// Sensor error with this strength; `None` for noise and smoothing.
+    pub error: Option<SensorError>,
+}
+
+/// Key of the smoothing.
+pub(crate) const SMOOTHING: &str = "smoothing_mm";
+
+/// Allowed noise standard deviations, as fractions of full scale. At the upper bound, nothing of the signal remains, and squares of features still fit into
+/// f32.
+const NOISE: Range = Range::ZeroOrBetween(1e-12, 1000.0, "0, or 1e-12 to 1000");
+
+/// Returns the numeric keys that `[signal]` may contain, in the order in which they are swept: noise, smoothing, and the strengths of [`all_strengths`].
+pub(crate) fn signal_keys() -> &'static [SignalKey] {
+    static KEYS: LazyLock<Vec<SignalKey>> = LazyLock::new(|| {
+        let key = |name: &str, role, range, (unit, scale), words| SignalKey {
+            about: KeyAbout {
+                unit,
+                scale: Some(scale),
+                ..KeyAbout::new(
+                    format!("signal.{name}").leak(),
+                    AxisPlace::Table,
+                    role,
+                    range,
+                )
+            },
+            words,
+            is_whole: false,
+            error: None,
+        };
+        let linear = (None, Scale::Linear);
+        let mut keys = Vec::new();
+        for (name, unit) in NOISES {
+            let (range, shown, gives_way) = match unit {
+                NoiseUnit::FullScale => (NOISE, (Some("%"), Scale::Share), Some(10)),
+                _ => (Range::NotNegative, linear, None),
+            };
+            let mut noise = key(name, Role::Condition, range, shown, noise_words(unit));
+            noise.about.title = Some("noise");
+            noise.about.gives_way = gives_way;
+            keys.push(noise);
+        }
+        let words = "Standard deviation of the Gaussian smoothing over the array, mm. Default: no smoothing.";
+        let mut smoothing = key(
+            SMOOTHING,
+            Role::Choice,
+            Range::NotNegative,
+            linear,
+            words.to_owned(),
+        );
+        smoothing.about.gives_way = Some(9);
+        keys.push(smoothing);
+        for (error, strength) in all_strengths() {
             let scale = match strength.unit {
                 "%" => Scale::Share,
                 _ => Scale::Linear,
             };
-            let path: &'static str = format!("signal.{}", strength.key).leak();
-            let range = Range::Strength(strength);
-            KeyAbout {
-                title: Some(strength.words),
-                unit: Some(strength.unit),
-                scale: Some(scale),
-                names: Some(strength.names),
-                ..KeyAbout::new(path, AxisPlace::Table, Role::Condition, range)
-            }
-        };
-        all_strengths().map(about).collect()
+            let (range, shown) = (Range::Strength(strength), (Some(strength.unit), scale));
+            let mut key = key(
+                strength.key,
+                Role::Condition,
+                range,
+                shown,
+                strength_words(error, strength),
+            );
+            key.about.title = Some(strength.words);
+            key.about.names = Some(strength.names);
+            (key.is_whole, key.error) = (strength.is_whole, Some(error));
+            keys.push(key);
+        }
+        keys
     });
     &KEYS
 }
@@ -69,16 +129,12 @@ pub fn strength_keys() -> &'static [KeyAbout] {
 /// Returns the table columns with the strengths of all sensor errors, in the order of [`all_strengths`].
 pub fn strength_columns() -> &'static [Column] {
     static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
-        let column = |(key, (error, strength)): (&KeyAbout, (SensorError, &Strength))| {
-            let words = strength_words(error, strength);
+        let of_errors = signal_keys().iter().filter(|key| key.error.is_some());
+        let column = |SignalKey { about, words, .. }: &SignalKey| {
             let meaning = format!("{words} Present only if the study has the key.");
-            key.column(key.name()).meaning(meaning).optional()
+            about.column(about.name()).meaning(meaning).optional()
         };
-        strength_keys()
-            .iter()
-            .zip(all_strengths())
-            .map(column)
-            .collect()
+        of_errors.map(column).collect()
     });
     &COLUMNS
 }
@@ -138,6 +194,12 @@ impl Strengths {
     pub fn given(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
         let all = all_strengths().zip(self.0);
         all.filter_map(|((error, strength), slot)| Some((error, strength, slot.value()?)))
+    }
+
+    /// Returns the table cells of the strengths that the study sets: the name of the column and the value.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = (&'static str, toml::Value)> {
+        self.given()
+            .map(|(_, strength, value)| (strength.key, number_value(value, strength.is_whole)))
     }
 
     /// Returns the strengths of sensor errors that are not zero.

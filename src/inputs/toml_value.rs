@@ -23,6 +23,14 @@ pub(crate) fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(integer)
 }
 
+/// Returns a number as a TOML value; whole numbers have no decimal point.
+pub(crate) fn number_value(number: f64, is_whole: bool) -> toml::Value {
+    match is_whole {
+        true => (number as i64).into(),
+        false => number.into(),
+    }
+}
+
 /// Returns whether a value, or each value of a list, equals `expected`. Integers and floats are compared as numbers.
 pub(crate) fn has_only(value: &toml::Value, expected: &toml::Value) -> bool {
     let is_equal = |value: &toml::Value| match (number(value), number(expected)) {

@@ -74,14 +74,15 @@ mod pressed_objects;
 mod reader;
 mod simulation;
 mod skin_state;
-mod spec;
+pub(crate) mod spec;
 pub(crate) mod spec_motion;
-pub(crate) mod spec_object;
 mod spec_patch;
-mod summary;
 
 pub use carrier::Carrier;
-pub use frame::{Frame, FrameSink, FrictionReading, ObjectReading, PatchReading, PoseControl};
+pub use frame::{
+    Frame, FrameSink, FrictionReading, ObjectReading, ObjectSummary, PatchPeaks, PatchReading,
+    PoseControl, Summary,
+};
 pub use link_surface::{LinkSurface, link_surface};
 pub use plan::ScenePlan;
 pub use plan_object::{Movement, PlannedObject, PlannedPress};
@@ -91,4 +92,3 @@ pub use plan_signal::PlannedSignal;
 pub(crate) use reader::Reader;
 pub use simulation::{Simulation, Stepping};
 pub use spec::*;
-pub use summary::{ObjectSummary, PatchPeaks, Summary};

@@ -4,9 +4,8 @@ use super::carrier::Carrier;
 use super::plan_patch::PlannedPatch;
 use super::plan_robot::PlannedRobot;
 use super::reader::Reader;
-use super::spec::{Numbers, ObjectSpec, PressSpec};
+use super::spec::{MOVEMENT_RULES, Numbers, ObjectSpec, PressSpec, SHAPE_KEYS, SHAPE_RULES};
 use super::spec_motion::metres;
-use super::spec_object::{MOVEMENT_RULES, SHAPE_KEYS, SHAPE_RULES};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::inputs::object_files::{load_catalogue, load_mesh, load_spheres};
@@ -195,14 +194,13 @@ impl Reader<'_> {
         }
         let error_mm = spec.surface_error_or_default_mm(finest_mm, for_mesh);
         if let Some(path) = &spec.spheres {
-            let key = &format!("{key}.spheres");
-            self.open(key, path)?;
-            let spheres = load_spheres(&self.path(path), spec.unit, &SizeLimits::ANY);
-            return Ok(self.under(key, spheres)?.into());
+            let spheres = self.read(&format!("{key}.spheres"), path, |path| {
+                load_spheres(path, spec.unit, &SizeLimits::ANY)
+            });
+            return Ok(spheres?.into());
         }
         if let Some(path) = &spec.mesh {
             let key = &format!("{key}.mesh");
-            self.open(key, path)?;
             let wanted = ObjectsSpec {
                 unit: spec.unit,
                 model: Some(for_mesh),
@@ -210,8 +208,8 @@ impl Reader<'_> {
                 surface_error_mm: Some(error_mm),
                 ..ObjectsSpec::default()
             };
-            let mesh = load_mesh(&self.path(path), &wanted, None);
-            return Ok(self.under(key, mesh)?.model);
+            let mesh = self.read(key, path, |path| load_mesh(path, &wanted, None));
+            return Ok(mesh?.model);
         }
         let mut solid = self.solid(key, spec)?;
         if spec.centered {
@@ -230,11 +228,7 @@ impl Reader<'_> {
             return Solid::parse_parts(&place, &text);
         };
         let catalogue = match &spec.objects {
-            Some(path) => {
-                let key = &format!("{key}.objects");
-                self.open(key, path)?;
-                self.under(key, load_catalogue(&self.path(path)))?
-            }
+            Some(path) => self.read(&format!("{key}.objects"), path, load_catalogue)?,
             None => Catalogue::builtin()?,
         };
         let entry = self.under(&format!("{key}.object"), catalogue.object(name))?;

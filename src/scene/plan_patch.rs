@@ -277,9 +277,7 @@ impl Reader<'_> {
 
     /// Reads a mesh over which taxels are draped, or whose normals are their axes.
     fn surface(&self, key: &str, path: &Path, unit: Option<LengthUnit>) -> Result<TriangleMesh> {
-        self.open(key, path)?;
-        let mesh = read_surface(&self.path(path), unit, &SizeLimits::ANY);
-        self.under(key, mesh)
+        self.read(key, path, |path| read_surface(path, unit, &SizeLimits::ANY))
     }
 
     fn layout_file(&self, key: &str, spec: &FileLayoutSpec) -> Result<LayoutFile> {
@@ -295,7 +293,7 @@ impl Reader<'_> {
             unit: None,
             sensor: parts.and_then(|parts| parts.sensor.as_deref()),
         };
-        self.under(key, LayoutFile::read(&self.path(path), options))
+        self.read(key, path, |path| LayoutFile::read(path, options))
     }
 
     /// Replaces `on`, the shapes of the patch's own link, by the region of this link.

@@ -62,9 +62,8 @@ impl Reader<'_> {
         spec: &RobotSpec,
     ) -> Result<(Robot, MeshFolders)> {
         let file_key = &format!("{key}.{name}");
-        self.open(file_key, path)?;
+        let robot = self.read(file_key, path, Robot::read)?;
         let path = self.path(path);
-        let robot = self.under(file_key, Robot::read(&path))?;
         let packages = spec.packages.iter().map(|(package, folder)| {
             let folder = self.path(folder);
             if folder.is_dir() {

@@ -5,80 +5,16 @@ use super::reader::Reader;
 use super::spec::SignalStepSpec;
 use crate::error::Result;
 use crate::inputs::range::Range;
-use crate::inputs::sensor_errors::{NOISES, noise_words, strength_words};
+use crate::inputs::sensor_errors::{NOISES, all_strengths, noise_words, strength_words};
 use crate::inputs::units::MM;
 use crate::random::Seed;
-use crate::signal::{
-    Chain, Noise, NoiseUnit, Quantity, Recording, SensorError, SignalStep, SignalWorkspace,
-};
+use crate::signal::{Chain, Noise, Quantity, Recording, SignalStep, SignalWorkspace};
 use crate::spelling::nearest_names;
 use crate::world::Patch;
 use std::collections::BTreeMap;
 
-/// Kind of step in the signal chain of a patch.
-enum StepKind {
-    /// Noise, with its key and its unit.
-    Noise(&'static str, NoiseUnit),
-    Smoothing,
-    Error(SensorError),
-}
-
-/// Key of a step of a signal chain.
-pub(super) struct StepKey {
-    /// Name of the key.
-    pub name: &'static str,
-    /// Meaning of its number.
-    pub words: String,
-    range: Range,
-}
-
-impl StepKind {
-    /// Returns all kinds of steps: noises, smoothing, and sensor errors.
-    fn all() -> impl Iterator<Item = Self> {
-        let noises = NOISES.map(|(name, unit)| Self::Noise(name, unit));
-        let errors = SensorError::all().map(Self::Error);
-        let simple = noises.into_iter().chain([Self::Smoothing]);
-        simple.chain(errors)
-    }
-
-    /// Returns whether the step reads each frame alone; a scene has no other steps.
-    fn is_of_single_frames(&self) -> bool {
-        match self {
-            Self::Noise(..) | Self::Smoothing => true,
-            Self::Error(error) => error.about().is_of_single_frames(),
-        }
-    }
-
-    /// Returns the keys of the step.
-    fn keys(&self) -> Vec<StepKey> {
-        let one = |name, words| {
-            let range = Range::NotNegative;
-            vec![StepKey { name, words, range }]
-        };
-        match *self {
-            Self::Noise(name, unit) => one(name, noise_words(unit)),
-            Self::Smoothing => {
-                let words = "Standard deviation of the Gaussian smoothing over the array, mm.";
-                one("smoothing_mm", words.to_owned())
-            }
-            Self::Error(error) => {
-                let strengths = error.about().strengths.iter();
-                let keys = strengths.map(|strength| StepKey {
-                    name: strength.key,
-                    words: strength_words(error, strength),
-                    range: Range::Strength(strength),
-                });
-                keys.collect()
-            }
-        }
-    }
-}
-
-/// Returns the keys of all steps that a patch of a scene allows.
-pub(super) fn step_keys() -> impl Iterator<Item = StepKey> {
-    let kinds = StepKind::all().filter(StepKind::is_of_single_frames);
-    kinds.flat_map(|kind| kind.keys())
-}
+/// Name of the smoothing step of a signal chain. All other step names belong to [noise](NOISES) or sensor errors.
+const SMOOTHING: &str = "smoothing_mm";
 
 /// Checked signal chain of a patch, which converts deflections to sensor readings.
 #[derive(Clone, Debug)]
@@ -158,43 +94,60 @@ impl Reader<'_> {
         given: &BTreeMap<String, f64>,
         skin: Seed,
     ) -> Result<SignalStep> {
-        let Some(first) = given.keys().next() else {
+        let Some((first, &value)) = given.first_key_value() else {
             let allowed = "one step's keys: { noise_std_n = 0.1 }";
             return self.refuse(key, "a step without a key", allowed);
         };
-        let mut kinds = StepKind::all().map(|kind| (kind.keys(), kind));
-        let found = kinds.find(|(keys, _)| keys.iter().any(|key| key.name == first));
-        let Some((keys, kind)) = found else {
-            let names = StepKind::all().flat_map(|kind| kind.keys());
-            let offered = nearest_names(first, names.map(|key| key.name));
-            return self.refuse(key, format!("`{first}`"), offered);
+        let noise = NOISES.iter().find(|(name, _)| name == first);
+        let error = all_strengths().find(|(_, strength)| strength.key == first);
+        let keys: Vec<(&str, Range)> = match error {
+            Some((error, _)) if !error.about().is_of_single_frames() => {
+                let given = format!("`{first}`, which needs the frames before and after");
+                let allowed = "steps that read each frame alone (studies have all)";
+                return self.refuse(key, given, allowed);
+            }
+            Some((error, _)) => {
+                let strengths = error.about().strengths.iter();
+                let keys = strengths.map(|strength| (strength.key, Range::Strength(strength)));
+                keys.collect()
+            }
+            None if noise.is_some() || first == SMOOTHING => vec![(first, Range::NotNegative)],
+            None => {
+                let errors = all_strengths().map(|(_, strength)| strength.key);
+                let names = NOISES.iter().map(|(name, _)| *name);
+                let names = names.chain([SMOOTHING]).chain(errors);
+                let offered = nearest_names(first, names);
+                return self.refuse(key, format!("`{first}`"), offered);
+            }
         };
-        if !kind.is_of_single_frames() {
-            let given = format!("`{first}`, which needs the frames before and after");
-            let allowed = "steps that read each frame alone (studies have all)";
-            return self.refuse(key, given, allowed);
-        }
-        let mut values = vec![0.0; keys.len()];
-        for (name, &value) in given {
-            let Some(place) = keys.iter().position(|key| key.name == name) else {
+        for (name, value) in given {
+            let Some((_, range)) = keys.iter().find(|(own, _)| own == name) else {
                 let given = format!("`{name}` beside `{first}`");
                 return self.refuse(key, given, "one step in each { }");
             };
-            let range = keys[place].range;
-            if !range.contains(value) {
+            if !range.contains(*value) {
                 return self.refuse(&format!("{key}.{name}"), value, range.words());
             }
-            values[place] = value;
         }
-        match kind {
-            StepKind::Noise(_, unit) => Ok(SignalStep::Noise(Noise {
-                std: values[0],
-                unit,
-            })),
-            StepKind::Smoothing => Ok(SignalStep::Smoothing {
-                width: values[0] * MM,
-            }),
-            StepKind::Error(error) => error.step(&values, skin),
+        match (error, noise) {
+            (Some((error, _)), _) => {
+                let values = keys.iter().map(|(name, _)| given.get(*name).copied());
+                let values: Vec<f64> = values.map(Option::unwrap_or_default).collect();
+                error.step(&values, skin)
+            }
+            (None, Some(&(_, unit))) => Ok(SignalStep::Noise(Noise { std: value, unit })),
+            (None, None) => Ok(SignalStep::Smoothing { width: value * MM }),
         }
     }
+}
+
+/// Returns the keys and meanings of the steps that a patch of a scene allows. Steps that need earlier and later frames are omitted.
+pub(super) fn step_keys() -> impl Iterator<Item = (&'static str, String)> {
+    let noises = NOISES.iter().map(|(key, unit)| (*key, noise_words(*unit)));
+    let smoothing = "Standard deviation of the Gaussian smoothing over the array, mm.";
+    let errors = all_strengths().filter(|(error, _)| error.about().is_of_single_frames());
+    let errors = errors.map(|(error, strength)| (strength.key, strength_words(error, strength)));
+    noises
+        .chain([(SMOOTHING, smoothing.to_owned())])
+        .chain(errors)
 }

@@ -22,16 +22,6 @@ const COLUMNS: [&str; 6] = [
     "shear_stiffness_n_per_m",
 ];
 
-/// Source of the taxel properties of a patch: its keys in the scene file, and its CSV file.
-struct Lookup<'a> {
-    reader: &'a Reader<'a>,
-    /// Key of the patch in the scene file.
-    key: &'a str,
-    /// Table read from the CSV file, one row per taxel.
-    table: NumberTable,
-    n_taxels: usize,
-}
-
 impl Reader<'_> {
     /// Returns the taxels of a patch and, if the patch has friction, their tangential springs. Writes default values into the specification of the patch.
     pub fn taxels(
@@ -47,32 +37,40 @@ impl Reader<'_> {
             }
             None => NumberTable::default(),
         };
-        let lookup = Lookup {
-            reader: self,
-            key,
-            table,
-            n_taxels,
-        };
-        let radius = lookup.find("taxel_radius_mm", &mut spec.taxel_radius_mm)?;
+        for (column, given, default) in [
+            ("stiffness_n_per_m", &mut spec.stiffness_n_per_m, STIFFNESS),
+            ("damping_n_s_per_m", &mut spec.damping_n_s_per_m, 0.0),
+        ] {
+            if table.position(column).is_none() {
+                given.get_or_insert(Numbers::One(default));
+            }
+        }
+        let given = [
+            &spec.taxel_radius_mm,
+            &spec.stroke_mm,
+            &spec.stiffness_n_per_m,
+            &spec.damping_n_s_per_m,
+            &spec.friction,
+            &spec.shear_stiffness_n_per_m,
+        ];
+        let mut found = [const { None }; COLUMNS.len()];
+        for ((name, given), found) in COLUMNS.iter().zip(given).zip(&mut found) {
+            let key = format!("{key}.{name}");
+            *found = self.property(&key, given.as_ref(), (&table, name), n_taxels)?;
+        }
+        let [radius, stroke, stiffness, damping, friction, shear] = found;
         let radius = radius.unwrap_or(default_radius_mm);
-        let stroke = lookup.find("stroke_mm", &mut spec.stroke_mm)?;
-        let Some(stroke) = stroke else {
+        let (Some(stroke), Some(stiffness), Some(damping)) = (stroke, stiffness, damping) else {
             let allowed = "a number, a list, or a column of taxels_csv";
             return self.refuse(&format!("{key}.stroke_mm"), "nothing", allowed);
         };
-        let stiffness = &mut spec.stiffness_n_per_m;
-        let stiffness = lookup.find_or("stiffness_n_per_m", stiffness, STIFFNESS)?;
-        let damping = &mut spec.damping_n_s_per_m;
-        let damping = lookup.find_or("damping_n_s_per_m", damping, 0.0)?;
-        let taxels = lookup.each([&radius, &stroke, &stiffness, &damping], |taxel| Taxel {
+        let taxels = [&radius, &stroke, &stiffness, &damping];
+        let taxels = each_taxel(n_taxels, taxels, |taxel| Taxel {
             radius: radius.at(taxel) * MM,
             stiffness: *stiffness.at(taxel),
             damping: *damping.at(taxel),
             stroke: stroke.at(taxel) * MM,
         });
-        let friction = lookup.find("friction", &mut spec.friction)?;
-        let shear = &mut spec.shear_stiffness_n_per_m;
-        let shear = lookup.find("shear_stiffness_n_per_m", shear)?;
         let Some(friction) = friction else {
             return match shear {
                 None => Ok((taxels, None)),
@@ -83,65 +81,48 @@ impl Reader<'_> {
             };
         };
         let shear = shear.unwrap_or(stiffness);
-        let shears = lookup.each([&friction, &shear], |taxel| Shear {
+        let shears = each_taxel(n_taxels, [&friction, &shear], |taxel| Shear {
             stiffness: *shear.at(taxel),
             friction: *friction.at(taxel),
         });
         Ok((taxels, Some(shears)))
     }
-}
 
-impl Lookup<'_> {
-    /// Returns a property of each taxel, read from the scene file or from the CSV file; `None` if neither has it.
-    fn find(
+    /// Returns a property of each taxel, given by its key or by the column `name` of a table; `None` if neither is given.
+    fn property(
         &self,
-        name: &'static str,
-        given: &mut Option<Numbers>,
+        key: &str,
+        given: Option<&Numbers>,
+        (table, name): (&NumberTable, &str),
+        n_taxels: usize,
     ) -> Result<Option<PerTaxel<f64>>> {
-        let key = format!("{}.{name}", self.key);
-        Ok(match (given, self.table.position(name)) {
+        Ok(match (given, table.position(name)) {
             (None, None) => None,
-            (None, Some(column)) => Some(PerTaxel::Each(self.table.columns[column].clone())),
+            (None, Some(column)) => Some(PerTaxel::Each(table.columns[column].clone())),
             (Some(_), Some(_)) => {
-                let given = format!("here and as a column of {}", self.table.place);
-                return self.reader.refuse(&key, given, "one of them");
+                let given = format!("here and as a column of {}", table.place);
+                return self.refuse(key, given, "one of them");
             }
             (Some(Numbers::One(number)), None) => Some(PerTaxel::Equal(*number)),
-            (Some(Numbers::Each(numbers)), None) if numbers.len() == self.n_taxels => {
-                Some(PerTaxel::Each(numbers.clone()))
-            }
-            (Some(Numbers::Each(numbers)), None) => {
+            (Some(Numbers::Each(numbers)), None) if numbers.len() != n_taxels => {
                 let given = format!("{} numbers", numbers.len());
-                return self.reader.refuse(&key, given, one_each(self.n_taxels));
+                return self.refuse(key, given, one_each(n_taxels));
             }
+            (Some(Numbers::Each(numbers)), None) => Some(PerTaxel::Each(numbers.clone())),
         })
     }
+}
 
-    /// Returns a property of each taxel. If neither file has the property, writes the default value to `given`.
-    fn find_or(
-        &self,
-        name: &'static str,
-        given: &mut Option<Numbers>,
-        default: f64,
-    ) -> Result<PerTaxel<f64>> {
-        let found = self.find(name, given)?;
-        Ok(found.unwrap_or_else(|| {
-            *given = Some(Numbers::One(default));
-            PerTaxel::Equal(default)
-        }))
-    }
-
-    /// Computes one value per taxel from several properties. If all properties are equal for all taxels, makes a single value for all taxels.
-    fn each<T, const N: usize>(
-        &self,
-        of: [&PerTaxel<f64>; N],
-        make: impl Fn(usize) -> T,
-    ) -> PerTaxel<T> {
-        let are_equal = |numbers: &&PerTaxel<f64>| matches!(numbers, PerTaxel::Equal(_));
-        match of.iter().all(are_equal) {
-            true => PerTaxel::Equal(make(0)),
-            false => PerTaxel::Each((0..self.n_taxels).map(make).collect()),
-        }
+/// Computes one value per taxel from several properties. If all properties are equal for all taxels, makes a single value for all taxels.
+fn each_taxel<T, const N: usize>(
+    n_taxels: usize,
+    properties: [&PerTaxel<f64>; N],
+    make: impl Fn(usize) -> T,
+) -> PerTaxel<T> {
+    let are_equal = |numbers: &&PerTaxel<f64>| matches!(numbers, PerTaxel::Equal(_));
+    match properties.iter().all(are_equal) {
+        true => PerTaxel::Equal(make(0)),
+        false => PerTaxel::Each((0..n_taxels).map(make).collect()),
     }
 }
 

@@ -60,6 +60,17 @@ impl Reader<'_> {
         }
     }
 
+    /// Reads the file that a key names.
+    pub fn read<T>(
+        &self,
+        key: &str,
+        path: &Path,
+        read: impl FnOnce(&Path) -> Result<T>,
+    ) -> Result<T> {
+        self.open(key, path)?;
+        self.under(key, read(&self.path(path)))
+    }
+
     /// Returns the motion of the body that is described under `key`, given its pose `at` and its optional imposed motion.
     pub fn motion(&self, key: &str, at: &PoseSpec, motion: Option<&MotionSpec>) -> Result<Motion> {
         let Some(motion) = motion else {

@@ -140,8 +140,7 @@ impl SkinState {
     ) -> Result<()> {
         if let Some(friction) = &mut self.friction {
             let poses: Vec<Pose> = only.seen_by(patch, &self.pose).collect();
-            let is_reached = only.can_reach(patch, &self.pose);
-            let contacts = match is_reached {
+            let contacts = match only.can_reach(patch, &self.pose) {
                 true => {
                     press_with_contacts(&patch.skin, models, &poses, workspace)?;
                     workspace.contacts()

@@ -106,9 +106,9 @@ pub enum SignalStepSpec {
 
 impl Described for SignalStepSpec {
     fn schema() -> Value {
-        let keys = step_keys().map(|key| {
-            let number = json!({ "type": "number", "minimum": 0, "description": key.words });
-            (key.name.to_owned(), number)
+        let keys = step_keys().map(|(name, words)| {
+            let number = json!({ "type": "number", "minimum": 0, "description": words });
+            (name.to_owned(), number)
         });
         json!({
             "title": "`\"force\"` or a table with a key of a step, such as `{ noise_std_n = 0.1 }`",

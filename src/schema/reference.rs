@@ -9,85 +9,33 @@ use crate::inputs::params::{ORDER, sentence};
 use bubbletouch_sim::text::numbers::short_literal;
 use serde_json::Value;
 
-/// Introduction of the page `guide/tables.md`.
-const START: &str = "\
-# Reference of keys
-
-All keys of [study files](#study-files) and [scene files](#scene-files). This page is generated from the program: see [`bubbletouch schema`](#editors) for
-editors. [Tables](tables.md) lists the columns of all result tables.
-
-- **Default** `required`: the file must have the key. Without a default, the meaning says what holds without the key.
-- **Axis** `list`: the key accepts one value or a list of values that are swept, in its table or in `[axes]`. `[axes]`: the key can be swept in `[axes]` alone.
-
-## Editors
-
-Editors with TOML support complete and check keys with a JSON Schema. Write the schemas beside your files:
-
-```sh
-bubbletouch schema study > study.schema.json
-bubbletouch schema scene > scene.schema.json
-```
-
-Then name the schema in the first line of a study (in a scene: `scene.schema.json`):
-
-```toml
-#:schema study.schema.json
-question = \"How many measurements are enough?\"
-```
-
-[Taplo](https://taplo.tamasfe.dev) checks such files with `taplo lint`. In VS Code, the extension *Even Better TOML* reads the same line.
-";
-
-/// Introduction to the section of `guide/reference.md` about study files.
-const STUDIES: &str = "
-## Study files
-
-The kind of a study follows from the table that only this kind has. A file without such a table is a recognition study.
-";
-
-/// Description of the tables `[test]` and `[axes]`, whose keys repeat keys of other tables.
-const AXES: &str = "
-### `[test]` of recognition studies
-
-Keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` whose values differ for test touches, such as `touches.depth_mm = 1.0`. Training and test touches share
-`touches.per_object`, `touches.frames`, `signal.test_sensor` and `signal.combine`. Studies with `[recorded]` or `[human_touch]` accept `[signal]` alone.
-
-### `[axes]` of recognition studies
-
-Each key is the path of another key, with a list of its values: `\"touches.depth_mm\" = [1.0, 2.0]`. `\"touches.offset_{x,y}_mm\"` sets two keys together.
-`combine` is `\"all\"` (default: all combinations) or `\"one_at_a_time\"` (the values of the tables, then each axis alone).
-";
-
-/// Introduction to the section of `guide/reference.md` about scene files.
-const SCENES: &str = "
-## Scene files
-
-`bubbletouch simulate` reads these files. Paths are relative to the folder of the scene file.
-";
+/// Template of the page; the names in braces stand for the sections of keys.
+const TEMPLATE: &str = include_str!("reference_page.md");
 
 /// Returns the page.
 pub fn reference_page() -> String {
     let kinds = kinds();
-    let mut page = format!("{START}{STUDIES}");
     let mut written = Vec::new();
-    for kind in &kinds {
-        let is_first = kind.table == kinds[0].table;
-        page.push_str(&words_of_kind(kind, &kinds[0]));
+    let sections = kinds.iter().map(|kind| {
+        let mut section = words_of_kind(kind, &kinds[0]);
         let file = FileKind {
             schema: &kind.schema,
             keys: &kind.keys,
         };
-        file.write(&mut written, &mut page);
-        if is_first {
-            page.push_str(AXES);
-        }
-    }
-    page.push_str(SCENES);
+        file.write(&mut written, &mut section);
+        section
+    });
+    let sections: Vec<String> = sections.collect();
     let file = FileKind {
         schema: &scene_schema(),
         keys: &[],
     };
-    file.write(&mut Vec::new(), &mut page);
+    let mut scenes = String::new();
+    file.write(&mut Vec::new(), &mut scenes);
+    let page = TEMPLATE
+        .replace("{recognition}", &sections[0])
+        .replace("{other kinds}", &sections[1..].concat())
+        .replace("{scenes}", &scenes);
     with_plain_sources(&page)
 }
 

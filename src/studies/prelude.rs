@@ -22,8 +22,10 @@ pub(crate) use crate::quantile::quantile;
 pub use crate::random::Seed;
 pub(crate) use crate::report::study_folder::{Beyond, NamedPicture};
 pub(crate) use crate::sensing::{Basis, Ensemble, Projection, Selection};
-pub(crate) use crate::studies::recognition::plan::Plan;
+pub(crate) use crate::signal::NoiseUnit;
 pub use crate::studies::recognition::plan::TaxelArray;
+pub(crate) use crate::studies::recognition::plan::{MeasurementGroup, Plan};
+pub(crate) use crate::studies::recognition::rows::Configuration;
 pub(crate) use crate::studies::recognition::spec::{RecordedSpec, SensedSpec, StepSpec, StudySpec};
 pub use crate::studies::recognition::spec::{SkinSpec, TouchesSpec};
 pub(crate) use crate::studies::recognition::sweep::configurations::nested;
@@ -35,4 +37,5 @@ pub use crate::studies::study::{
 pub use crate::table::{ChartSpec, File, Mark, Table};
 pub(crate) use crate::world::{ImageShape, Placement, Taxel, Touch, TouchAxis};
 pub use crate::{params, row, study_file, words};
+pub(crate) use bubbletouch_svm::split::Split;
 pub(crate) use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! Laws of every kind of study, checked on the results of one small study per kind.
 
 use crate::browser::Browser;
-use crate::command::Case;
+use crate::command::{Case, says};
 use crate::faults::{said, sha256};
 use crate::kinds::Kind;
 use crate::pieces::{Faults, planned};
@@ -12,54 +12,44 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-/// Table with choices, with its value column and its cost column.
-type Choices = (&'static str, &'static str, &'static str);
-
-/// Checks all laws for a kind of study; `choices` is `None` for a kind without choices that have a cost.
-fn obeys_all_laws(kind: Kind, choices: Choices) {
-    let whole = Faults::new(kind);
+/// Checks all laws for a kind of study.
+fn obeys_all_laws(kind: &str) {
+    let whole = Faults::new(Kind::named(kind));
     let case = &whole.case;
     whole.has_the_work_items_that_its_plan_counts();
     whole.has_the_same_tables_in_shards_at_any_number_of_threads();
     whole.has_a_resolved_study_that_runs_from_any_folder();
-    is_advised(case, choices);
+    is_advised(case, &whole.kind.choices);
     whole.is_compared_with_a_changed_study();
     has_tables_that_sort_and_can_be_searched(case);
     whole.is_verified_until_a_number_is_changed();
 }
 
 macro_rules! every_kind {
-    ($($name:ident: $kind:ident, $choices:expr;)*) => {
+    ($($name:ident: $kind:literal;)*) => {
         $(#[test]
         fn $name() {
-            obeys_all_laws(Kind::$kind, $choices);
+            obeys_all_laws($kind);
         })*
     };
 }
 
 every_kind! {
-    a_study_of_recognition_obeys_all_laws: RECOGNITION, ("configurations.csv", "accuracy", "measurements");
-    a_study_with_axes_of_its_own_obeys_all_laws: AXES, ("configurations.csv", "accuracy", "decision_time");
-    a_study_of_reconstruction_obeys_all_laws: RECONSTRUCTION, ("configurations.csv", "error", "us_per_frame");
-    a_study_of_object_detail_obeys_all_laws: OBJECT_DETAIL,
-        ("object_detail_cost.csv", "error_median_mm", "us_per_touch_median");
-    a_study_of_a_whole_body_obeys_all_laws: WHOLE_BODY, ("recognition.csv", "accuracy", "bytes_per_taxel");
-    a_study_of_stability_obeys_all_laws: STABILITY, ("common_methods.csv", "n_right", "median_s");
-    a_study_with_test_touches_of_their_own_obeys_all_laws: TEST_TOUCHES, ("configurations.csv", "accuracy", "decision_time");
+    a_study_of_recognition_obeys_all_laws: "recognition";
+    a_study_with_axes_of_its_own_obeys_all_laws: "axes";
+    a_study_of_reconstruction_obeys_all_laws: "reconstruction";
+    a_study_of_object_detail_obeys_all_laws: "object_detail";
+    a_study_of_a_whole_body_obeys_all_laws: "whole_body";
+    a_study_of_stability_obeys_all_laws: "stability";
+    a_study_with_test_touches_of_their_own_obeys_all_laws: "test_touches";
 }
 
 #[test]
 fn sensor_errors_choices_and_touches_over_time_give_the_same_tables_in_shards_at_any_number_of_threads()
  {
-    for kind in [Kind::ERRORS, Kind::CHOICES, Kind::HUMAN] {
-        Faults::new(kind).has_the_same_tables_in_shards_at_any_number_of_threads();
+    for kind in ["errors", "choices", "human"] {
+        Faults::new(Kind::named(kind)).has_the_same_tables_in_shards_at_any_number_of_threads();
     }
-}
-
-fn refused(case: &Case, arguments: &[&str]) -> String {
-    let output = case.run(arguments);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    said(&output)
 }
 
 impl Faults {
@@ -83,13 +73,13 @@ impl Faults {
     /// Compares three shards at 1, 2 and 7 threads, merged, with one run at all threads.
     fn has_the_same_tables_in_shards_at_any_number_of_threads(&self) {
         for (shard, threads) in [("2/3", "1"), ("1/3", "2"), ("3/3", "7")] {
-            refused(&self.case, &["merge", "study.toml", "--out", "parts"]);
+            self.case
+                .refuses(&["merge", "study.toml", "--out", "parts"]);
             let run = ["run", "study.toml", "--out", "parts", "--shard", shard];
             self.case
                 .succeeds(&[&run[..], &["--threads", threads]].concat());
         }
-        self.case
-            .succeeds(&["merge", "study.toml", "--out", "parts"]);
+        self.case.succeeds("merge study.toml --out parts");
         self.assert_same_tables("parts");
     }
 
@@ -107,15 +97,16 @@ impl Faults {
 
     /// Compares a folder with itself, and with the folder of a changed study.
     fn is_compared_with_a_changed_study(&self) {
-        let (old, new) = match self.kind.change {
+        let [old, new, _] = self.kind.change.each_ref().map(String::as_str);
+        let (old, new) = match old {
             // The number of touches stays the same, because it is a setting.
-            ("per_object = 24", ..) => ("[0.0, 360.0]", "[0.0, 90.0]"),
-            (old, new, _) => (old, new),
+            "per_object = 24" => ("[0.0, 360.0]", "[0.0, 90.0]"),
+            old => (old, new),
         };
         let case = &self.case;
         assert!(self.kind.study.contains(old));
         case.file("changed.toml", self.kind.study.replacen(old, new, 1));
-        case.succeeds(&["run", "changed.toml", "--out", "changed"]);
+        case.succeeds("run changed.toml --out changed");
         let (said, same) = compared(case, ["whole", "whole"]);
         assert!(!same.is_empty() && said.contains("rows of both"), "{said}");
         let is_same = |row: &DifferenceRow| row.difference == 0.0 && row.significance == "same";
@@ -136,8 +127,8 @@ impl Faults {
         }
         // Values and costs are compared separately.
         assert!(columns.len() > 1, "{columns:?}");
-        assert!(said.contains("Columns that differ"), "{said}");
-        let page = fs::read_to_string(case.path("moved.html")).unwrap();
+        says(&said, &["Columns that differ"]);
+        let page = case.read("moved.html");
         assert!(page.contains("in both runs") && page.contains("Costs of both runs"));
     }
 
@@ -147,21 +138,21 @@ impl Faults {
             self.case
                 .succeeds(&["verify", "whole", "--configurations", &n.min(5).to_string()]);
         let expected = format!("{} of {n} work items ran again", n.min(5));
-        assert!(output.contains(&expected), "{output}");
-        let path = self.case.path("whole").join(self.kind.repeatable[0]);
+        says(&output, &[&expected]);
+        let path = self.case.path("whole").join(&self.kind.repeatable[0]);
         let manifest = self.case.path("whole/manifest.json");
         let text = fs::read_to_string(&path).unwrap();
         let changed = text.replacen(['1', '2', '3'], "4", 60);
         fs::write(&path, &changed).unwrap();
         let all = ["verify", "whole", "--configurations", &n.to_string()];
-        let error = refused(&self.case, &all);
-        assert!(error.contains("was changed after its run"), "{error}");
+        let error = self.case.refuses(&all);
+        says(&error, &["was changed after its run"]);
         // If the manifest was changed too, only a second computation of the work items detects the edit.
         let written = fs::read_to_string(&manifest).unwrap();
         let [before, after] = [&text, &changed].map(|text| sha256(text.as_bytes()));
         fs::write(&manifest, written.replace(&before, &after)).unwrap();
-        let error = refused(&self.case, &all);
-        assert!(error.contains("again it is"), "{error}");
+        let error = self.case.refuses(&all);
+        says(&error, &["again it is"]);
     }
 }
 
@@ -171,7 +162,8 @@ fn advice(case: &Case, arguments: &[&str]) -> Value {
 }
 
 /// Asserts that `advise` finds the choices by the roles of the columns; returns the best choice under each condition.
-fn is_advised(case: &Case, (file, value, cost): Choices) {
+fn is_advised(case: &Case, choices: &[String; 3]) {
+    let [file, value, cost] = choices.each_ref().map(String::as_str);
     let columns = ["--value", value, "--cost", cost];
     let all = advice(case, &[&columns[..], &["--budget", "1e12"]].concat());
     assert_eq!(
@@ -196,8 +188,8 @@ fn is_advised(case: &Case, (file, value, cost): Choices) {
         assert_eq!(again[&cost_column], choice[&cost_column]);
     }
     let colour = ["advise", "whole", "--budget", "1", "--cost", "colour"];
-    let error = refused(case, &colour);
-    assert!(error.contains("--cost: colour; one of"), "{error}");
+    let error = case.refuses(&colour);
+    says(&error, &["--cost: colour; one of"]);
     if best.len() > 1 {
         let worst = [&columns[..], &["--budget", "1e12", "--worst"]].concat();
         let worst = advice(case, &worst);

@@ -5,7 +5,7 @@
 //! BUBBLETOUCH_LONG=1, all are tried, and studies that `plan` accepts are also run. An input is accepted, or refused within two seconds with exit code 2 and
 //! one sentence, and nothing is written.
 
-use crate::command::Case;
+use crate::command::{Case, CommandLine};
 use crate::kinds::Kind;
 use bubbletouch::inputs::range::Range;
 use bubbletouch::kinds::object_detail::ObjectDetailStudySpec;
@@ -14,9 +14,9 @@ use bubbletouch::kinds::stability::StabilityStudySpec;
 use bubbletouch::kinds::whole_body::WholeBodyStudySpec;
 use bubbletouch::kinds::{self, Source};
 use bubbletouch::scene::SceneSpec;
-use bubbletouch::study::{StudySpec, write_npy};
-use ndarray::{Array1, Array3};
-use std::collections::BTreeSet;
+use bubbletouch::study::{StudySpec, write_integers, write_npy};
+use ndarray::Array3;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::Read;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -40,121 +40,63 @@ fn reader<T: serde::de::DeserializeOwned>(text: &str) -> Result<(), toml::de::Er
     toml::from_str::<T>(text).map(drop)
 }
 
-/// Keys that many studies omit, each in a study where it has an effect.
-const SVM: &str = "classifier = [\"rbf_svm\", \"polynomial_svm\", \"k_nearest\", \"random_forest\"]\nc = 1.0\ngamma = 0.1\ndegree = 2\ncoef0 = 1.0\n\
-     n_neighbours = 3\nn_trees = 5\nmax_depth = 3\ntest_fraction = 0.25\ntouches_per_decision = 1\nmulticlass = \"one_vs_one\"";
-const CHOSEN: &str = "classifier = \"rbf_svm\"\nc_grid = [1.0, 10.0]\ngamma_grid = [1.0]\ncv_folds = 2\ncv_touches = 4\n\
-     features = \"fourier_magnitude\"\ndepth_window_full_scale = 0.5\ntilt_augmentation = 1\ntilt_augmentation_deg = 4.0";
-const ERRORS: &str = "steps = [\"noise\", \"smoothing\", \"gain\", \"drift\", \"faults\"]\nnoise_std_full_scale = 0.05\nsmoothing_mm = 2.0\n\
-     gain_std = 0.1\ndrift_std_full_scale = 0.01\ndead_fraction = 0.01\ntest_sensor = \"another_skin\"";
-
-fn recognition(skin: &str, touches: &str, signal: &str, recognition: &str) -> String {
-    format!(
-        "question = \"q\"\nexpected = \"e\"\nseed = 3\ntrials = 1\n[objects]\nsets = [\"cans\"]\nsurface_error_mm = 2.0\n\
-         [skin]\npitch_mm = 8.0\nstroke_mm = 5.0\nstiffness_n_per_m = 100.0\n{skin}\n[touches]\nper_object = 12\ndepth_mm = {{ uniform = [2.0, 3.0] }}\n{touches}\n\
-         [signal]\n{signal}\n[sensing]\nensemble = \"gaussian\"\nratio = 8.0\n[recognition]\n{recognition}\n"
-    )
-}
-
-const HUMAN: &str = "question = \"q\"\ntrials = 1\n[human_touch]\nper_kind = 4\narm_radius_mm = 43.0\nframes_hz = 15.0\nduration_s = 3.2\n\
-     [skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n[sensing]\nmeasurements = 8\n[recognition]\nclassifier = \"linear_svm\"\ntemporal_features = \"stacked_4\"\n";
-
-const RECORDED: &str = "question = \"q\"\ntrials = 1\n[recorded]\nframes = \"frames.npy\"\nlabels = \"labels.npy\"\ngroups = \"groups.npy\"\nzero = 0.0\n\
-     full_scale = 2.0\n[skin]\npitch_mm = 4.0\nstroke_mm = 2.0\n[sensing]\nratio = 4.0\n[recognition]\nclassifier = \"linear_svm\"\n";
-
-const SCENE: &str = include_str!("scene.toml");
-const PARTS: &str = include_str!("parts.toml");
-
 fn files() -> Vec<File> {
-    let plan = "plan FILE";
-    let kind = |name, kind: Kind, read| File {
-        name,
-        text: kind.study.to_owned(),
-        read,
-        command: plan,
-    };
     let study = |name, text: &str| File {
         name,
         text: text.to_owned(),
         read: reader::<StudySpec>,
-        command: plan,
+        command: "plan FILE",
     };
-    let frames = "frames = 2\nspeed_mm_per_s = 10.0\noffset_x_mm = { uniform = [-5.0, 5.0] }\nyaw_deg = [0.0, 30.0]\ntilt_x_deg = { grid = [0.0, 4.0, 3] }";
-    let slides = "slide_mm = 1.0\nslide_deg = 10.0\noffset_x_mm = { uniform = [-5.0, 5.0] }";
-    let shear = "taxels = 8\nsensed = \"shear\"\nfriction = 0.5\nshear_stiffness_n_per_m = 50.0\ntaxel_radius_mm = 4.0";
-    let svm = "classifier = \"linear_svm\"\ngroup_by = \"offset\"\ngroup_by_mm = 0.5";
-    vec![
-        study(
-            "recognition",
-            &recognition(
-                "size_mm = 64.0",
-                frames,
-                "steps = [\"scan\", \"noise\", \"smoothing\"]\nscan_time_ms = 5.0\nnoise_std_full_scale = 0.1\nsmoothing_mm = 2.0",
-                SVM,
-            ),
-        ),
-        study(
-            "chosen",
-            &recognition(
-                "taxels = 8\nsensed = \"force\"\ndamping_n_s_per_m = 0.1",
-                "speed_mm_per_s = 10.0",
-                ERRORS,
-                CHOSEN,
-            ),
-        ),
-        study("shear", &recognition(shear, slides, "steps = []", svm)),
-        study("human", HUMAN),
-        study("recorded", RECORDED),
-        kind(
-            "reconstruction",
-            Kind::RECONSTRUCTION,
-            reader::<ReconstructionStudySpec>,
-        ),
-        kind(
-            "object_detail",
-            Kind::OBJECT_DETAIL,
-            reader::<ObjectDetailStudySpec>,
-        ),
-        kind("whole_body", Kind::WHOLE_BODY, reader::<WholeBodyStudySpec>),
-        kind("stability", Kind::STABILITY, reader::<StabilityStudySpec>),
-        File {
-            name: "scene",
-            text: SCENE.to_owned(),
-            read: reader::<SceneSpec>,
-            command: "simulate FILE --out out --quiet",
-        },
-        File {
-            name: "parts",
-            text: PARTS.to_owned(),
-            read: reader::<Table>,
-            command: "press --object one --objects FILE --surface-error-mm 2 --taxels 8x8 --out out.csv",
-        },
-    ]
+    let kind = |name, read| File {
+        read,
+        ..study(name, &Kind::named(name).study)
+    };
+    let mut files = vec![
+        study("recognition", include_str!("hostile/recognition.toml")),
+        study("chosen", include_str!("hostile/chosen.toml")),
+        study("shear", include_str!("hostile/shear.toml")),
+        study("human", include_str!("hostile/human.toml")),
+        study("recorded", include_str!("hostile/recorded.toml")),
+    ];
+    let read = reader::<ReconstructionStudySpec>;
+    files.push(kind("reconstruction", read));
+    let read = reader::<ObjectDetailStudySpec>;
+    files.push(kind("object_detail", read));
+    let read = reader::<WholeBodyStudySpec>;
+    files.push(kind("whole_body", read));
+    let read = reader::<StabilityStudySpec>;
+    files.push(kind("stability", read));
+    files.push(File {
+        read: reader::<SceneSpec>,
+        command: "simulate FILE --out out --quiet",
+        ..study("scene", include_str!("hostile/scene.toml"))
+    });
+    files.push(File {
+        read: reader::<Table>,
+        command: "press --object one --objects FILE --surface-error-mm 2 --taxels 8x8 --out out.csv",
+        ..study("parts", include_str!("hostile/parts.toml"))
+    });
+    files
 }
 
-/// Creates a folder with the file and all files that it needs.
+/// Creates a folder with the files of the folder `hostile` and all files that they need.
 fn case() -> Case {
-    let case = Kind::RECOGNITION.case();
+    let case = Kind::named("recognition").case();
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/long_runs/hostile");
+    for file in fs::read_dir(own).unwrap() {
+        let file = file.unwrap();
+        fs::copy(file.path(), case.folder().join(file.file_name())).unwrap();
+    }
     let touch = |n: usize, row: usize| ((n * 7 + row * 3) % 11) as f32 / 10.0;
     let frames = Array3::from_shape_fn((40, 8, 8), |(n, row, column)| touch(n, row + column));
     write_npy(&case.path("frames.npy"), &frames).unwrap();
-    let labels: Array1<i64> = (0..40).map(|n| n % 4).collect();
-    let groups: Array1<i64> = (0..40).map(|n| n / 4).collect();
-    ndarray_npy::write_npy(case.path("labels.npy"), &labels).unwrap();
-    ndarray_npy::write_npy(case.path("groups.npy"), &groups).unwrap();
+    write_integers(&case.path("labels.npy"), (0..40).map(|n| n % 4)).unwrap();
+    write_integers(&case.path("groups.npy"), (0..40).map(|n| n / 4)).unwrap();
     case.file("spheres.csv", "x,y,z,r\n0,0,0.01,0.01\n0.01,0,0.01,0.01\n");
     case.file("poses.csv", "x,y,z,qw,qx,qy,qz\n0,0,0.02,1,0,0,0\n");
-    case.file("parts.toml", PARTS);
-    case.file("scene.toml", SCENE);
-    case.file("arm.urdf", ARM);
-    case.file("recorded.toml", RECORDED);
     fs::copy(case.path("meshes/box.obj"), case.path("box.obj")).unwrap();
     case
 }
-
-const ARM: &str = "<robot name=\"post\"><link name=\"base\"/><joint name=\"turn\" type=\"revolute\"><parent link=\"base\"/><child link=\"upper\"/>\
-     <axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>\
-     <link name=\"upper\"><collision><geometry><cylinder radius=\"0.05\" length=\"0.1\"/></geometry></collision></link></robot>";
 
 /// Returns values that are invalid for most keys.
 fn values() -> Vec<Value> {
@@ -276,9 +218,9 @@ fn is_long() -> bool {
 }
 
 /// Runs a command for at most a minute.
-fn answer(case: &Case, arguments: &[&str]) -> Answer {
+fn answer(case: &Case, line: &(impl CommandLine + ?Sized)) -> Answer {
     let start = Instant::now();
-    let mut command = case.command(arguments);
+    let mut command = case.command(line);
     command.stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     let mut stderr = child.stderr.take().unwrap();
@@ -346,8 +288,7 @@ fn clear(case: &Case) {
 
 fn tried(case: &Case, command: &str) -> Option<String> {
     let before = all_names(case.folder());
-    let arguments: Vec<&str> = command.split(' ').collect();
-    let answer = answer(case, &arguments);
+    let answer = answer(case, command);
     let found = wrong(&answer, all_names(case.folder()) == before);
     clear(case);
     found
@@ -455,7 +396,7 @@ fn every_key_is_accepted_or_refused_in_one_sentence() {
         let name = format!("{}_x.toml", file.name);
         let command = file.command.replace("FILE", &name);
         case.file(&name, &file.text);
-        let usual = answer(&case, &command.split(' ').collect::<Vec<_>>());
+        let usual = answer(&case, &command);
         assert_eq!(usual.code, Some(0), "{}: {}", file.name, usual.said);
         clear(&case);
         let all = mutations(&file);
@@ -476,7 +417,7 @@ fn every_key_is_accepted_or_refused_in_one_sentence() {
                 case.file(&name, text);
                 let run = format!("run {name} --out out --quiet");
                 // An input that `plan` accepts also runs; a study may take longer than the test waits.
-                let answer = answer(&case, &run.split(' ').collect::<Vec<_>>());
+                let answer = answer(&case, &run);
                 clear(&case);
                 if !matches!(answer.code, Some(0) | None) {
                     found = Some(format!("plan accepts it, but run: {}", answer.said.trim()));
@@ -488,154 +429,30 @@ fn every_key_is_accepted_or_refused_in_one_sentence() {
         }
         fs::remove_file(case.path(&name)).unwrap();
     }
-    eprintln!("{n} inputs");
-    assert!(
-        faults.is_empty(),
-        "{} of {n} inputs:\n{}",
-        faults.len(),
-        faults.join("\n")
-    );
+    assert_none(n, &faults);
 }
-
-/// Files that commands read, with the commands.
-const READ: &[(&str, &[&str])] = &[
-    (
-        "study.toml",
-        &[
-            "plan study.toml",
-            "run study.toml --out out",
-            "slurm study.toml --array 2 --out out",
-        ],
-    ),
-    ("scene.toml", &["simulate scene.toml --out out"]),
-    ("arm.urdf", &["simulate scene.toml --out out"]),
-    (
-        "spheres.csv",
-        &[
-            "press --spheres spheres.csv --out out.csv",
-            "simulate scene.toml --out out",
-        ],
-    ),
-    (
-        "box.obj",
-        &[
-            "press --mesh box.obj --out out.csv",
-            "objects mesh box.obj",
-            "objects pack box.obj --surface-error-mm 1 --out out.csv",
-        ],
-    ),
-    (
-        "box.ply",
-        &["press --mesh box.ply --out out.csv", "objects mesh box.ply"],
-    ),
-    (
-        "box.stl",
-        &["press --mesh box.stl --out out.csv", "objects mesh box.stl"],
-    ),
-    ("poses.csv", &["press --object golf --poses poses.csv"]),
-    (
-        "parts.toml",
-        &[
-            "press --object one --objects parts.toml --surface-error-mm 2 --out out.csv",
-            "objects --objects parts.toml",
-        ],
-    ),
-    (
-        "frames.npy",
-        &[
-            "plan recorded.toml",
-            "run recorded.toml --out out",
-            "calibrate frames.npy",
-        ],
-    ),
-    (
-        "labels.npy",
-        &["plan recorded.toml", "run recorded.toml --out out"],
-    ),
-    (
-        "groups.npy",
-        &["plan recorded.toml", "run recorded.toml --out out"],
-    ),
-    (
-        "results/study.toml",
-        &[
-            "report results",
-            "compare results results",
-            "verify results",
-            "advise results --accuracy 0.5",
-        ],
-    ),
-    (
-        "results/summary.csv",
-        &[
-            "report results",
-            "compare results results",
-            "advise results --accuracy 0.5",
-        ],
-    ),
-    (
-        "results/accuracy.csv",
-        &["report results", "compare results results"],
-    ),
-    (
-        "results/timing.csv",
-        &["report results", "advise results --accuracy 0.5"],
-    ),
-    (
-        "results/manifest.json",
-        &[
-            "report results",
-            "compare results results",
-            "verify results",
-        ],
-    ),
-    (
-        "rows/features.npy",
-        &["classify rows --classifier k_nearest"],
-    ),
-    ("rows/labels.npy", &["classify rows --classifier k_nearest"]),
-    ("rows/train.npy", &["classify rows --classifier k_nearest"]),
-    (
-        "moved/recording.npz",
-        &[
-            "recording moved/recording.npz",
-            "recording moved/recording.npz --patch pad --frame 0",
-        ],
-    ),
-];
 
 #[test]
 fn every_file_that_is_broken_is_refused_in_one_sentence_or_read() {
     let case = case();
-    case.file("box.ply", PLY);
-    case.file("box.stl", STL);
-    case.file(
-        "small.toml",
-        recognition(
-            "taxels = 8",
-            "",
-            "steps = []",
-            "classifier = \"linear_svm\"",
-        ),
-    );
-    case.succeeds(&["run", "small.toml", "--out", "results", "--quiet"]);
-    case.succeeds(&["features", "small.toml", "--out", "rows"]);
-    case.succeeds(&["simulate", "scene.toml", "--out", "moved", "--quiet"]);
+    case.succeeds("run small.toml --out results --quiet");
+    case.succeeds("features small.toml --out rows");
+    case.succeeds("simulate scene.toml --out moved --quiet");
+    let commands: BTreeMap<String, Vec<String>> =
+        toml::from_str(include_str!("hostile/commands.toml")).unwrap();
+    let ways = [
+        "missing",
+        "empty",
+        "truncated",
+        "wrong kind",
+        "a folder",
+        "unreadable",
+    ];
     let (mut n, mut faults) = (0, Vec::new());
-    for (number, (name, commands)) in READ.iter().enumerate() {
+    for (number, (name, commands)) in commands.iter().enumerate() {
         let path = case.path(name);
         let whole = fs::read(&path).unwrap();
-        for (way, how) in [
-            "missing",
-            "empty",
-            "truncated",
-            "wrong kind",
-            "a folder",
-            "unreadable",
-        ]
-        .iter()
-        .enumerate()
-        {
+        for (way, how) in ways.iter().enumerate() {
             if !is_long() && (number + way) % 4 != 0 {
                 continue;
             }
@@ -648,7 +465,7 @@ fn every_file_that_is_broken_is_refused_in_one_sentence_or_read() {
                 "a folder" => fs::create_dir(&path).unwrap(),
                 _ => make_unreadable(&path, &whole),
             }
-            for command in *commands {
+            for command in commands {
                 n += 1;
                 if let Some(found) = tried(&case, command) {
                     faults.push(format!("{name} {how}: {command}: {found}"));
@@ -659,13 +476,14 @@ fn every_file_that_is_broken_is_refused_in_one_sentence_or_read() {
             fs::write(&path, &whole).unwrap();
         }
     }
-    eprintln!("{n} broken files");
-    assert!(
-        faults.is_empty(),
-        "{} of {n}:\n{}",
-        faults.len(),
-        faults.join("\n")
-    );
+    assert_none(n, &faults);
+}
+
+/// Asserts that none of `n` inputs has a fault.
+fn assert_none(n: usize, faults: &[String]) {
+    eprintln!("{n} inputs");
+    let n_faults = faults.len();
+    assert_eq!(n_faults, 0, "of {n} inputs:\n{}", faults.join("\n"));
 }
 
 /// Makes a file unreadable for all users except root.
@@ -677,8 +495,3 @@ fn make_unreadable(path: &Path, whole: &[u8]) {
         fs::set_permissions(path, fs::Permissions::from_mode(0o000)).unwrap();
     }
 }
-
-const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n\
-     property list uchar int vertex_indices\nend_header\n0 0 0\n0.02 0 0\n0 0.02 0\n0 0 0.02\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
-const STL: &str = "solid a\nfacet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 0.02 0\nvertex 0.02 0 0\nendloop\nendfacet\n\
-     facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.02 0 0\nvertex 0 0.02 0.01\nendloop\nendfacet\nendsolid a\n";

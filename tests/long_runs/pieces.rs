@@ -1,8 +1,8 @@
 //! Runs that are killed, interrupted, extended or limited in memory give the tables of an undisturbed run.
 #![cfg(unix)]
 
-use crate::command::Case;
-use crate::faults::{full_disk, keys, pieces, said, signal, start};
+use crate::command::{Case, says};
+use crate::faults::{full_disk, keys, pieces, said, signal, start, wait_for_work};
 use crate::kinds::Kind;
 use bubbletouch::contact::Instructions;
 use rand::{Rng, SeedableRng};
@@ -46,7 +46,7 @@ pub fn planned(said: &str, word: &str) -> Vec<String> {
 impl Faults {
     pub fn new(kind: Kind) -> Self {
         let case = kind.case();
-        let (said, _) = case.succeeds(&["run", "study.toml", "--out", "whole", "--json"]);
+        let (said, _) = case.succeeds("run study.toml --out whole --json");
         assert_progress_ends(&said);
         let faults = Self { kind, case };
         let manifest = fs::read_to_string(faults.case.path("whole/manifest.json")).unwrap();
@@ -59,7 +59,7 @@ impl Faults {
         let names = hashes.keys().map(String::as_str);
         let names: Vec<&str> = names.collect();
         let mut expected = faults.kind.repeatable.to_vec();
-        expected.push("failures.csv");
+        expected.push("failures.csv".to_owned());
         expected.sort_unstable();
         assert_eq!(names, expected);
         faults
@@ -71,8 +71,13 @@ impl Faults {
 
     /// Asserts that the tables without times equal the tables of the whole run, and that no table is empty.
     pub fn assert_same_tables(&self, folder: &str) {
-        for name in self.kind.repeatable.iter().chain(&["study.toml"]) {
-            let read = |folder: &str| fs::read(self.case.path(folder).join(name)).unwrap();
+        for name in self
+            .kind
+            .repeatable
+            .iter()
+            .chain([&"study.toml".to_owned()])
+        {
+            let read = |folder: &str| self.case.bytes(&format!("{folder}/{name}"));
             assert!(!read("whole").is_empty(), "{name}");
             assert!(read("whole") == read(folder), "{folder}/{name}");
         }
@@ -107,7 +112,7 @@ impl Faults {
             }
             let (_, error) = self.case.succeeds(&["run", "study.toml", "--out", &folder]);
             let all = format!("going on: {n_pieces} of {n_pieces} ");
-            assert!(error.contains(&all), "{error}");
+            says(&error, &[&all]);
             let done = pieces(&journal);
             let different: BTreeSet<&String> = done.iter().collect();
             assert_eq!(done.len(), different.len(), "a piece was done twice");
@@ -116,21 +121,21 @@ impl Faults {
     }
 
     fn loses_no_more_than_a_torn_last_line(&self) {
-        let whole = fs::read(self.case.path("whole/journal.jsonl")).unwrap();
+        let whole = self.case.bytes("whole/journal.jsonl");
         fs::create_dir(self.case.path("torn")).unwrap();
         let journal = self.case.path("torn/journal.jsonl");
-        for n in [whole.len() / 2, whole.len() - 1] {
+        for n in [0, 10, whole.len() / 2, whole.len() - 1] {
             fs::write(&journal, &whole[..n]).unwrap();
             let kept = pieces(&journal);
-            let (_, error) = self.case.succeeds(&["run", "study.toml", "--out", "torn"]);
+            let (_, error) = self.case.succeeds("run study.toml --out torn");
             assert_eq!(error.contains("going on"), !kept.is_empty(), "{error}");
             assert_eq!(pieces(&journal)[..kept.len()], kept);
             self.assert_same_tables("torn");
         }
         // Measured times are unchanged.
-        let times = |folder: &str| fs::read(self.case.path(folder).join(self.kind.times)).unwrap();
+        let times = |folder: &str| fs::read(self.case.path(folder).join(&self.kind.times)).unwrap();
         fs::write(&journal, &whole).unwrap();
-        self.case.succeeds(&["run", "study.toml", "--out", "torn"]);
+        self.case.succeeds("run study.toml --out torn");
         assert!(times("whole") == times("torn"));
     }
 
@@ -149,15 +154,13 @@ impl Faults {
             sleep(Duration::from_millis(1));
         }
         signal(&first, "STOP");
-        let second = self.case.run(&arguments);
-        signal(&first, "CONT");
-        assert_eq!(second.status.code(), Some(2));
-        let error = said(&second);
-        assert!(error.contains("another run is writing to it"), "{error}");
-        // After the first finished work item, a signal ends the run without loss.
-        while pieces(&self.case.path("shared/journal.jsonl")).is_empty() {
-            sleep(Duration::from_millis(1));
+        for more in [&[][..], &["--fresh"]] {
+            let error = self.case.refuses(&[&arguments[..], more].concat());
+            says(&error, &["another run is writing to it"]);
         }
+        signal(&first, "CONT");
+        // After the first finished work item, a signal ends the run without loss.
+        wait_for_work(&self.case, "shared");
         signal(&first, "TERM");
         let output = first.wait_with_output().unwrap();
         let stopped = output.status.code() == Some(130);
@@ -167,54 +170,58 @@ impl Faults {
     }
 
     fn refuses_a_changed_study(&self) {
-        let (old, new, said_of_it) = self.kind.change;
+        let [old, new, expected] = &self.kind.change;
         assert!(self.kind.study.contains(old));
         let changed = self.kind.study.replace(old, new);
         self.case.file("changed.toml", changed);
-        let output = self.case.run(&["run", "changed.toml", "--out", "whole"]);
-        assert_eq!(output.status.code(), Some(2));
-        let error = said(&output);
-        assert!(
-            error.contains(said_of_it) && error.contains("--fresh"),
-            "{error}"
-        );
+        let error = self.case.refuses("run changed.toml --out whole");
+        says(&error, &[expected, "--fresh"]);
     }
 
     fn refuses_a_journal_that_names_no_study(&self) {
-        let whole = fs::read_to_string(self.case.path("whole/journal.jsonl")).unwrap();
+        let whole = self.case.read("whole/journal.jsonl");
         let rest = whole.split_once('\n').unwrap().1;
         fs::create_dir(self.case.path("nameless")).unwrap();
         let journal = self.case.file("nameless/journal.jsonl", rest);
-        let output = self.case.run(&["run", "study.toml", "--out", "nameless"]);
-        assert_eq!(output.status.code(), Some(2));
-        let error = said(&output);
-        assert!(
-            error.contains("journal.jsonl: line 1: is no record of a study")
-                && error.contains("--fresh"),
-            "{error}"
+        let error = self.case.refuses("run study.toml --out nameless");
+        says(
+            &error,
+            &["journal.jsonl: line 1: is no record of a study", "--fresh"],
         );
         assert!(rest == fs::read_to_string(journal).unwrap());
     }
 
     fn keeps_its_work_when_there_is_more_of_it(&self) {
-        let mut more = self.kind.study.to_owned();
-        for (old, new) in self.kind.more {
+        let mut more = self.kind.study.clone();
+        for [old, new] in &self.kind.more {
             assert!(more.contains(old), "{old}");
             more = more.replacen(old, new, 1);
         }
-        self.case.file("more.toml", more);
-        self.case.succeeds(&["run", "more.toml", "--out", "fresh"]);
-        fs::create_dir(self.case.path("grown")).unwrap();
-        let journals = ["whole", "grown"].map(|name| self.case.path(name).join("journal.jsonl"));
-        fs::copy(&journals[0], &journals[1]).unwrap();
-        let (_, error) = self.case.succeeds(&["run", "more.toml", "--out", "grown"]);
-        let (n_before, n_all) = (self.n_pieces(), pieces(&journals[1]).len());
-        let going_on = format!("going on: {n_before} of {n_all} work items");
-        assert!(n_before < n_all && error.contains(&going_on), "{error}");
-        for name in self.kind.repeatable {
-            let read = |folder: &str| fs::read(self.case.path(folder).join(name)).unwrap();
-            assert!(read("fresh") == read("grown"), "{name}");
+        let n_before = self.n_pieces();
+        let n_all = self.keeps_its_work(&more, [n_before, 0]);
+        assert!(n_before < n_all, "{n_before} of {n_all}");
+    }
+
+    /// Runs another study in a copy of the folder, and from nothing; asserts equal tables and the numbers of kept and of all work items. Returns the number of
+    /// all work items; 0 is any number.
+    pub fn keeps_its_work(&self, study: &str, [n_before, n_all]: [usize; 2]) -> usize {
+        let case = &self.case;
+        case.file("more.toml", study);
+        case.succeeds("run more.toml --out fresh --fresh --threads 3");
+        let n = pieces(&case.path("fresh/journal.jsonl")).len();
+        assert!(n_all == n || n_all == 0, "{n} work items");
+        let folder = format!("grown_{n}");
+        fs::create_dir(case.path(&folder)).unwrap();
+        let journal = case.path(&folder).join("journal.jsonl");
+        fs::copy(case.path("whole/journal.jsonl"), journal).unwrap();
+        let (_, error) = case.succeeds(&["run", "more.toml", "--out", &folder, "--threads", "1"]);
+        says(&error, &[format!("going on: {n_before} of {n} work items")]);
+        for name in &self.kind.repeatable {
+            let read = |folder: &str| case.bytes(&format!("{folder}/{name}"));
+            assert!(read("fresh") == read(&folder), "{folder}/{name}");
         }
+        case.succeeds(&["verify", &folder, "--configurations", "5"]);
+        n
     }
 
     /// Asserts that a run is refused below its memory requirement, with the required amount, and gives the same tables from there on.
@@ -252,10 +259,10 @@ impl Faults {
         for name in before.keys().map(String::as_str).chain(["report.html"]) {
             fs::remove_file(self.case.path("whole").join(name)).unwrap();
         }
-        self.case.succeeds(&["report", "whole"]);
+        self.case.succeeds("report whole");
         assert!(before == drawn(), "{:?}", before.keys());
-        let page = fs::read_to_string(self.case.path("whole/report.html")).unwrap();
-        assert!(page.contains("<html"), "{page}");
+        let page = self.case.read("whole/report.html");
+        says(&page, &["<html"]);
     }
 }
 
@@ -281,34 +288,34 @@ fn goes_through_all_faults(kind: Kind) {
 }
 
 macro_rules! through_all_faults {
-    ($($(#[$ignored:meta])? $name:ident: $kind:ident;)*) => {
+    ($($(#[$ignored:meta])? $name:ident: $kind:literal;)*) => {
         $(#[test]
         $(#[$ignored])?
         fn $name() {
-            goes_through_all_faults(Kind::$kind);
+            goes_through_all_faults(Kind::named($kind));
         })*
     };
 }
 
 through_all_faults! {
-    a_study_of_stability_goes_through_all_faults: STABILITY;
-    #[ignore = "`.ci/long engine`"] a_study_of_recognition_goes_through_all_faults: RECOGNITION;
-    #[ignore = "`.ci/long engine`"] a_study_with_axes_of_its_own_goes_through_all_faults: AXES;
-    #[ignore = "`.ci/long engine`"] a_study_of_reconstruction_goes_through_all_faults: RECONSTRUCTION;
-    #[ignore = "`.ci/long engine`"] a_study_of_object_detail_goes_through_all_faults: OBJECT_DETAIL;
-    #[ignore = "`.ci/long engine`"] a_study_of_a_whole_body_goes_through_all_faults: WHOLE_BODY;
-    #[ignore = "`.ci/long engine`"] a_study_with_test_touches_of_their_own_goes_through_all_faults: TEST_TOUCHES;
+    a_study_of_stability_goes_through_all_faults: "stability";
+    #[ignore = "`.ci/long engine`"] a_study_of_recognition_goes_through_all_faults: "recognition";
+    #[ignore = "`.ci/long engine`"] a_study_with_axes_of_its_own_goes_through_all_faults: "axes";
+    #[ignore = "`.ci/long engine`"] a_study_of_reconstruction_goes_through_all_faults: "reconstruction";
+    #[ignore = "`.ci/long engine`"] a_study_of_object_detail_goes_through_all_faults: "object_detail";
+    #[ignore = "`.ci/long engine`"] a_study_of_a_whole_body_goes_through_all_faults: "whole_body";
+    #[ignore = "`.ci/long engine`"] a_study_with_test_touches_of_their_own_goes_through_all_faults: "test_touches";
 }
 
 #[test]
 fn what_a_whole_group_needs_and_cannot_be_had_fails_its_pieces_and_no_others() {
-    let case = Kind::OBJECT_DETAIL.case();
-    let plate = fs::read_to_string(case.path("meshes/plate.obj")).unwrap();
+    let case = Kind::named("object_detail").case();
+    let plate = case.read("meshes/plate.obj");
     let open: Vec<&str> = plate.lines().take(8 + 11).collect();
     case.file("meshes/open.obj", open.join("\n"));
-    let output = case.run(&["run", "study.toml", "--out", "open"]);
+    let output = case.run("run study.toml --out open");
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
-    let failures = fs::read_to_string(case.path("open/failures.csv")).unwrap();
+    let failures = case.read("open/failures.csv");
     // The object's models, their times, and all classifiers that need every object.
     assert_eq!(failures.lines().count(), 1 + 2 + 3, "{failures}");
     assert!(
@@ -318,11 +325,11 @@ fn what_a_whole_group_needs_and_cannot_be_had_fails_its_pieces_and_no_others() {
             .all(|line| line.contains("open.obj: a hole ")),
         "{failures}"
     );
-    let detail = fs::read_to_string(case.path("open/object_detail.csv")).unwrap();
+    let detail = case.read("open/object_detail.csv");
     assert_eq!(detail.lines().count(), 1 + 2 * 3, "{detail}");
     // After the mesh is repaired, the study continues with the pending items.
     case.file("meshes/open.obj", plate.replace("0.02", "0.018"));
-    let output = case.run(&["run", "study.toml", "--out", "open"]);
+    let output = case.run("run study.toml --out open");
     assert_eq!(
         output.status.code(),
         Some(2),

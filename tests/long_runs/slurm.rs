@@ -1,9 +1,11 @@
 //! A study as a job array on a real Slurm cluster of one node, which the test starts. One shard is killed, and the same command continues it.
 #![cfg(target_os = "linux")]
 
-use crate::command::{Case, says};
+use crate::command::{Case, CommandLine, filled, says};
+use crate::faults::pieces;
 use bubbletouch::study::journal::Journal;
-use std::fs;
+use std::fmt::Display;
+use std::fs::{self, Permissions};
 use std::io::Write;
 use std::net::TcpListener;
 use std::os::unix::fs::PermissionsExt;
@@ -31,39 +33,32 @@ impl Cluster {
             found.ok_or(format!("there is no {name} on this machine"))
         };
         let (munged, slurmctld, slurmd) = (sbin("munged")?, sbin("slurmctld")?, sbin("slurmd")?);
-        for name in ["munge", "state", "spool"] {
-            fs::create_dir(folder.join(name)).map_err(|e| e.to_string())?;
-            let private = fs::Permissions::from_mode(0o700);
-            fs::set_permissions(folder.join(name), private).map_err(|e| e.to_string())?;
-        }
-        let key = folder.join("munge/key");
-        fs::write(&key, [7; 128]).map_err(|e| e.to_string())?;
-        fs::set_permissions(&key, fs::Permissions::from_mode(0o400)).map_err(|e| e.to_string())?;
-        fs::write(folder.join("slurm.conf"), configuration(folder)).map_err(|e| e.to_string())?;
-        let munge = |file: &str| folder.join("munge").join(file).display().to_string();
-        let munge_options = [
-            "--foreground".to_owned(),
-            "--force".to_owned(),
-            format!("--key-file={}", munge("key")),
-            format!("--socket={}", munge("socket")),
-            format!("--pid-file={}", munge("pid")),
-            format!("--log-file={}", munge("log")),
-            format!("--seed-file={}", munge("seed")),
-        ];
+        let write = || -> std::io::Result<()> {
+            for name in ["munge", "state", "spool"] {
+                fs::create_dir(folder.join(name))?;
+                fs::set_permissions(folder.join(name), Permissions::from_mode(0o700))?;
+            }
+            let key = folder.join("munge/key");
+            fs::write(&key, [7; 128])?;
+            fs::set_permissions(&key, Permissions::from_mode(0o400))?;
+            fs::write(folder.join("slurm.conf"), configuration(folder))
+        };
+        write().map_err(|e| e.to_string())?;
+        let munge = folder.join("munge").display().to_string();
+        let munge_options = format!(
+            "--foreground --force --key-file={munge}/key --socket={munge}/socket --pid-file={munge}/pid --log-file={munge}/log --seed-file={munge}/seed"
+        );
         let mut cluster = Self {
             folder: folder.to_owned(),
             daemons: Vec::new(),
         };
         cluster.daemon(&munged, &munge_options)?;
         sleep(Duration::from_millis(500));
-        cluster.daemon(&slurmctld, &["-D".to_owned()])?;
-        cluster.daemon(&slurmd, &["-D".to_owned()])?;
+        cluster.daemon(&slurmctld, "-D")?;
+        cluster.daemon(&slurmd, "-D")?;
         let start = Instant::now();
-        while cluster
-            .ask("sinfo", &["--noheader", "--format", "%T"])
-            .trim()
-            != "idle"
-        {
+        let state = ["--noheader", "--format", "%T"];
+        while cluster.ask("sinfo", &state).trim() != "idle" {
             if start.elapsed() > Duration::from_secs(20) {
                 return Err("its node is not ready after 20 s".to_owned());
             }
@@ -72,49 +67,32 @@ impl Cluster {
         Ok(cluster)
     }
 
-    fn daemon(&mut self, program: &Path, arguments: &[String]) -> Result<(), String> {
+    fn daemon(&mut self, program: &Path, arguments: &str) -> Result<(), String> {
         let mut command = Command::new(program);
-        command
-            .args(arguments)
-            .env("SLURM_CONF", self.folder.join("slurm.conf"));
+        let command = self.with_cluster(command.args(arguments.words()));
         command.stdout(Stdio::null()).stderr(Stdio::null());
-        self.daemons
-            .push(command.spawn().map_err(|e| e.to_string())?);
+        let daemon = command.spawn().map_err(|e| e.to_string())?;
+        self.daemons.push(daemon);
         Ok(())
+    }
+
+    /// Lets a command use this cluster.
+    fn with_cluster<'c>(&self, command: &'c mut Command) -> &'c mut Command {
+        command.env("SLURM_CONF", self.folder.join("slurm.conf"))
     }
 
     fn ask(&self, program: &str, arguments: &[&str]) -> String {
         let mut command = Command::new(program);
-        command
-            .args(arguments)
-            .env("SLURM_CONF", self.folder.join("slurm.conf"));
-        let output = command
-            .output()
-            .map(|output| output.stdout)
-            .unwrap_or_default();
+        let output = self.with_cluster(command.args(arguments)).output();
+        let output = output.map(|output| output.stdout).unwrap_or_default();
         String::from_utf8(output).unwrap()
     }
 
     /// Runs the submit command and asserts success.
     fn submit(&self, case: &Case) -> String {
-        let arguments = [
-            "slurm",
-            "study.toml",
-            "--out",
-            "jobs",
-            "--array",
-            "8",
-            "--time",
-            "10",
-        ];
-        let mut command = case.command(&arguments);
-        let output = command
-            .env("SLURM_CONF", self.folder.join("slurm.conf"))
-            .output()
-            .unwrap();
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{error}");
-        String::from_utf8(output.stdout).unwrap()
+        let line = "slurm study.toml --out jobs --array 8 --time 10";
+        let mut command = case.command(line);
+        succeeded(self.with_cluster(&mut command))
     }
 
     fn wait_until_empty(&self) {
@@ -146,22 +124,21 @@ fn configuration(folder: &Path) -> String {
     let [ctld, d] = free.map(|listener| listener.local_addr().unwrap().port());
     let cpus = std::thread::available_parallelism().unwrap();
     let folder = folder.display();
-    format!(
-        "ClusterName=test\nSlurmctldHost={host}(127.0.0.1)\nSlurmUser=root\nSlurmdUser=root\n\
-         AuthType=auth/munge\nAuthInfo=socket={folder}/munge/socket\nStateSaveLocation={folder}/state\n\
-         SlurmdSpoolDir={folder}/spool\nSlurmctldPidFile={folder}/ctld.pid\nSlurmdPidFile={folder}/d.pid\n\
-         SlurmctldLogFile={folder}/ctld.log\nSlurmdLogFile={folder}/d.log\n\
-         SlurmctldPort={ctld}\nSlurmdPort={d}\nProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\n\
-         SelectType=select/cons_tres\nSelectTypeParameters=CR_CPU\nReturnToService=2\nMpiDefault=none\n\
-         SchedulerParameters=sched_interval=1,batch_sched_delay=0\nKillWait=1\n\
-         NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} State=UNKNOWN\n\
-         PartitionName=test Nodes={host} Default=YES MaxTime=INFINITE State=UP\n"
-    )
+    let values: [(&str, &dyn Display); 5] = [
+        ("host", &host),
+        ("folder", &folder),
+        ("ctld", &ctld),
+        ("d", &d),
+        ("cpus", &cpus),
+    ];
+    filled(include_str!("../fixtures/texts/slurm.conf"), &values)
 }
 
-fn n_configurations(journal: &Path) -> usize {
-    let text = fs::read_to_string(journal).unwrap_or_default();
-    text.matches("\"key\":\"piece ").count()
+/// Runs a command and asserts success; returns the text of its standard output.
+fn succeeded(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).unwrap()
 }
 
 #[test]
@@ -172,11 +149,10 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     let cluster = match Cluster::start(&folder) {
         Ok(cluster) => cluster,
         Err(reason) => {
-            writeln!(
+            let _ = writeln!(
                 std::io::stderr(),
                 "SKIPPED: no Slurm could be started: {reason}"
-            )
-            .expect("standard error takes a line");
+            );
             return;
         }
     };
@@ -185,24 +161,22 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     says(&said, &["submitted 8 of 8 shards"]);
     // While the jobs are in the queue, they are not submitted again.
     let said = cluster.submit(&case);
-    assert!(
-        said.contains("are in the queue") && !said.contains("submitted"),
-        "{said}"
-    );
+    is_in_queue(&said);
     let queue = cluster.ask("squeue", &["--noheader", "--format", "%F"]);
     let job = queue.lines().next().unwrap_or_default().trim();
     let journal = case.path("jobs/journal.3-of-8.jsonl");
     let start = Instant::now();
-    while n_configurations(&journal) == 0 {
+    while pieces(&journal).len() == 0 {
+        let waited = start.elapsed();
         assert!(
-            start.elapsed() < Duration::from_secs(200),
+            waited < Duration::from_secs(200),
             "the third job does not begin"
         );
         sleep(Duration::from_millis(5));
     }
     cluster.ask("scancel", &["--signal=KILL", "--full", &format!("{job}_3")]);
     cluster.wait_until_empty();
-    let finished = n_configurations(&journal);
+    let finished = pieces(&journal).len();
     assert!(
         !case.path("jobs/summary.csv").exists(),
         "{finished} cells of the killed job"
@@ -210,8 +184,8 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     let said = cluster.submit(&case);
     says(&said, &["submitted 1 of 8 shards"]);
     cluster.wait_until_empty();
-    assert!(n_configurations(&journal) > finished);
-    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    assert!(pieces(&journal).len() > finished);
+    case.succeeds("run study.toml --out whole");
     for name in [
         "accuracy.csv",
         "summary.csv",
@@ -219,7 +193,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
         "comparison.csv",
         "study.toml",
     ] {
-        let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
+        let read = |folder: &str| case.bytes(&format!("{folder}/{name}"));
         assert!(read("whole") == read("jobs"), "{name}");
     }
     let said = cluster.submit(&case);
@@ -229,8 +203,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
 
 #[test]
 fn without_slurm_the_command_says_so() {
-    let case = Case::new();
-    case.file("study.toml", STUDY);
+    let case = Case::with("study.toml", STUDY);
     let mut command = case.command(&["slurm", "study.toml", "--array", "2"]);
     let output = command.env("PATH", case.folder()).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
@@ -261,18 +234,22 @@ fn fake_slurm(case: &Case) {
     for (name, script) in [("squeue", squeue), ("sbatch", sbatch)] {
         let path = bin.join(name);
         fs::write(&path, script).unwrap();
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+        fs::set_permissions(&path, Permissions::from_mode(0o755)).unwrap();
     }
 }
 
-/// Submits two shards to the queue of [`fake_slurm`], with further arguments.
-fn submit_two(case: &Case, more: &[&str]) -> String {
-    let arguments = [&["slurm", "study.toml", "--array", "2"], more].concat();
+/// Submits two shards of a study to the queue of [`fake_slurm`], with further arguments.
+fn submit_two(case: &Case, study: &str, more: &str) -> String {
+    let more = more.words();
+    let arguments = [&["slurm", study, "--array", "2"], &more[..]].concat();
     let path = format!("{}:/usr/bin:/bin", case.path("bin").display());
-    let output = case.command(&arguments).env("PATH", path).output().unwrap();
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{error}");
-    String::from_utf8(output.stdout).unwrap()
+    succeeded(case.command(&arguments).env("PATH", path))
+}
+
+/// Asserts that jobs are in the queue and are not submitted again.
+fn is_in_queue(said: &str) {
+    says(said, &["are in the queue"]);
+    assert!(!said.contains("submitted"), "{said}");
 }
 
 #[test]
@@ -282,23 +259,13 @@ fn runs_into_other_folders_or_with_other_seeds_are_other_jobs() {
     case.file("study.toml", SMALL);
     fs::create_dir(case.path("sub")).unwrap();
     case.file("sub/study.toml", SMALL);
-    let runs: [&[&str]; 4] = [
-        &["--out", "a"],
-        &["--out", "b"],
-        &["--out", "c", "--seed", "5"],
-        &["--out", "c"],
-    ];
-    for run in runs {
-        let said = submit_two(&case, run);
-        assert!(said.contains("submitted 2 of 2 shards"), "{run:?}: {said}");
+    for run in ["--out a", "--out b", "--out c --seed 5", "--out c"] {
+        let said = submit_two(&case, "study.toml", run);
+        says(&said, &["submitted 2 of 2 shards"]);
     }
     // For any form of a path, the command finds the run that is in the queue.
-    for run in [&["--out", "a"], &["--out", "./a"], &["--out", "sub/../a"]] {
-        let said = submit_two(&case, run);
-        assert!(
-            said.contains("are in the queue") && !said.contains("submitted"),
-            "{said}"
-        );
+    for folder in ["a", "./a", "sub/../a"] {
+        is_in_queue(&submit_two(&case, "study.toml", &format!("--out {folder}")));
     }
 }
 
@@ -315,16 +282,12 @@ fn characters_that_slurm_interprets_do_not_change_what_a_job_is_called_or_where_
         &long,
     ] {
         case.file(study, SMALL);
-        for said in ["submitted 2 of 2 shards", "are in the queue"] {
-            let arguments = ["slurm", study, "--array", "2", "--out", "50%j"];
-            let path = format!("{}:/usr/bin:/bin", case.path("bin").display());
-            let output = case.command(&arguments).env("PATH", path).output().unwrap();
-            let found = String::from_utf8(output.stdout).unwrap();
-            let error = String::from_utf8_lossy(&output.stderr);
-            assert!(found.contains(said), "{study:?}: {found}{error}");
+        for expected in ["submitted 2 of 2 shards", "are in the queue"] {
+            let said = submit_two(&case, study, "--out 50%j");
+            says(&said, &[expected]);
         }
     }
-    let outputs = fs::read_to_string(case.path("outputs")).unwrap();
+    let outputs = case.read("outputs");
     for output in outputs.lines() {
         assert!(output.starts_with("50%%j/slurm/bubbletouch-"), "{output}");
         assert!(output.ends_with(".%j.txt"), "{output}");
@@ -348,8 +311,8 @@ fn records(journal: &Path) -> Vec<(String, serde_json::Value)> {
     lines.collect()
 }
 
-/// Writes journals of shards: for each record of a whole run, whether each of two shards has it and whether it failed there.
-fn write_shards(case: &Case, folder: &str, shards: impl Fn(usize) -> [Option<bool>; 2]) {
+/// Writes journals of shards: for the first and for each other record of a whole run, whether each of two shards has it and whether it failed there.
+fn write_shards(case: &Case, folder: &str, shards: impl Fn(bool) -> [Option<bool>; 2]) {
     let whole = case.path("whole/journal.jsonl");
     let (identity, _) = Journal::read(&whole).unwrap().unwrap();
     fs::create_dir_all(case.path(folder)).unwrap();
@@ -361,7 +324,7 @@ fn write_shards(case: &Case, folder: &str, shards: impl Fn(usize) -> [Option<boo
     };
     let journals = [open(1), open(2)];
     for (number, (key, record)) in records(&whole).into_iter().enumerate() {
-        for (journal, state) in journals.iter().zip(shards(number)) {
+        for (journal, state) in journals.iter().zip(shards(number == 0)) {
             let failed = serde_json::json!({"Err": "no room"});
             match state {
                 Some(true) => journal.keep(&key, &failed).unwrap(),
@@ -375,21 +338,18 @@ fn write_shards(case: &Case, folder: &str, shards: impl Fn(usize) -> [Option<boo
 #[test]
 fn what_failed_in_one_shard_and_succeeded_in_another_has_succeeded_and_what_failed_in_all_runs_again()
  {
-    let case = Case::new();
-    case.file("study.toml", SMALL);
-    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    let case = Case::with("study.toml", SMALL);
+    case.succeeds("run study.toml --out whole");
     let n = records(&case.path("whole/journal.jsonl")).len();
     assert!(n >= 2, "{n} work items");
-    type Shards = fn(usize) -> [Option<bool>; 2];
+    type Shards = fn(bool) -> [Option<bool>; 2];
     let cases: [(&str, Shards); 4] = [
-        ("first", |number| {
-            [Some(number == 0), (number == 0).then_some(false)]
+        ("first", |is_first| {
+            [Some(is_first), is_first.then_some(false)]
         }),
-        ("second", |number| {
-            [Some(false), (number == 0).then_some(true)]
-        }),
-        ("both", |number| {
-            [Some(number == 0), (number == 0).then_some(true)]
+        ("second", |is_first| [Some(false), is_first.then_some(true)]),
+        ("both", |is_first| {
+            [Some(is_first), is_first.then_some(true)]
         }),
         ("all", |_| [Some(true), None]),
     ];
@@ -397,7 +357,7 @@ fn what_failed_in_one_shard_and_succeeded_in_another_has_succeeded_and_what_fail
         write_shards(&case, folder, shards);
         let (_, said) = case.succeeds(&["merge", "study.toml", "--out", folder]);
         for table in ["accuracy.csv", "summary.csv", "failures.csv"] {
-            let read = |folder: &str| fs::read(case.path(folder).join(table)).unwrap();
+            let read = |folder: &str| case.bytes(&format!("{folder}/{table}"));
             assert!(read("whole") == read(folder), "{folder}, {table}: {said}");
         }
     }
@@ -408,11 +368,11 @@ fn a_shard_with_a_failed_work_item_is_submitted_again() {
     let case = Case::new();
     fake_slurm(&case);
     case.file("study.toml", SMALL);
-    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    case.succeeds("run study.toml --out whole");
     write_shards(&case, "failed", |_| [Some(true), Some(false)]);
-    let said = submit_two(&case, &["--out", "failed"]);
+    let said = submit_two(&case, "study.toml", "--out failed");
     says(&said, &["submitted 1 of 2 shards"]);
     write_shards(&case, "done", |_| [Some(false), Some(false)]);
-    let said = submit_two(&case, &["--out", "done"]);
+    let said = submit_two(&case, "study.toml", "--out done");
     says(&said, &["all 2 shards are done"]);
 }

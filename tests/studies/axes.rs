@@ -1,41 +1,25 @@
 //! Studies with axes of their own: each combination equals the study with its values, and common parts are computed once.
 
 use crate::command::{Case, says};
-use crate::study::{self, Study};
+use crate::study::{Study, assert_reads_back, laid_out, run, scores};
 use bubbletouch::kinds::Study as _;
-use bubbletouch::kinds::recognition::RecognitionStudy;
-use bubbletouch::report::folder::{table_files, write_files};
-use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
+use bubbletouch::studies::recognition::charts::tables_of;
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::table::{Tables, TrialScore};
 
 const REST: &str = include_str!("../fixtures/texts/axes_rest.toml");
 
 const HEAD: &str = "question = \"?\"\ntrials = 2\n";
 const LEARNING: &str = "[recognition]\ntest_fraction = 0.25\n";
 
-fn laid_out(text: &str) -> RecognitionStudy {
-    study::laid_out(text).unwrap()
-}
-
-fn run(study: &RecognitionStudy) -> Tables {
-    study.run(&Silent).unwrap()
-}
-
 fn with_axes(axes: &str) -> String {
     format!("{HEAD}{REST}{LEARNING}[axes]\n{axes}")
-}
-
-fn scores(outcome: &Tables) -> Vec<TrialScore> {
-    let rows = outcome.accuracy.iter();
-    rows.map(|(_, score)| score.clone()).collect()
 }
 
 #[test]
 fn each_combination_scores_what_the_study_with_its_values_scores() {
     let axes = "touches.depth_mm = [1.0, 3.0]\nskin.stroke_mm = [2.0, 5.0]\n\
                 recognition.classifier = [\"linear_svm\", \"k_nearest\"]\nrecognition.n_neighbours = [1, 3]\ntouches.yaw_deg = [0.0, 40.0]";
-    let outcome = run(&laid_out(&with_axes(axes)));
+    let outcome = run(&with_axes(axes));
     let mut expected = Vec::new();
     for depth in [1.0, 3.0] {
         for stroke in [2.0, 5.0] {
@@ -59,23 +43,17 @@ fn each_combination_scores_what_the_study_with_its_values_scores() {
     let places = outcome.summary.iter().enumerate();
     for (place, (configuration, _)) in places {
         assert_eq!(configuration.configuration, place);
-        let columns = configuration
-            .variant
-            .values
-            .iter()
-            .map(|v| &v.column.name[..]);
-        let columns: Vec<&str> = columns.collect();
-        assert_eq!(
-            columns,
-            ["depth_mm", "stroke_mm", "n_neighbours", "yaw_deg"]
-        );
+        let values = configuration.variant.values.iter();
+        let columns: Vec<&str> = values.map(|value| &value.column.name[..]).collect();
+        let expected = ["depth_mm", "stroke_mm", "n_neighbours", "yaw_deg"];
+        assert_eq!(columns, expected);
     }
 }
 
 #[test]
 fn what_does_not_change_is_made_once() {
     let stages = |axes: &str| {
-        let outcome = run(&laid_out(&with_axes(axes)));
+        let outcome = run(&with_axes(axes));
         let stages = outcome.stages.iter();
         let counted = stages.map(|row| (row.stage.clone(), row.n_touches));
         counted.collect::<Vec<_>>()
@@ -100,7 +78,7 @@ fn an_axis_with_more_values_leaves_the_names_of_what_was_done() {
         let axes = format!(
             "touches.depth_mm = {depths}\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]"
         );
-        let pieces = laid_out(&with_axes(&axes)).work_items();
+        let pieces = laid_out(&with_axes(&axes)).unwrap().work_items();
         pieces
             .into_iter()
             .map(|piece| (piece.name, piece.inputs))
@@ -118,22 +96,9 @@ fn an_axis_with_more_values_leaves_the_names_of_what_was_done() {
 fn tables_of_a_study_with_axes_read_back_as_they_are() {
     let axes = "touches.depth_mm = [1.0, 3.0]\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]\nobjects.names = [[\"golf\", \"baseball\"]]";
     let text = with_axes(axes).replace("names = [\"golf\", \"tennis\", \"baseball\"]", "");
-    let study = laid_out(&text);
-    let tables = run(&study);
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(
-        folder.path().join("study.toml"),
-        study.first().plan.spec.to_toml(),
-    )
-    .unwrap();
-    let made = tables_of(&tables).unwrap();
-    write_files(folder.path(), table_files(&made)).unwrap();
-    let read = read_tables(folder.path()).unwrap();
-    assert_eq!(read.len(), made.len());
-    for (read, made) in read.iter().zip(&made) {
-        assert_eq!(read.columns, made.columns, "{}", made.file);
-        assert!(read.csv == made.csv, "{}", made.file);
-    }
+    let study = laid_out(&text).unwrap();
+    let made = tables_of(&study.run(&Silent).unwrap()).unwrap();
+    assert_reads_back(&study, &made);
     assert!(made[0].column("depth_mm").is_some());
 }
 
@@ -142,7 +107,7 @@ fn a_fit_is_counted_once_for_all_its_decisions_and_only_if_its_solver_has_a_cap(
     let axes = "touches.depth_mm = [1.0]\nskin.stroke_mm = [5.0]\n\
                 recognition.classifier = [\"linear_svm\", \"k_nearest\"]\n\
                 recognition.touches_per_decision = [1, 2, 3]\nrecognition.c = [1.0, 10.0]";
-    let limits = run(&laid_out(&with_axes(axes))).limits;
+    let limits = run(&with_axes(axes)).limits;
     let fits = limits
         .iter()
         .find(|row| row.limit.starts_with("fits stopped"));
@@ -157,10 +122,10 @@ fn objects_of_the_command_and_an_axis_of_objects_exclude_each_other() {
                 skin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]";
     let rest = REST.replace("sets = [\"balls\"]\n", "");
     case.file("sets.toml", format!("{HEAD}{rest}{LEARNING}[axes]\n{axes}"));
-    case.succeeds(&["plan", "sets.toml"]);
-    let said = case.refuses(&["plan", "sets.toml", "--objects", "own.toml"]);
+    case.succeeds("plan sets.toml");
+    let said = case.refuses("plan sets.toml --objects own.toml");
     let wanted = "--objects: own.toml; no such option: objects.sets is an axis of the study";
-    assert!(said.contains(wanted), "{said}");
+    says(&said, &[wanted]);
 }
 
 #[test]
@@ -173,12 +138,12 @@ fn plan_and_page_state_all_values_of_an_axis_and_what_test_touches_differ_in() {
         "study.toml",
         format!("{HEAD}{rest}[recognition]\nclassifier = \"linear_svm\"\n{test}[axes]\n{axes}"),
     );
-    let (said, _) = case.succeeds(&["plan", "study.toml"]);
+    let (said, _) = case.succeeds("plan study.toml");
     let differs = "test.signal.noise_std_n = 0.02, test.touches.depth_mm = 1.5";
     says(&said, &["  touches  24; 36 on each of 2 arrays; "]);
     says(&said, &[&format!("; test touches with {differs}")]);
-    case.succeeds(&["run", "study.toml", "--out", "found"]);
-    let page = std::fs::read_to_string(case.path("found/report.html")).unwrap();
+    case.succeeds("run study.toml --out found");
+    let page = case.read("found/report.html");
     let (_, settings) = page.split_once("id=\"settings\"").unwrap();
     for (name, value) in [
         ("Touches", "24; 36"),

@@ -1,14 +1,15 @@
 //! Studies of sensor errors: one error at a time, compared with all errors together and with touches that are read individually.
 
 use crate::command::Case;
-use crate::study::{Study, trials_of};
+use crate::study::{Study, features, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};
 use bubbletouch::random::Seed;
 use bubbletouch::report::chart::{draw, places};
 use bubbletouch::signal::{Chain, Recording, SensorError, SignalWorkspace};
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
-use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{Plan, StudySpec, sample_frames};
+use bubbletouch::study::table::Configuration;
+use bubbletouch::study::{FeatureSet, Plan, StudySpec, sample_frames};
+use ndarray::Axis;
 use rand::Rng;
 use std::fs;
 
@@ -33,22 +34,12 @@ fn one_at_a_time_scores_what_all_combinations_score_there() {
     let alone = format!("{signal}\ncombine = \"one_at_a_time\"");
     let alone = Study::new(&with_signal(&alone)).run();
     assert_eq!(all.summary.len(), 3 * 2 * 2);
-    let settings: Vec<_> = alone
-        .summary
-        .iter()
-        .map(|(configuration, _)| configuration)
-        .collect();
-    let told: Vec<_> = settings
-        .iter()
-        .map(|c| {
-            let strength = |key| c.strengths.get(key);
-            (
-                c.noise_std,
-                strength("gain_std"),
-                strength("drift_std_full_scale"),
-            )
-        })
-        .collect();
+    let settings: Vec<&Configuration> = alone.summary.iter().map(|(of, _)| of).collect();
+    let told = settings.iter().map(|of| {
+        let [gain, drift] = ["gain_std", "drift_std_full_scale"].map(|key| of.strengths.get(key));
+        (of.noise_std, gain, drift)
+    });
+    let told: Vec<_> = told.collect();
     let expected = [
         (0.01, Some(0.0), Some(0.05)),
         (0.3, Some(0.0), Some(0.05)),
@@ -69,15 +60,13 @@ fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are
     let with = Study::new(&with_signal(ALL)).run();
     let without = Study::new(&with_signal("noise_std_full_scale = [0.0, 0.1]")).run();
     for (plain, score) in &without.accuracy {
-        let same = |configuration: &bubbletouch::study::table::Configuration| {
-            configuration.noise_std == plain.noise_std
-                && configuration.strengths.present().count() == 0
+        let same = |of: &Configuration| {
+            of.noise_std == plain.noise_std && of.strengths.present().count() == 0
         };
         let mut rows = with.accuracy.iter();
-        let found = rows.find(|(configuration, s)| same(configuration) && s.trial == score.trial);
+        let found = rows.find(|(of, own)| same(of) && own.trial == score.trial);
         assert_eq!(&found.expect("a configuration of no strength").1, score);
-        let strengths = plain.strengths;
-        assert_eq!(strengths.get("gain_std"), None);
+        assert_eq!(plain.strengths.get("gain_std"), None);
     }
     let header = |tables: &_| {
         let accuracy = tables_of(tables).unwrap().swap_remove(0);
@@ -94,19 +83,10 @@ fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are
 fn another_skin_reads_test_touches_and_nothing_else() {
     let signal =
         "steps = [\"gain\"]\ngain_std = 0.5\ntest_sensor = [\"same_skin\", \"another_skin\"]";
-    let study = Study::new(&with_signal(signal));
-    let items = study.of_items();
-    let read = |configuration, trial| {
-        items
-            .first()
-            .features((configuration, trial), &Silent)
-            .unwrap()
-    };
-    let (same, other) = (read(0, 0), read(1, 0));
+    let text = with_signal(signal);
+    let [same, other, later] = [(0, 0), (1, 0), (1, 1)].map(|cell| features(&text, cell));
     assert_eq!(same.split, other.split);
-    let rows = |touches: &[usize], set: &bubbletouch::study::FeatureSet| {
-        set.data.records.select(ndarray::Axis(0), touches)
-    };
+    let rows = |touches: &[usize], set: &FeatureSet| set.data.records.select(Axis(0), touches);
     let (train, test) = (&same.split.train, &same.split.test);
     assert_eq!(rows(train, &same), rows(train, &other));
     // If two skins have the gains g and h, the same press gives g x and h x.
@@ -122,14 +102,11 @@ fn another_skin_reads_test_touches_and_nothing_else() {
     let known: Vec<f64> = ratios.into_iter().flatten().collect();
     assert!(known.len() > 100 && known.iter().all(|&ratio| (ratio - 1.0).abs() > 1e-6));
     // Each trial has another test skin.
-    let (a, b) = (&other.data.records, &read(1, 1).data.records);
-    let both = other
-        .split
-        .test
-        .iter()
-        .find(|t| read(1, 1).split.test.contains(t));
+    let mut tested = other.split.test.iter();
+    let both = tested.find(|touch| later.split.test.contains(touch));
     let touch = *both.expect("a touch that two trials test");
-    assert_ne!(a.row(touch), b.row(touch));
+    let [a, b] = [&other, &later].map(|set| set.data.records.row(touch));
+    assert_ne!(a, b);
 }
 
 #[test]
@@ -149,14 +126,8 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
         let mut workspace = Workspace::new();
         let model = [object.object.model.clone()];
         let pose = touch.patch_from_object(&object.rests[touch.rest]);
-        press_to_depth(
-            array.patch(),
-            &model,
-            &[pose],
-            touch.depth * depth,
-            &mut workspace,
-        )
-        .unwrap();
+        let depth = touch.depth * depth;
+        press_to_depth(array.patch(), &model, &[pose], depth, &mut workspace).unwrap();
         let pressed = workspace.deflections();
         // Frames are stored in f32.
         pressed.iter().map(|&d| f64::from(d as f32)).collect()
@@ -167,9 +138,7 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
     ];
     let chain = Chain::new(&steps, array.patch()).unwrap();
     let trial = 1;
-    let items = study.of_items();
-    let read = items.first().features((0, trial), &Silent);
-    let rows = read.unwrap().data.records;
+    let rows = features(&with_signal(signal), (0, trial)).data.records;
     let names = Seed::new(2018).named("signal").numbered(trial as u64);
     for (row, &(object, (number, touch))) in touches.iter().enumerate() {
         let name = names.named(&object.object.name).numbered(number as u64);
@@ -192,9 +161,8 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
 
 #[test]
 fn a_table_has_a_row_of_each_condition_and_the_written_study_is_the_same() {
-    let case = Case::new();
-    case.file("study.toml", with_signal(ALL));
-    case.succeeds(&["run", "study.toml", "--out", "1"]);
+    let case = Case::with("study.toml", with_signal(ALL));
+    case.succeeds("run study.toml --out 1");
     let summary = fs::read_to_string(case.path("1").join("summary.csv")).unwrap();
     assert_eq!(summary.lines().count(), 1 + 1 + 8 + 2);
     let again = fs::read_to_string(case.path("1").join("study.toml")).unwrap();
@@ -234,12 +202,8 @@ fn every_strength_gets_its_small_chart_and_every_imperfection_its_picture() {
         assert!(places(part, &made).unwrap().len() >= 2, "{}", part.x);
     }
     let samples = sample_frames(&study.plan, &study.sweep.groups, &study.touched).unwrap();
-    let names: Vec<&str> = samples
-        .shown
-        .frames
-        .iter()
-        .map(|(name, _)| &name[..])
-        .collect();
+    let shown = samples.shown.frames.iter();
+    let names: Vec<&str> = shown.map(|(name, _)| &name[..]).collect();
     let expected = [
         "ideal",
         "hysteresis 20 %",
@@ -254,64 +218,4 @@ fn every_strength_gets_its_small_chart_and_every_imperfection_its_picture() {
     for (name, frame) in &samples.shown.frames[1..] {
         assert_ne!(frame, &samples.shown.frames[0].1, "{name}");
     }
-}
-
-#[test]
-fn keys_that_make_no_sense_are_refused_with_what_does() {
-    let gain = "steps = [\"gain\"]\n";
-    for (signal, said) in [
-        (
-            "gain_std = 0.1",
-            "signal.steps: no \"gain\", but signal.gain_std is given; \"gain\" among",
-        ),
-        (
-            gain,
-            "\"gain\" without a strength; signal.gain_std beside it",
-        ),
-        (
-            "steps = [\"faults\"]",
-            "signal.dead_fraction or signal.stuck_fraction beside it",
-        ),
-        (
-            "steps = [\"gain\"]\ngain_std = -0.1",
-            "signal.gain_std: -0.1; zero or a positive",
-        ),
-        (
-            "steps = [\"hysteresis\"]\nhysteresis_full_scale = [0.0, 0.3]",
-            "signal.hysteresis_full_scale: 0.3; a fraction",
-        ),
-        (
-            "steps = [\"quantisation\"]\nadc_bits = 2.5",
-            "signal.adc_bits: 2.5; a whole number of bits, 1 to 24",
-        ),
-        (
-            "steps = [\"faults\"]\ndead_fraction = 0.6\nstuck_fraction = [0.1, 0.5]",
-            "signal.stuck_fraction: up to 0.5, with up to 0.6 of dead taxels; at most 1",
-        ),
-        (
-            "steps = [\"crosstalk\"]\ncrosstalk = 0.1\ntest_sensor = \"another_skin\"",
-            "signal.test_sensor: given for skins without a difference; gain or drift or faults",
-        ),
-        (
-            "steps = [\"gain\", \"gain\"]\ngain_std = 0.1",
-            "signal.steps: \"gain\" twice; each value once",
-        ),
-    ] {
-        assert_refused(&with_signal(signal), said);
-    }
-    let scan = with_signal("steps = [\"scan\"]\nscan_time_ms = 5.0");
-    assert_refused(
-        &scan.replace("frames = 2", "frames = 1"),
-        "every touch is read once, at rest; touches.frames of 2",
-    );
-    assert_refused(
-        &scan.replace("speed_mm_per_s = 20.0", ""),
-        "the press waits while it is read; a touches.speed_mm_per_s above 0",
-    );
-}
-
-fn assert_refused(text: &str, said: &str) {
-    let spec = StudySpec::parse("study.toml", text).unwrap();
-    let error = Plan::new("study.toml", spec).unwrap_err().to_string();
-    assert!(error.contains(said), "{error}\n{said}");
 }

@@ -1,22 +1,15 @@
 //! Image features in a study: their effect, their training data, and the inputs that they refuse.
 
-use crate::study::{Study, laid_out};
+use crate::study::{accuracies, changed, features, run, table};
 use bubbletouch::recognition::features::{Cut, FeatureWorkspace, Features, ImageFeatures};
 use bubbletouch::studies::recognition::charts::tables_of;
-use bubbletouch::study::FeatureSet;
-use bubbletouch::study::progress::Silent;
 use bubbletouch::world::ImageShape;
 
 const STUDY: &str = include_str!("../fixtures/texts/images.toml");
 
 /// Returns the accuracies of raw measurements and of joined invariant features.
-fn accuracies(text: &str) -> [f64; 2] {
-    let tables = Study::new(text).run();
-    let accuracies: Vec<f64> = tables
-        .accuracy
-        .iter()
-        .map(|(_, score)| score.accuracy)
-        .collect();
+fn two_accuracies(text: &str) -> [f64; 2] {
+    let accuracies = accuracies(&run(text));
     accuracies
         .try_into()
         .expect("a trial of two configurations")
@@ -24,26 +17,17 @@ fn accuracies(text: &str) -> [f64; 2] {
 
 #[test]
 fn invariants_recognise_what_is_turned_any_way_and_so_do_estimated_images() {
-    let [raw, invariant] = accuracies(STUDY);
+    let [raw, invariant] = two_accuracies(STUDY);
     assert!(invariant > raw + 0.15, "{raw} {invariant}");
     let sensed = "ensemble = \"principal_components\"\nmeasurements = 48";
     let compressed = STUDY.replace("ensemble = \"identity\"", sensed);
-    let [raw, invariant] = accuracies(&compressed);
+    let [raw, invariant] = two_accuracies(&compressed);
     assert!(invariant > raw + 0.1, "{raw} {invariant}");
-}
-
-/// Returns the training and test features of a configuration in a trial.
-fn features(text: &str, configuration: usize, trial: usize) -> FeatureSet {
-    let study = laid_out(text).unwrap();
-    study
-        .first()
-        .features((configuration, trial), &Silent)
-        .unwrap()
 }
 
 #[test]
 fn features_of_a_whole_frame_are_those_of_the_frame() {
-    let [raw, found] = [0, 1].map(|configuration| features(STUDY, configuration, 0).data.records);
+    let [raw, found] = [0, 1].map(|configuration| features(STUDY, (configuration, 0)).data.records);
     let join = Features::try_from("fourier_mellin+polar_harmonics+descriptors".to_owned());
     let join = join.unwrap().of_image().unwrap();
     let features = ImageFeatures::new(join, ImageShape { ny: 24, nx: 24 }, 5e-3, Cut::default());
@@ -58,15 +42,24 @@ fn features_of_a_whole_frame_are_those_of_the_frame() {
     }
 }
 
+/// Returns the study with a small skin and few touches, whose images are estimated from eight measurements.
+fn estimated(ensemble: &str) -> String {
+    let sensed = format!("ensemble = \"{ensemble}\"\nmeasurements = 8");
+    changed(
+        STUDY,
+        &[
+            ("ensemble = \"identity\"", &sensed),
+            ("per_object = 40", "per_object = 8"),
+            ("size_mm = 96.0", "size_mm = 48.0"),
+        ],
+    )
+}
+
 /// Tests that image estimators do not depend on test touches.
 #[test]
 fn what_is_learned_for_images_does_not_know_test_touches() {
-    let sensed = "ensemble = \"principal_components\"\nmeasurements = 8";
-    let text = STUDY.replace("ensemble = \"identity\"", sensed);
-    let text = text.replace("trials = 1", "trials = 2");
-    let text = text.replace("per_object = 40", "per_object = 8");
-    let text = text.replace("size_mm = 96.0", "size_mm = 48.0");
-    let [set, other] = [0, 1].map(|trial| features(&text, 1, trial));
+    let text = estimated("principal_components").replace("trials = 1", "trials = 2");
+    let [set, other] = [0, 1].map(|trial| features(&text, (1, trial)));
     // With another split, the same touches have other features, because other touches were used for fitting.
     assert_ne!(set.split.test, other.split.test);
     assert_ne!(set.data.records.row(0), other.data.records.row(0));
@@ -74,12 +67,10 @@ fn what_is_learned_for_images_does_not_know_test_touches() {
 
 #[test]
 fn estimators_of_images_are_fitted_to_the_touches_that_train() {
-    let sensed = "ensemble = \"gaussian\"\nmeasurements = 8";
-    let text = STUDY.replace("ensemble = \"identity\"", sensed);
-    let text = text.replace("per_object = 40", "per_object = 8");
-    let text = text.replace("size_mm = 96.0", "size_mm = 48.0");
+    let text = estimated("gaussian");
     let reduced = |keys: &str| text.replace("classifier =", &format!("{keys}\nclassifier ="));
-    let image = |keys: &str, configuration| features(&reduced(keys), configuration, 0).data.records;
+    let image =
+        |keys: &str, configuration| features(&reduced(keys), (configuration, 0)).data.records;
     let (few, many) = ("train_touches = [2, 6]", "train_touches = [6, 2]");
     // Features "raw" come first.
     assert_eq!(image(few, 0), image(few, 1));
@@ -95,40 +86,22 @@ fn estimators_of_images_are_fitted_to_the_touches_that_train() {
 
 #[test]
 fn a_depth_changes_no_feature_of_what_is_behind_the_foremost_point() {
-    let at = |depth: &str| {
-        let text = STUDY
-            .replace("depth_mm = 3.0", &format!("depth_mm = {depth}"))
-            .replace(
-                "classifier =",
-                "depth_window_full_scale = 0.3\nclassifier =",
-            );
-        features(&text, 1, 0).data.records
+    // Returns the fraction of features that are equal at two depths.
+    let equal = |keys: &str| {
+        let [shallow, deep] = ["2.0", "4.0"].map(|depth| {
+            let text = STUDY
+                .replace("depth_mm = 3.0", &format!("depth_mm = {depth}"))
+                .replace("classifier =", &format!("{keys}\nclassifier ="));
+            features(&text, (1, 0)).data.records
+        });
+        let size = shallow.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        // Frames are stored in f32, so an area may differ by one taxel.
+        let is_near = |(a, b): &(&f64, &f64)| (*a - *b).abs() < 1e-3 * size;
+        let n_near = shallow.iter().zip(&deep).filter(is_near).count();
+        n_near as f64 / shallow.len() as f64
     };
-    let [shallow, deep] = ["2.0", "4.0"].map(at);
-    let size = shallow.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-    // Frames are stored in f32, so an area may differ by one taxel.
-    let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-3 * size;
-    let n_near = shallow
-        .iter()
-        .zip(&deep)
-        .filter(|pair| is_near(*pair))
-        .count();
-    assert!(
-        n_near as f64 > 0.999 * shallow.len() as f64,
-        "{n_near} of {}",
-        shallow.len()
-    );
-    let raw = |depth: &str| {
-        let text = STUDY.replace("depth_mm = 3.0", &format!("depth_mm = {depth}"));
-        features(&text, 1, 0).data.records
-    };
-    let [shallow, deep] = ["2.0", "4.0"].map(raw);
-    let n_near = shallow
-        .iter()
-        .zip(&deep)
-        .filter(|pair| is_near(*pair))
-        .count();
-    assert!((n_near as f64) < 0.9 * shallow.len() as f64);
+    assert!(equal("depth_window_full_scale = 0.3") > 0.999);
+    assert!(equal("") < 0.9);
 }
 
 /// Tests that images and invariant features of all layouts give the accuracies of the grid. Slightly curved layouts are equivalent.
@@ -138,9 +111,8 @@ fn every_layout_has_images_and_their_invariants_recognise_as_those_of_the_grid()
     let axes =
         "[axes]\n\"skin.layout\" = [\"grid\", \"hexagonal\", \"disc\", \"cylinder\", \"cap\"]\n";
     let text = STUDY.replace("stroke_mm = 5.0", skin) + axes;
-    let tables = laid_out(&text).unwrap().run(&Silent).unwrap();
-    let accuracies = tables.accuracy.iter();
-    let accuracies: Vec<f64> = accuracies.map(|(_, score)| score.accuracy).collect();
+    let tables = run(&text);
+    let accuracies = accuracies(&tables);
     let [of_grid, others @ ..] = accuracies.as_chunks::<2>().0 else {
         panic!("a pair a layout");
     };
@@ -154,22 +126,14 @@ fn every_layout_has_images_and_their_invariants_recognise_as_those_of_the_grid()
 
 #[test]
 fn what_has_no_image_stands_in_the_same_tables_as_what_is_behind_the_foremost_point() {
-    let text = STUDY.replace(
-        "classifier =",
-        "depth_window_full_scale = [0.3, 1.0]\nclassifier =",
-    );
-    let tables = laid_out(&text).unwrap().run(&Silent).unwrap();
-    let configurations = tables
+    let windows = "depth_window_full_scale = [0.3, 1.0]\nclassifier =";
+    let tables = run(&STUDY.replace("classifier =", windows));
+    let seen = tables
         .summary
         .iter()
-        .map(|(configuration, _)| configuration);
-    let seen: Vec<_> = configurations
-        .map(|configuration| configuration.depth_window_full_scale)
-        .collect();
-    assert_eq!(seen, [Some(1.0), Some(0.3), Some(1.0)]);
-    let summary = tables_of(&tables).unwrap();
-    let summary = summary.iter().find(|table| table.file == "summary.csv");
-    assert!(summary.is_some());
+        .map(|(of, _)| of.depth_window_full_scale);
+    assert_eq!(seen.collect::<Vec<_>>(), [Some(1.0), Some(0.3), Some(1.0)]);
+    table(&tables_of(&tables).unwrap(), "summary.csv");
 }
 
 /// Returns a study with listed poses, so that one tilt can be held out.
@@ -187,7 +151,7 @@ fn with_copies(keys: &str) -> String {
 fn copies_follow_all_touches_are_as_deep_as_those_that_they_are_of_and_change_no_other() {
     let [none, copied] = [0, 1].map(|configuration| {
         let keys = "split = \"unseen_tilt\"\ntilt_augmentation = [0, 2]\ntrain_touches = 20";
-        features(&with_copies(keys), configuration, 0)
+        features(&with_copies(keys), (configuration, 0))
     });
     let (n_touches, n_train) = (none.data.records.nrows(), none.split.train.len());
     assert_eq!((n_touches, n_train), (360, 6 * 20));
@@ -224,7 +188,7 @@ fn copies_follow_all_touches_are_as_deep_as_those_that_they_are_of_and_change_no
 fn copies_that_are_tilted_recognise_a_tilt_that_was_never_learned() {
     let keys = "split = \"unseen_tilt\"\ntilt_augmentation = [0, 2]";
     let text = with_copies(keys).replace("trials = 1", "trials = 4");
-    let tables = Study::new(&text).run();
+    let tables = run(&text);
     let accuracies = tables.summary.iter().map(|(_, score)| score.accuracy);
     let [none, copied] = accuracies.collect::<Vec<_>>().try_into().unwrap();
     assert!(copied > none + 0.02, "{none} {copied}");

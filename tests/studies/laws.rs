@@ -1,6 +1,6 @@
 //! Laws of recognition studies: configurations are independent, exports equal the run, and repetition does not increase significance.
 
-use crate::study::{Study, laid_out};
+use crate::study::{Study, features, laid_out, run, scores, table};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::Classifier;
@@ -9,7 +9,7 @@ use bubbletouch::signal::{
 };
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::table::{PStatus, Tables, TrialScore};
+use bubbletouch::study::table::{PStatus, TrialScore};
 use bubbletouch::study::{FeatureSet, StudySpec};
 use bubbletouch::table::At;
 use bubbletouch::world::{Grid, Patch, Taxel};
@@ -22,52 +22,34 @@ fn study(signal: &str, sensing: &str, recognition: &str) -> String {
     text + recognition + "\n"
 }
 
-fn run(text: &str) -> Tables {
-    laid_out(text).unwrap().run(&Silent).unwrap()
-}
-
-fn scores(tables: &Tables) -> Vec<TrialScore> {
-    tables
-        .accuracy
-        .iter()
-        .map(|(_, score)| score.clone())
-        .collect()
-}
-
 /// Regression test: configurations of other test sensors shared the measurements of the first one if something was fitted before measuring.
 #[test]
 fn every_configuration_alone_scores_what_it_scores_in_its_sweep() {
-    const SKINS: [&str; 2] = ["\"same_skin\"", "\"another_skin\""];
-    const ENSEMBLES: [&str; 2] = ["\"gaussian\"", "\"principal_components\""];
-    const FEATURES: [&str; 2] = ["\"raw\"", "\"descriptors\""];
-    let all = |values: [&str; 2]| format!("[{}]", values.join(", "));
     let text = |skin: &str, ensemble: &str, features: &str| {
         let signal = format!(
-            "steps = [\"gain\", \"noise\"]\ngain_std = 0.6\nnoise_std_full_scale = 0.02\ntest_sensor = {skin}"
+            "steps = [\"gain\", \"noise\"]\ngain_std = 0.6\nnoise_std_full_scale = 0.02\ntest_sensor = [{skin}]"
         );
-        let sensing = format!("ensemble = {ensemble}\nratio = 4");
-        study(&signal, &sensing, &format!("features = {features}"))
+        let sensing = format!("ensemble = [{ensemble}]\nratio = 4");
+        study(&signal, &sensing, &format!("features = [{features}]"))
     };
-    let mut swept = scores(&run(&text(&all(SKINS), &all(ENSEMBLES), &all(FEATURES))));
-    let mut skins_differ = false;
-    let mut of_skins = Vec::new();
-    for skin in SKINS {
-        let mut of_skin = Vec::new();
-        for ensemble in ENSEMBLES {
-            for features in FEATURES {
-                let alone = scores(&run(&text(skin, ensemble, features)));
-                let rest = swept.split_off(alone.len());
-                assert_eq!(swept, alone, "{skin} {ensemble} {features}");
-                swept = rest;
-                of_skin.extend(alone);
+    let skins = ["\"same_skin\"", "\"another_skin\""];
+    let ensembles = ["\"gaussian\"", "\"principal_components\""];
+    let features = ["\"raw\"", "\"descriptors\""];
+    let [all_skins, all_ensembles, all_features] =
+        [skins, ensembles, features].map(|values| values.join(", "));
+    let swept = scores(&run(&text(&all_skins, &all_ensembles, &all_features)));
+    let mut alone = Vec::new();
+    for skin in skins {
+        for ensemble in ensembles {
+            for features in features {
+                alone.extend(scores(&run(&text(skin, ensemble, features))));
             }
         }
-        of_skins.push(of_skin);
     }
-    for (same, another) in of_skins[0].iter().zip(&of_skins[1]) {
-        skins_differ |= same.n_correct != another.n_correct;
-    }
-    assert!(skins_differ);
+    assert_eq!(swept, alone);
+    let n_correct: Vec<usize> = alone.iter().map(|score| score.n_correct).collect();
+    let (same, another) = n_correct.split_at(n_correct.len() / 2);
+    assert_ne!(same, another);
 }
 
 fn n_correct(set: &FeatureSet) -> usize {
@@ -75,45 +57,29 @@ fn n_correct(set: &FeatureSet) -> usize {
     let trained = classifier.train(&set.training(None).unwrap(), &Seed::new(0));
     let test = set.test().unwrap();
     let found = trained.unwrap().labels(test.records.view()).unwrap();
-    found
-        .iter()
-        .zip(&test.targets)
-        .filter(|(a, b)| a == b)
-        .count()
+    let pairs = found.iter().zip(&test.targets);
+    pairs.filter(|(found, truth)| found == truth).count()
 }
 
 /// Tests that exported rows give the answers of the run, also if a configuration trains on few touches.
 #[test]
 fn exported_rows_classified_elsewhere_give_the_answers_of_the_run() {
     let signal = "noise_std_full_scale = 0.1";
+    let components = "ensemble = \"principal_components\"\nratio = 16";
+    let few = "train_touches = [3, 18]";
+    let tilted = format!("features = \"descriptors\"\ntilt_augmentation = 2\n{few}");
     for (sensing, recognition) in [
-        (
-            "ensemble = \"principal_components\"\nratio = 16",
-            "train_touches = [3, 18]",
-        ),
-        (
-            "ensemble = \"principal_components\"\nratio = 16",
-            "class_imbalance = [1.0, 6.0]",
-        ),
-        (
-            "ratio = 4",
-            "features = \"descriptors\"\ntilt_augmentation = 2\ntrain_touches = [3, 18]",
-        ),
-        (
-            "ratio = 4",
-            "readings_per_touch = 2\ntrain_touches = [3, 18]",
-        ),
+        (components, few),
+        (components, "class_imbalance = [1.0, 6.0]"),
+        ("ratio = 4", &tilted),
+        ("ratio = 4", &format!("readings_per_touch = 2\n{few}")),
     ] {
         let study = laid_out(&study(signal, sensing, recognition)).unwrap();
         for (configuration, score) in study.run(&Silent).unwrap().accuracy {
-            let set = study
-                .first()
-                .features((configuration.configuration, score.trial), &Silent);
-            let what = format!(
-                "{recognition}, configuration {}, trial {}",
-                configuration.configuration, score.trial
-            );
-            assert_eq!(n_correct(&set.unwrap()), score.n_correct, "{what}");
+            let cell = (configuration.configuration, score.trial);
+            let set = study.first().features(cell, &Silent).unwrap();
+            let what = format!("{recognition}, configuration and trial {cell:?}");
+            assert_eq!(n_correct(&set), score.n_correct, "{what}");
         }
     }
 }
@@ -144,47 +110,36 @@ fn trials_that_repeat_splits_make_no_claim_stronger() {
     }
     // Drawn splits are all different, so the table has no such column.
     let drawn = run(&text(6, "random"));
+    let drawn_scores = scores(&drawn);
     assert!(
-        scores(&drawn)
+        drawn_scores
             .iter()
             .all(|score| score.distinct_split.is_none())
     );
-    assert!(
-        drawn
-            .comparison
-            .iter()
-            .all(|row| row.n_trials == 6 && row.p_value.is_some())
-    );
+    for row in &drawn.comparison {
+        assert!(row.n_trials == 6 && row.p_value.is_some());
+    }
 }
 
 #[test]
 fn yaws_a_turn_apart_and_values_that_round_alike_are_one_pose() {
     let text = |yaws: &str, offsets: &str| {
-        let text = study(
-            "steps = []",
-            "ensemble = \"identity\"",
-            "split = \"leave_one_yaw_out\"",
-        );
-        let text = text
-            .replace("{ uniform = [0.0, 360.0] }", yaws)
-            .replace("per_object = 24\n", "");
-        text.replace("{ uniform = [-10.0, 10.0] }", offsets)
+        let split = "split = \"leave_one_yaw_out\"";
+        let text = study("steps = []", "ensemble = \"identity\"", split);
+        text.replace("{ uniform = [0.0, 360.0] }", yaws)
+            .replace("{ uniform = [-10.0, 10.0] }", offsets)
+            .replace("per_object = 24\n", "")
     };
-    let plain = text("[0.0, 90.0, 180.0, 270.0]", "[-0.3, 0.0, 0.3]");
+    let (yaws, offsets) = ("[0.0, 90.0, 180.0, 270.0]", "[-0.3, 0.0, 0.3]");
+    let plain = scores(&run(&text(yaws, offsets)));
     for (yaws, offsets) in [
-        ("{ grid = [0.0, 360.0, 5] }", "[-0.3, 0.0, 0.3]"),
-        (
-            "[0.0, 90.0, 180.0, 270.0, -90.0, -180.0, 450.0]",
-            "[-0.3, 0.0, 0.3]",
-        ),
-        (
-            "[0.0, 90.0, 180.0, 270.0]",
-            "[-0.3, 0.0, 0.3, 0.30000000000000004]",
-        ),
+        ("{ grid = [0.0, 360.0, 5] }", offsets),
+        ("[0.0, 90.0, 180.0, 270.0, -90.0, -180.0, 450.0]", offsets),
+        (yaws, "[-0.3, 0.0, 0.3, 0.30000000000000004]"),
     ] {
         let one = Study::new(&text(yaws, offsets));
         assert_eq!(one.sweep.labels.len(), 4 * 4 * 3, "{yaws} {offsets}");
-        assert_eq!(scores(&one.run()), scores(&run(&plain)), "{yaws} {offsets}");
+        assert_eq!(scores(&one.run()), plain, "{yaws} {offsets}");
     }
 }
 
@@ -226,8 +181,10 @@ fn a_name_is_the_name_of_one_column() {
         let axes = "\n[axes]\n\"recognition.split\" = [\"random\", \"half_of_yaws\"]\n";
         let text = study("steps = []", "ratio = 4", axes);
         let text = text.replace("trials = 2", &format!("trials = 4\n{keys}"));
-        let spec = StudySpec::parse("study.toml", &text).unwrap();
-        spec.axis_columns()
+        let columns = StudySpec::parse("study.toml", &text)
+            .unwrap()
+            .axis_columns();
+        columns
             .iter()
             .map(|column| column.name.to_string())
             .collect()
@@ -243,29 +200,21 @@ fn chance_is_that_of_each_configuration() {
         let text = study("noise_std_full_scale = 0.1", "ratio = [4, 8]", &axes);
         let names = "names = [\"mug\", \"bowl\", \"apple\", \"pear\"]\n";
         let tables = tables_of(&run(&text.replace(names, ""))).unwrap();
-        let rules = charts(&tables, None)
-            .into_iter()
-            .flat_map(|chart| chart.rules);
+        let charts = charts(&tables, None).into_iter();
+        let rules = charts.flat_map(|chart| chart.rules);
         let rules: Vec<(At, String)> = rules.map(|rule| (rule.at, rule.words)).collect();
-        let configurations = tables
-            .iter()
-            .find(|table| table.file == "configurations.csv")
-            .unwrap();
+        let configurations = table(&tables, "configurations.csv");
         (rules, configurations.numbers("chance").map(<[f64]>::to_vec))
     };
     let (rules, column) = axes(r#"[["mug", "bowl"], ["apple", "pear"]]"#);
     let expected = (At::Value(0.5), "chance (1 in 2)".to_owned());
-    assert!(
-        !rules.is_empty() && rules.iter().all(|rule| *rule == expected),
-        "{rules:?}"
-    );
+    assert!(!rules.is_empty());
+    assert!(rules.iter().all(|rule| *rule == expected), "{rules:?}");
     assert_eq!(column, None);
     let (rules, column) = axes(r#"[["mug", "bowl"], ["apple", "pear", "mug", "bowl"]]"#);
     let is_column = |(at, _): &(At, String)| *at == At::Column("chance".to_owned());
-    assert!(
-        !rules.is_empty() && rules.iter().all(is_column),
-        "{rules:?}"
-    );
+    assert!(!rules.is_empty());
+    assert!(rules.iter().all(is_column), "{rules:?}");
     assert_eq!(column, Some(vec![0.5, 0.5, 0.25, 0.25]));
 }
 
@@ -321,20 +270,17 @@ fn readings_of_a_touch_differ_if_and_only_if_the_error_is_random_by_reading() {
 fn more_readings_change_the_training_rows_if_and_only_if_the_error_is_random_by_reading() {
     for &error in SENSOR_ERRORS {
         let about = error.about();
-        let keys = about
-            .strengths
-            .iter()
-            .map(|strength| match strength.is_whole {
-                true => format!("{} = 5\n", strength.key),
-                false => format!("{} = {:?}\n", strength.key, strong(strength)),
-            });
+        let key = |strength: &Strength| match strength.is_whole {
+            true => format!("{} = 5\n", strength.key),
+            false => format!("{} = {:?}\n", strength.key, strong(strength)),
+        };
+        let keys: String = about.strengths.iter().map(key).collect();
         // The first configuration has no noise; the second one lets all errors have several readings.
         let signal = format!(
             "steps = [\"{}\", \"noise\"]\nnoise_std_full_scale = [0.0, 0.1]\n{}",
-            about.step,
-            keys.collect::<String>()
+            about.step, keys
         );
-        let features = |readings: usize| {
+        let read = |readings: usize| {
             let keys = format!("readings_per_touch = {readings}");
             let text = study(&signal, "ensemble = \"identity\"", &keys);
             let motion = match about.needs_motion {
@@ -342,23 +288,17 @@ fn more_readings_change_the_training_rows_if_and_only_if_the_error_is_random_by_
                 false => "frames = 2\n",
             };
             let text = text.replace("depth_mm", &format!("{motion}depth_mm"));
-            let study = laid_out(&text).unwrap();
-            study.first().features((0, 0), &Silent).unwrap()
+            features(&text, (0, 0))
         };
-        let (once, thrice) = (features(1), features(3));
+        let [once, thrice] = [1, 3].map(read);
         let rows = thrice.training(None).unwrap().records;
-        let distinct: BTreeSet<Vec<u64>> = rows
-            .outer_iter()
-            .map(|row| row.iter().map(|value| value.to_bits()).collect())
-            .collect();
+        let bits = rows.mapv(f64::to_bits);
+        let distinct: BTreeSet<Vec<u64>> = bits.outer_iter().map(|row| row.to_vec()).collect();
         match about.is_random_by_reading {
             true => {
-                assert_eq!(
-                    thrice.split.train.len(),
-                    3 * once.split.train.len(),
-                    "{error:?}"
-                );
-                assert_eq!(distinct.len(), thrice.split.train.len(), "{error:?}");
+                let n_train = thrice.split.train.len();
+                assert_eq!(n_train, 3 * once.split.train.len(), "{error:?}");
+                assert_eq!(distinct.len(), n_train, "{error:?}");
             }
             false => assert_eq!(thrice.data, once.data, "{error:?}"),
         }

@@ -2,77 +2,58 @@
 //! taxels.
 
 use crate::command::Case;
-use crate::study::laid_out;
+use crate::study::{changed, laid_out, run, scores, scores_of_variant};
 use bubbletouch::contact::{Approach, Workspace};
-use bubbletouch::kinds::recognition::RecognitionStudy;
+use bubbletouch::random::Seed;
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::simulate_array;
+use bubbletouch::study::{draw_touches, load_objects, simulate_array};
 use glam::DVec3;
+use ndarray::Array2;
 
 const STUDY: &str = include_str!("../fixtures/texts/layouts.toml");
 
-fn study(text: &str) -> RecognitionStudy {
-    laid_out(text).unwrap()
-}
-
-fn with(old: &str, new: &str) -> String {
-    let text = STUDY.replace(old, new);
-    assert!(text != STUDY, "{old}");
-    text
+/// Returns the study with further keys of its skin.
+fn with(keys: &str) -> String {
+    changed(STUDY, &[("stroke_mm", &format!("{keys}\nstroke_mm"))])
 }
 
 #[test]
 fn a_layout_is_an_axis_and_its_grid_is_the_grid() {
     let axes =
         "[axes]\n\"skin.layout\" = [\"cap\", \"grid\", \"hexagonal\", \"disc\", \"cylinder\"]\n";
-    let text = with("stroke_mm", "curvature_radius_mm = 30.0\nstroke_mm") + axes;
-    let layouts = study(&text).run(&Silent).unwrap();
-    let alone = study(STUDY).run(&Silent).unwrap();
-    let accuracy = |number: usize| {
-        let rows = layouts.accuracy.iter();
-        let rows = rows.filter(|(configuration, _)| configuration.variant.number == number);
-        rows.map(|(_, score)| score.clone()).collect::<Vec<_>>()
-    };
-    let expected: Vec<_> = alone
-        .accuracy
-        .iter()
-        .map(|(_, score)| score.clone())
-        .collect();
-    assert_eq!(accuracy(1), expected);
-    let sides = layouts
+    let text = with("curvature_radius_mm = 30.0") + axes;
+    let layouts = run(&text);
+    let of_layout = |number: usize| scores_of_variant(&layouts.accuracy, number);
+    let expected = scores(&run(STUDY));
+    assert_eq!(of_layout(1), expected);
+    let sides: Vec<_> = layouts
         .summary
         .iter()
-        .map(|(configuration, _)| (configuration.nx, configuration.ny));
-    let sides: Vec<_> = sides.collect();
+        .map(|(of, _)| (of.nx, of.ny))
+        .collect();
     assert_eq!(sides[1..3], [(8, 8), (7, 9)]);
     assert_eq!(sides[4], (8, 8));
     for (nx, ny) in [sides[0], sides[3]] {
         assert!(ny == 1 && nx.abs_diff(64) < 8, "{nx} × {ny}");
     }
     for number in [0, 2, 3, 4] {
-        assert_ne!(accuracy(number), expected, "layout {number}");
+        assert_ne!(of_layout(number), expected, "layout {number}");
     }
 }
 
 #[test]
 fn frames_are_those_of_the_skin_pressed_by_hand() {
-    let text = with(
-        "stroke_mm",
-        "layout = \"cap\"\ncurvature_radius_mm = 30.0\nstroke_mm",
-    );
-    let study = study(&text);
+    let text = with("layout = \"cap\"\ncurvature_radius_mm = 30.0");
+    let study = laid_out(&text).unwrap();
     let part = study.first();
     let array = &part.plan.arrays[0];
     let skin = array.patch();
     let frames = simulate_array(part.touched.as_ref(), array, 2, &Silent);
     let frames = frames.to_array();
     assert_eq!(frames.ncols(), skin.n_taxels());
-    let objects = bubbletouch::study::load_objects(&part.plan.spec.objects, None).unwrap();
-    let touched = bubbletouch::study::draw_touches(
-        objects,
-        &part.plan.placement,
-        &bubbletouch::random::Seed::new(part.plan.spec.seed),
-    );
+    let seed = Seed::new(part.plan.spec.seed);
+    let objects = load_objects(&part.plan.spec.objects, None).unwrap();
+    let touched = draw_touches(objects, &part.plan.placement, &seed);
     let approach = Approach::new(skin, DVec3::Z).unwrap();
     let mut workspace = Workspace::new();
     let mut row = 0;
@@ -96,17 +77,16 @@ fn frames_are_those_of_the_skin_pressed_by_hand() {
 #[test]
 fn the_command_writes_where_the_taxels_are() {
     let case = Case::new();
-    let text = with("stroke_mm", "layout = \"disc\"\nstroke_mm");
+    let text = with("layout = \"disc\"");
     case.file("study.toml", &text);
-    case.succeeds(&["touches", "study.toml", "--out", "touches"]);
-    let taxels: ndarray::Array2<f64> =
-        ndarray_npy::read_npy(case.path("touches/taxels.npy")).unwrap();
-    let study = study(&text);
+    case.succeeds("touches study.toml --out touches");
+    let taxels: Array2<f64> = case.read_array("touches/taxels.npy");
+    let study = laid_out(&text).unwrap();
     let skin = study.first().plan.arrays[0].patch();
     assert_eq!(taxels.dim(), (skin.n_taxels(), 6));
     for (row, center) in taxels.outer_iter().zip(skin.layout().centers()) {
         assert_eq!(row.to_vec()[..3], center.to_array());
         assert_eq!(row.to_vec()[3..], [0.0, 0.0, 1.0]);
     }
-    case.succeeds(&["run", "study.toml", "--out", "results"]);
+    case.succeeds("run study.toml --out results");
 }

@@ -24,12 +24,11 @@ fn least_gib(case: &Case, study: &str) -> String {
 
 #[test]
 fn a_study_stays_below_its_ceiling_and_finds_the_same() {
-    let case = Case::new();
-    case.file("large.toml", LARGE);
+    let case = Case::with("large.toml", LARGE);
     let least = least_gib(&case, "large.toml");
     let ceiling = least.parse::<f64>().unwrap() * f64::from(1 << 30);
     assert!(ceiling < 0.5e9, "{least} GiB");
-    case.succeeds(&["run", "large.toml", "--out", "free", "--quiet"]);
+    case.succeeds("run large.toml --out free --quiet");
     let out = [
         "run",
         "large.toml",
@@ -40,7 +39,7 @@ fn a_study_stays_below_its_ceiling_and_finds_the_same() {
     ];
     case.succeeds(&[&out[..], &[least.as_str()]].concat());
     for table in ["accuracy.csv", "confusion.csv", "summary.csv"] {
-        let read = |folder: &str| fs::read(case.path(folder).join(table)).unwrap();
+        let read = |folder: &str| case.bytes(&format!("{folder}/{table}"));
         assert_eq!(read("free"), read("below"), "{table}");
     }
     let Some(peak) = peak(&case.path("below")) else {
@@ -173,7 +172,7 @@ fn a_plan_states_the_memory_of_a_run_within_a_fifth() {
     // The full dictionary takes minutes; its peak was measured once (/usr/bin/time -v).
     let planned = planned_mib(&case, "study.toml");
     assert!((planned / 969.0 - 1.0).abs() < 0.2, "{planned} MiB");
-    let output = case.run(&["run", "study.toml", "--memory-gib", "0.5"]);
+    let output = case.run("run study.toml --memory-gib 0.5");
     assert_eq!(output.status.code(), Some(2));
 }
 
@@ -193,9 +192,8 @@ fn a_ceiling_too_low_is_refused_with_what_it_takes() {
         n_before = n;
     }
     assert_eq!(free.n_at_once(1e6), None);
-    let case = Case::new();
-    case.file("small.toml", SMALL);
-    let output = case.run(&["run", "small.toml", "--memory-gib", "0.001"]);
+    let case = Case::with("small.toml", SMALL);
+    let output = case.run("run small.toml --memory-gib 0.001");
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr);
     says(&said, &["at least 0."]);
@@ -220,9 +218,8 @@ fn assert_refused_at_once(case: &Case, arguments: &[&str], said: &[&str]) {
 
 #[test]
 fn touches_that_memory_cannot_hold_are_refused_before_any_is_drawn() {
-    let case = Case::new();
-    case.file("fits.toml", HUMAN);
-    case.succeeds(&["plan", "fits.toml"]);
+    let case = Case::with("fits.toml", HUMAN);
+    case.succeeds("plan fits.toml");
     let human = |n: &str| HUMAN.replace("per_kind = 8", &format!("per_kind = {n}"));
     case.file("huge.toml", human("99999999999"));
     case.file("many.toml", human("9000000"));
@@ -266,7 +263,7 @@ fn a_study_is_planned_in_time_that_grows_as_its_cells_do_and_more_than_a_million
     // Ratios near 1 give few different m for 64 taxels.
     case.file("large.toml", configurations([250, 200, 1]));
     let start = Instant::now();
-    let (said, _) = case.succeeds(&["plan", "large.toml"]);
+    let (said, _) = case.succeeds("plan large.toml");
     says(&said, &["50001, of 50000 configurations"]);
     // If every group counted all configurations before it, this would take minutes.
     assert!(start.elapsed() < Duration::from_secs(20));

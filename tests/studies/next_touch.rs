@@ -1,6 +1,6 @@
 //! The choice of the next touch as an axis of a study, compared with a choice touch by touch.
 
-use crate::study::{Study, laid_out, trials_of};
+use crate::study::{Study, features, trials_of};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost};
@@ -11,14 +11,11 @@ use bubbletouch::recognition::evaluation::next_touch::{
     AnswerModel, NextTouch, PoseAnswers, Poses, most_informative,
 };
 use bubbletouch::study::FeatureSet;
-use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::Configuration;
 use ndarray::{Array2, Axis};
 use std::f64::consts::TAU;
 
 const STUDY: &str = include_str!("../fixtures/texts/next_touch.toml");
-
-const HUMAN: &str = include_str!("../fixtures/texts/next_touch_human.toml");
 
 const ALL: &str = r#"next_touch = ["random", "farthest", "most_informative"]"#;
 
@@ -61,12 +58,8 @@ fn n_correct_by_hand(
         turns: vec![None, Some(1.0), None],
     };
     let model = AnswerModel::new(&poses, &told, 6);
-    let at: Vec<PoseAnswers> = set
-        .split
-        .test
-        .iter()
-        .map(|&touch| model.at(touch))
-        .collect();
+    let tested = set.split.test.iter();
+    let at: Vec<PoseAnswers> = tested.map(|&touch| model.at(touch)).collect();
     let numbers = |places: &[usize]| -> Vec<usize> {
         places.iter().map(|&place| set.split.test[place]).collect()
     };
@@ -104,15 +97,7 @@ fn each_choice_scores_what_a_robot_that_makes_it_touch_by_touch_does() {
     let text = with(&format!("{ALL}\ntouches_per_decision = [1, 2, 4]"));
     let study = Study::new(&text);
     let tables = study.run();
-    let sets: Vec<FeatureSet> = (0..2)
-        .map(|trial| {
-            study
-                .of_items()
-                .first()
-                .features((0, trial), &Silent)
-                .unwrap()
-        })
-        .collect();
+    let sets = [0, 1].map(|trial| features(&text, (0, trial)));
     // With one touch per decision, there is no next touch.
     assert_eq!(tables.accuracy.len(), 2 * (1 + 3 + 3));
     let mut found = Vec::new();
@@ -122,29 +107,18 @@ fn each_choice_scores_what_a_robot_that_makes_it_touch_by_touch_does() {
         assert_eq!(score.n_test, 72 / configuration.touches_per_decision);
         found.push(score.n_correct);
     }
-    println!("{found:?}");
-    let random = |configurations: &[usize]| {
-        configurations
-            .iter()
-            .map(|configuration| &found[2 * configuration..][..2])
-            .collect::<Vec<_>>()
-    };
-    assert_ne!(random(&[1, 4]), random(&[2, 5]));
-    assert_ne!(random(&[1, 4]), random(&[3, 6]));
+    let random = |configurations: [usize; 2]| configurations.map(|of| &found[2 * of..][..2]);
+    assert_ne!(random([1, 4]), random([2, 5]));
+    assert_ne!(random([1, 4]), random([3, 6]));
 }
 
 #[test]
 fn random_is_what_a_study_without_the_key_does_and_neither_changes_beside_others() {
-    let without = Study::new(&with("touches_per_decision = [1, 3]")).run();
-    let random = Study::new(&with(
-        "next_touch = \"random\"\ntouches_per_decision = [1, 3]",
-    ))
-    .run();
-    let among = Study::new(&with(&format!(
-        "{ALL}\ntouches_per_decision = [1, 3]\nc = [0.1, 1.0]"
-    )))
-    .run();
-    for (configuration, score) in &without.accuracy {
+    let run =
+        |keys: &str| Study::new(&with(&format!("touches_per_decision = [1, 3]\n{keys}"))).run();
+    let random = run("next_touch = \"random\"");
+    let among = run(&format!("{ALL}\nc = [0.1, 1.0]"));
+    for (configuration, score) in &run("").accuracy {
         let named = Configuration {
             next_touch: Some(NextTouch::Random),
             ..configuration.clone()
@@ -155,48 +129,5 @@ fn random_is_what_a_study_without_the_key_does_and_neither_changes_beside_others
             ..named
         };
         assert!(trials_of(&among, &named).contains(&score));
-    }
-}
-
-#[test]
-fn a_choice_that_cannot_be_made_is_refused_by_its_key() {
-    let fused = format!("{ALL}\ntouches_per_decision = 2\n");
-    let recorded = fused.replace("\"random\", ", "");
-    for (text, said) in [
-        (
-            with(ALL),
-            "key recognition.next_touch: \"farthest\", but one touch has no next",
-        ),
-        (
-            with(&fused).replace("[touches]", "[touches]\nrest = \"stable\""),
-            "key recognition.next_touch: \"farthest\" beside touches.rest = \"stable\"",
-        ),
-        (
-            with(&format!("{fused}class_imbalance = 2.0")),
-            "key recognition.class_imbalance: given beside next_touch = \"most_informative\"",
-        ),
-        (
-            with(&format!("{fused}train_touches = 4")),
-            "key recognition.cv_folds: 5; at most 4",
-        ),
-        (
-            with("next_touch = [\"random\", \"random\"]"),
-            "key recognition.next_touch: \"random\" twice",
-        ),
-        (
-            with("next_touch = \"nearest\""),
-            "unknown variant `nearest`",
-        ),
-        (
-            with("cv_folds = 3"),
-            "key recognition.cv_folds: 3, but nothing is chosen by folds",
-        ),
-        (
-            HUMAN.to_owned() + &recorded,
-            "key recognition.next_touch: \"farthest\"; \"random\": only touches that",
-        ),
-    ] {
-        let error = laid_out(&text).err().expect("it is refused").to_string();
-        assert!(error.contains(said), "{error}");
     }
 }

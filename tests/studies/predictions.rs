@@ -1,16 +1,12 @@
 //! Tables of single decisions, of recall, and the further measures of recognition.
 
 use crate::command::Case;
-use crate::recorded_sensors::{SKIN, planned};
 use crate::study::Study;
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{write_integers, write_npy};
 use bubbletouch::table::Table;
 use ndarray::{Array1, Array2, Array3, Axis};
-use ndarray_npy::{NpzWriter, read_npy};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
 
 const STUDY: &str = include_str!("../fixtures/texts/predictions.toml");
 
@@ -151,110 +147,120 @@ fn a_folder_gives_the_predictions_that_were_written() {
 
 #[test]
 fn merged_shards_give_the_predictions_of_one_run() {
-    let case = Case::new();
-    case.file("study.toml", format!("{STUDY}{REPORT}"));
-    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    let case = Case::with("study.toml", format!("{STUDY}{REPORT}"));
+    case.succeeds("run study.toml --out whole");
     for shard in ["1/2", "2/2"] {
         case.succeeds(&["run", "study.toml", "--out", "parts", "--shard", shard]);
     }
-    case.succeeds(&["merge", "study.toml", "--out", "parts"]);
+    case.succeeds("merge study.toml --out parts");
     for file in ["predictions.csv", "recall.csv"] {
         let [whole, parts] =
-            ["whole", "parts"].map(|folder| std::fs::read(case.path(folder).join(file)).unwrap());
+            ["whole", "parts"].map(|folder| case.bytes(&format!("{folder}/{file}")));
         assert!(!whole.is_empty() && whole == parts, "{file}");
     }
 }
 
-/// Writes touches in mixed order of their classes and groups; returns `[recorded]` without the frames' labels.
-fn mixed() -> (Case, String) {
+/// Study of the touches of [`mixed`].
+const RECORDED: &str = include_str!("../fixtures/texts/recorded_splits.toml");
+
+/// Writes touches in mixed order of their classes and groups.
+fn mixed() -> Case {
     let case = Case::new();
     let label = |touch: usize| (touch * 7 + touch / 5) % 3;
     let frames = Array3::from_shape_fn((60, 6, 6), |(touch, row, column)| {
         let at = ((touch * 36 + row * 6 + column) * 7919 % 997) as f64 / 997.0;
         at + if column == label(touch) { 0.7 } else { 0.0 }
     });
-    write_npy(&case.path("frames.npy"), &frames).unwrap();
-    write_integers(&case.path("labels.npy"), (0..60).map(label)).unwrap();
-    write_integers(&case.path("groups.npy"), (0..60).map(|touch| touch / 10)).unwrap();
-    let recorded = "frames = \"FOLDER/frames.npy\"\nlabels = \"FOLDER/labels.npy\"\ngroups = \"FOLDER/groups.npy\"\n";
-    (case, recorded.to_owned())
+    case.write_array("frames.npy", &frames);
+    case.write_integers("labels.npy", (0..60).map(label));
+    case.write_integers("groups.npy", (0..60).map(|touch| touch / 10));
+    case
 }
 
-/// Writes the splits of `splits.npz`, each with its training and test touches.
-fn write_splits(case: &Case, splits: &[[Vec<i64>; 2]]) {
-    let mut file = NpzWriter::new(File::create(case.path("splits.npz")).unwrap());
-    for (number, [train, test]) in splits.iter().enumerate() {
-        file.add_array(format!("train_{number}"), &Array1::from(train.clone()))
-            .unwrap();
-        file.add_array(format!("test_{number}"), &Array1::from(test.clone()))
-            .unwrap();
+/// Training and test touches of a trial.
+type Touches = [Vec<i64>; 2];
+
+/// Writes an archive of the splits of all trials.
+fn write_splits(case: &Case, name: &str, splits: &[Touches]) {
+    let mut archive = case.archive(name);
+    for (trial, [train, test]) in splits.iter().enumerate() {
+        for (side, touches) in [("train", train), ("test", test)] {
+            let touches = Array1::from(touches.clone());
+            archive
+                .add_array(format!("{side}_{trial}"), &touches)
+                .unwrap();
+        }
     }
-    file.finish().unwrap();
+    archive.finish().unwrap();
 }
 
-const REST: &str = "[sensing]\nensemble = \"identity\"\n[recognition]\nclassifier = \"nearest_centroid\"\n[report]\npredictions = true\n";
+/// Creates a folder of recorded touches with splits that do not fit them.
+pub fn with_wrong_splits() -> Case {
+    let case = mixed();
+    let whole = || [(20..60).collect(), (0..20).collect()];
+    let write = |name: &str, splits: &[Touches]| write_splits(&case, name, splits);
+    write("splits.npz", &[whole(), whole()]);
+    write("one.npz", &[whole()]);
+    write("beyond.npz", &[[vec![60], vec![0]]]);
+    write("twice.npz", &[[vec![20, 20], vec![0]]]);
+    write("both.npz", &[[vec![20, 0], vec![0]]]);
+    write("group.npz", &[[(15..60).collect(), (0..15).collect()]]);
+    write("none.npz", &[]);
+    case
+}
+
+/// Returns the predictions of a study of recorded touches.
+fn predictions_of(case: &Case, study: &str) -> Table {
+    let tables = case.load_study(study).unwrap().run(&Silent).unwrap();
+    let mut tables = tables_of(&tables).unwrap().into_iter();
+    tables
+        .find(|table| table.file == "predictions.csv")
+        .unwrap()
+}
 
 #[test]
 fn predictions_of_own_splits_name_the_touches_of_the_file() {
-    let (case, recorded) = mixed();
+    let case = mixed();
     // Two groups are held out in each trial; touches 0 to 9 are left out of the second.
-    let splits = [
+    let splits: [Touches; 2] = [
         [(20..60).collect(), (0..20).rev().collect()],
         [(10..40).collect(), (40..60).collect()],
     ];
-    write_splits(&case, &splits);
-    let recorded = format!("{recorded}splits = \"FOLDER/splits.npz\"\n");
-    let study = planned(&case, &recorded, &format!("{SKIN}{REST}")).unwrap();
-    let tables = tables_of(&study.run(&Silent).unwrap()).unwrap();
-    let predictions = tables
-        .iter()
-        .find(|table| table.file == "predictions.csv")
-        .unwrap();
-    let labels: Array1<i64> = read_npy(case.path("labels.npy")).unwrap();
-    let frames: Array3<f64> = read_npy(case.path("frames.npy")).unwrap();
+    write_splits(&case, "splits.npz", &splits);
+    let predictions = predictions_of(&case, RECORDED);
+    let labels: Array1<i64> = case.read_array("labels.npy");
+    let frames: Array3<f64> = case.read_array("frames.npy");
+    let frames = frames.into_shape_with_order((60, 36)).unwrap();
     for (trial, [train, test]) in splits.iter().enumerate() {
-        let own =
-            (0..predictions.n_rows).filter(|&row| predictions.number("trial", row) == trial as f64);
-        let own: Vec<usize> = own.collect();
+        let is_own = |row: &usize| predictions.number("trial", *row) == trial as f64;
+        let own: Vec<usize> = (0..predictions.n_rows).filter(is_own).collect();
         let touch = |row: usize| -> i64 { predictions.word("touch", row).parse().unwrap() };
-        let mut touches: Vec<i64> = own.iter().map(|&row| touch(row)).collect();
-        touches.sort_unstable();
-        let mut expected = test.clone();
-        expected.sort_unstable();
-        assert_eq!(touches, expected);
+        let touches: BTreeSet<i64> = own.iter().map(|&row| touch(row)).collect();
+        assert_eq!(own.len(), test.len());
+        assert_eq!(touches, test.iter().copied().collect());
         // The answers are those of a nearest centroid on the standardised touches of the file.
-        let rows = |rows: &[i64]| -> Array2<f64> {
-            let list = frames.to_shape((60, 36)).unwrap();
-            list.select(
-                Axis(0),
-                &rows.iter().map(|&row| row as usize).collect::<Vec<_>>(),
-            )
+        let rows = |touches: &[i64]| -> Array2<f64> {
+            let touches: Vec<usize> = touches.iter().map(|&touch| touch as usize).collect();
+            frames.select(Axis(0), &touches)
         };
         let trained = rows(train);
-        let (mean, std) = (
-            trained.mean_axis(Axis(0)).unwrap(),
-            trained.std_axis(Axis(0), 0.0),
-        );
+        let mean = trained.mean_axis(Axis(0)).unwrap();
+        let std = trained.std_axis(Axis(0), 0.0);
         let centroids = [0, 1, 2].map(|class| {
-            let own = train
-                .iter()
-                .copied()
-                .filter(|&touch| labels[touch as usize] == class);
+            let own = train.iter().copied();
+            let own = own.filter(|&touch| labels[touch as usize] == class);
             let own = (&rows(&own.collect::<Vec<_>>()) - &mean) / &std;
             own.mean_axis(Axis(0)).unwrap()
         });
         for row in own {
             let number = touch(row);
-            assert_eq!(
-                predictions.word("truth", row),
-                format!("class {}", labels[number as usize])
-            );
+            let truth = format!("class {}", labels[number as usize]);
+            assert_eq!(predictions.word("truth", row), truth);
             assert_eq!(predictions.word("group", row), (number / 10).to_string());
             let scaled = (&rows(&[number]).row(0) - &mean) / &std;
             let distance = |class: &usize| (&scaled - &centroids[*class]).mapv(|d| d * d).sum();
-            let nearest = (0..3)
-                .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-                .unwrap();
+            let nearest = (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let nearest = nearest.unwrap();
             assert_eq!(predictions.word("answer", row), format!("class {nearest}"));
             let score = predictions.number(&format!("score_class {nearest}"), row);
             assert!((score + 0.5 * distance(&nearest)).abs() < 1e-4 * distance(&nearest));
@@ -264,52 +270,15 @@ fn predictions_of_own_splits_name_the_touches_of_the_file() {
 
 #[test]
 fn predictions_name_the_groups_as_their_file_does() {
-    let (case, recorded) = mixed();
+    let case = mixed();
     let name = |touch: usize| format!("subject{}", (touch / 10 + 3) % 6);
     let lines: String = (0..60).map(|touch| name(touch) + "\n").collect();
     case.file("groups.csv", lines);
-    let recorded = recorded.replace("groups.npy", "groups.csv");
-    let study = planned(&case, &recorded, &format!("{SKIN}{REST}")).unwrap();
-    let tables = tables_of(&study.run(&Silent).unwrap()).unwrap();
-    let mut tables = tables.iter();
-    let predictions = tables
-        .find(|table| table.file == "predictions.csv")
-        .unwrap();
+    let study = RECORDED.replace("splits = \"splits.npz\"\n", "");
+    let predictions = predictions_of(&case, &study.replace("groups.npy", "groups.csv"));
     assert!(predictions.n_rows >= 10);
     for row in 0..predictions.n_rows {
         let touch: usize = predictions.word("touch", row).parse().unwrap();
         assert_eq!(predictions.word("group", row), name(touch));
     }
-}
-
-#[test]
-fn splits_that_do_not_fit_are_refused() {
-    let (case, recorded) = mixed();
-    let recorded = format!("{recorded}splits = \"FOLDER/splits.npz\"\n");
-    let rest = format!("{SKIN}{REST}");
-    let whole = || [(20..60).collect::<Vec<i64>>(), (0..20).collect()];
-    let refused = |splits: &[[Vec<i64>; 2]], wanted: &str| {
-        write_splits(&case, splits);
-        let said = planned(&case, &recorded, &rest)
-            .err()
-            .expect(wanted)
-            .to_string();
-        assert!(said.contains(wanted), "{said}");
-    };
-    refused(&[whole()], "key trials: 2; at most 1");
-    refused(&[[vec![60], vec![0]]], "train_0");
-    refused(&[[vec![20, 20], vec![0]]], "touch 20 twice");
-    refused(&[[vec![20, 0], vec![0]]], "touch 0 twice");
-    refused(
-        &[[(15..60).collect(), (0..15).collect()]],
-        "group 1 in train_0 and test_0",
-    );
-    refused(&[], "no array train_0");
-    write_splits(&case, &[whole(), whole()]);
-    let said = planned(
-        &case,
-        &recorded,
-        &format!("{rest}\n").replace("classifier", "folds = 2\nclassifier"),
-    );
-    assert!(said.err().unwrap().to_string().contains("recorded.splits"));
 }

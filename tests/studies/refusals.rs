@@ -5,8 +5,11 @@
 //! with code 2 if no other code is stated.
 
 use crate::command::{Case, contains, fails, failures_of};
-use crate::recorded_arrays::wrong_arrays;
-use crate::recorded_sensors::contradictory;
+use crate::predictions::with_wrong_splits;
+use crate::recorded::arrays::wrong_arrays;
+use crate::recorded::sensors::contradictory;
+use crate::recorded::simulated::small;
+use crate::recorded::values::with_values;
 use bubbletouch::kinds::{Source, load};
 use bubbletouch::scene::ScenePlan;
 use serde::Deserialize;
@@ -69,8 +72,11 @@ impl Refusal {
     /// Returns what the program says of the case.
     fn said(&self) -> Option<String> {
         let case = match &self.folder[..] {
-            "recorded_sensors" => contradictory(),
+            "predictions" => with_wrong_splits(),
             "recorded_arrays" => wrong_arrays(),
+            "recorded_sensors" => contradictory(),
+            "recorded_small" => small(),
+            "recorded_values" => with_values(),
             _ => Case::new(),
         };
         for (name, content) in &self.files {

@@ -4,7 +4,6 @@ use crate::command::Case;
 use crate::kinds::Kind;
 use crate::study::{Study, trials_of};
 use bubbletouch::study::{sample_frames, simulate_array};
-use std::fs;
 
 /// Tables without times, and the resolved study.
 const REPEATABLE: [&str; 5] = [
@@ -17,12 +16,11 @@ const REPEATABLE: [&str; 5] = [
 
 #[test]
 fn another_seed_is_another_experiment_and_the_study_that_it_wrote_down_repeats_it() {
-    let case = Case::new();
-    case.file("study.toml", Kind::CHOICES.study);
-    case.succeeds(&["run", "study.toml", "--out", "seven"]);
-    case.succeeds(&["run", "study.toml", "--seed", "2019", "--out", "eight"]);
-    case.succeeds(&["run", "eight/study.toml", "--out", "again"]);
-    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
+    let case = Case::with("study.toml", Kind::named("choices").study);
+    case.succeeds("run study.toml --out seven");
+    case.succeeds("run study.toml --seed 2019 --out eight");
+    case.succeeds("run eight/study.toml --out again");
+    let read = |folder: &str, name: &str| case.bytes(&format!("{folder}/{name}"));
     assert!(read("seven", "accuracy.csv") != read("eight", "accuracy.csv"));
     for name in REPEATABLE {
         assert!(read("eight", name) == read("again", name), "{name}");

@@ -1,29 +1,27 @@
 //! Readings of taxels that measure forces along and across their axes, for touches that slide.
 
 use crate::command::Case;
-use crate::study::{Study, laid_out};
+use crate::study::{Study, changed, features, run, scores_of_variant};
 use bubbletouch::contact::{Approach, FrictionState, Workspace};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use bubbletouch::world::{Shear, Shears};
 use glam::{DVec2, DVec3};
 use ndarray::{Array2, Array3, Array4, s};
+use std::collections::BTreeSet;
 
 const STUDY: &str = include_str!("../fixtures/texts/shear.toml");
 
 const N_TAXELS: usize = 64;
 
+/// Returns the study with another text in the place of one that it contains.
 fn with(old: &str, new: &str) -> String {
-    let text = STUDY.replace(old, new);
-    assert!(text != STUDY, "{old}");
-    text
+    changed(STUDY, &[(old, new)])
 }
 
 /// Returns the features that a study of one configuration gives its classifier: touches × values of a frame.
 fn read(text: &str) -> Array2<f64> {
-    let study = laid_out(text).unwrap();
-    let features = study.first().features((0, 0), &Silent).unwrap();
-    features.data.records().to_owned()
+    features(text, (0, 0)).data.records
 }
 
 #[test]
@@ -93,11 +91,8 @@ fn each_channel_has_noise_of_its_own_and_the_first_is_the_force() {
     for (a, first) in channels.iter().enumerate() {
         for (b, second) in channels.iter().enumerate().skip(a) {
             let product = (first * second).sum() / n;
-            let (expected, error) = if a == b {
-                (1.0, 2f64.sqrt())
-            } else {
-                (0.0, 1.0)
-            };
+            let expected = f64::from(u8::from(a == b));
+            let error = (1.0 + expected).sqrt();
             // Five standard errors of this number of independent draws.
             let off = (product - expected).abs();
             assert!(off < 5.0 * error / n.sqrt(), "{a} {b}: {product}");
@@ -113,25 +108,14 @@ fn converters_and_faults_take_shear_of_either_sign() {
     let errors = "steps = [\"faults\", \"quantisation\"]\nadc_bits = 3\nstuck_fraction = 0.5\n";
     let text = with("noise_std_full_scale = 0.05\n", errors);
     let read = read(&text);
-    let of = |channel: usize| {
+    for (channel, least) in [(0, 0.0), (1, -1.0), (2, -1.0)] {
         let values = read.slice(s![.., channel * N_TAXELS..(channel + 1) * N_TAXELS]);
-        values
-            .iter()
-            .copied()
-            .fold([0.0, 0.0], |[least, most], v| [v.min(least), v.max(most)])
-    };
-    assert_eq!(of(0), [0.0, 1.0]);
-    for channel in [1, 2] {
-        assert_eq!(of(channel), [-1.0, 1.0]);
+        let codes = values.iter().map(|v| (v * 1e9).round() as i64);
+        let codes: BTreeSet<i64> = codes.collect();
+        assert_eq!(codes.len(), 8);
+        assert_eq!(values.fold(0.0, |low: f64, v| low.min(*v)), least);
+        assert_eq!(values.fold(0.0, |high: f64, v| high.max(*v)), 1.0);
     }
-    let codes = |channel: usize| {
-        let values = read.slice(s![.., channel * N_TAXELS..(channel + 1) * N_TAXELS]);
-        let mut codes: Vec<i64> = values.iter().map(|v| (v * 1e9).round() as i64).collect();
-        codes.sort_unstable();
-        codes.dedup();
-        codes.len()
-    };
-    assert!((0..3).all(|channel| codes(channel) == 8));
 }
 
 #[test]
@@ -139,31 +123,25 @@ fn what_is_sensed_is_an_axis() {
     let text = with("sensed = \"shear\"\n", "")
         .replace("ensemble = \"identity\"", "measurements = 16")
         + "[axes]\n\"skin.sensed\" = [\"deflection\", \"force\", \"shear\"]\n";
-    let tables = laid_out(&text).unwrap().run(&Silent).unwrap();
-    let ratios = tables
-        .summary
-        .iter()
-        .map(|(configuration, _)| configuration.ratio);
+    let tables = run(&text);
+    let ratios = tables.summary.iter().map(|(of, _)| of.ratio);
     assert_eq!(ratios.collect::<Vec<_>>(), [4.0, 4.0, 12.0]);
-    let scores = |number: usize| {
-        let rows = tables.accuracy.iter();
-        let rows = rows.filter(|(configuration, _)| configuration.variant.number == number);
-        rows.map(|(_, score)| score.n_correct).collect::<Vec<_>>()
-    };
     // A force is a deflection in another unit.
-    assert_eq!(scores(0), scores(1));
+    let [deflection, force] = [0, 1].map(|number| scores_of_variant(&tables.accuracy, number));
+    for (deflection, force) in deflection.iter().zip(&force) {
+        assert_eq!(deflection.n_correct, force.n_correct);
+    }
 }
 
 #[test]
 fn the_command_writes_channels_of_their_own() {
-    let case = Case::new();
-    case.file("study.toml", STUDY);
-    case.succeeds(&["touches", "study.toml", "--out", "touches"]);
-    let frames: Array3<f32> = ndarray_npy::read_npy(case.path("touches/frames.npy")).unwrap();
+    let case = Case::with("study.toml", STUDY);
+    case.succeeds("touches study.toml --out touches");
+    let frames: Array3<f32> = case.read_array("touches/frames.npy");
     assert_eq!(frames.dim(), (36, 8, 8));
-    let shear: Array4<f32> = ndarray_npy::read_npy(case.path("touches/shear.npy")).unwrap();
+    let shear: Array4<f32> = case.read_array("touches/shear.npy");
     assert_eq!(shear.dim(), (36, 2, 8, 8));
     assert!(shear.iter().any(|&force| force != 0.0));
     assert!(!case.path("touches/taxels.npy").exists());
-    case.succeeds(&["run", "study.toml", "--out", "results"]);
+    case.succeeds("run study.toml --out results");
 }

@@ -1,14 +1,12 @@
 //! Studies whose test touches differ from the training touches: `[test]`, and axes one at a time.
 
 use crate::command::filled;
-use crate::study;
+use crate::study::{accuracies, assert_reads_back, changed, features, laid_out, run, table};
 use bubbletouch::kinds::Study as _;
-use bubbletouch::kinds::recognition::RecognitionStudy;
-use bubbletouch::report::folder::{table_files, write_files};
-use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
+use bubbletouch::studies::recognition::charts::tables_of;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::Tables;
-use bubbletouch::table::{Role, Table};
+use bubbletouch::table::Role;
 
 /// Returns a study of three objects on a training skin without faults. `touches` and `signal` are additional keys of these tables.
 fn text(touches: &str, signal: &str, more: &str) -> String {
@@ -25,19 +23,9 @@ fn base(more: &str) -> String {
     text(TOUCHES, SIGNAL, more)
 }
 
-fn run(text: &str) -> Tables {
-    study::laid_out(text).unwrap().run(&Silent).unwrap()
-}
-
-fn accuracies(tables: &Tables) -> Vec<f64> {
-    let rows = tables.accuracy.iter();
-    rows.map(|(_, score)| score.accuracy).collect()
-}
-
 /// Returns the feature rows on which a configuration's classifier is trained and tested.
 fn rows(text: &str) -> [Vec<f64>; 2] {
-    let study = study::laid_out(text).unwrap();
-    let set = study.first().features((0, 1), &Silent).unwrap();
+    let set = features(text, (0, 1));
     [&set.split.train, &set.split.test].map(|rows| {
         let rows = rows.iter().map(|&row| set.data.records.row(row).to_vec());
         rows.flatten().collect()
@@ -46,66 +34,44 @@ fn rows(text: &str) -> [Vec<f64>; 2] {
 
 #[test]
 fn test_rows_are_those_of_the_study_with_the_keys_in_place_and_training_rows_are_untouched() {
-    let [learned, plain] = rows(&base(""));
+    let base = base("");
+    let [learned, plain] = rows(&base);
     let faults = "steps = [\"noise\", \"smoothing\", \"faults\"]";
-    for (test, touches, signal, change) in [
-        (
-            "touches.depth_mm = 1.0",
-            TOUCHES.replace("2.0", "1.0"),
-            SIGNAL.to_owned(),
-            ("", ""),
-        ),
+    let noise = "noise_std_full_scale = 0.01";
+    // Keys of `[test]`, and the change of the study that they stand for.
+    for (test, old, new) in [
+        ("touches.depth_mm = 1.0", "depth_mm = 2.0", "depth_mm = 1.0"),
         (
             "touches.offset_y_mm = { within = 20.0 }",
-            TOUCHES.replace("-6.0, 6.0", "-20.0, 20.0"),
-            SIGNAL.to_owned(),
-            ("", ""),
+            "offset_y_mm = { uniform = [-6.0, 6.0] }",
+            "offset_y_mm = { uniform = [-20.0, 20.0] }",
         ),
         (
             "touches.tilt_x_deg.within = 20.0",
-            format!("{TOUCHES}\ntilt_x_deg = {{ uniform = [-20.0, 20.0] }}"),
-            SIGNAL.to_owned(),
-            ("", ""),
+            "depth_mm",
+            "tilt_x_deg = { uniform = [-20.0, 20.0] }\ndepth_mm",
         ),
         (
             "signal.noise_std_full_scale = 0.2",
-            TOUCHES.to_owned(),
-            "noise_std_full_scale = 0.2".to_owned(),
-            ("", ""),
+            noise,
+            "noise_std_full_scale = 0.2",
         ),
         // Another unit replaces the unit of the study.
-        (
-            "signal.noise_std_mm = 0.3",
-            TOUCHES.to_owned(),
-            "noise_std_mm = 0.3".to_owned(),
-            ("", ""),
-        ),
+        ("signal.noise_std_mm = 0.3", noise, "noise_std_mm = 0.3"),
         (
             &format!("signal.{faults}\nsignal.dead_fraction = 0.4"),
-            TOUCHES.to_owned(),
-            format!("{faults}\n{SIGNAL}\ndead_fraction = 0.4"),
-            ("", ""),
+            noise,
+            &format!("{faults}\n{noise}\ndead_fraction = 0.4"),
         ),
         (
             "objects.surface_error_mm = 4.0",
-            TOUCHES.to_owned(),
-            SIGNAL.to_owned(),
-            ("surface_error_mm = 0.5", "surface_error_mm = 4.0"),
+            "surface_error_mm = 0.5",
+            "surface_error_mm = 4.0",
         ),
-        (
-            "skin.stroke_mm = 3.0",
-            TOUCHES.to_owned(),
-            SIGNAL.to_owned(),
-            ("stroke_mm = 5.0", "stroke_mm = 3.0"),
-        ),
+        ("skin.stroke_mm = 3.0", "stroke_mm = 5.0", "stroke_mm = 3.0"),
     ] {
-        let mixed = rows(&base(&format!("[test]\n{test}")));
-        let changed = text(&touches, &signal, "").replace(change.0, change.1);
-        let [_, driven] = rows(&if change.0.is_empty() {
-            text(&touches, &signal, "")
-        } else {
-            changed
-        });
+        let mixed = rows(&format!("{base}\n[test]\n{test}"));
+        let [_, driven] = rows(&changed(&base, &[(old, new)]));
         assert!(mixed[0] == learned, "{test}: training rows");
         assert!(mixed[1] == driven, "{test}: test rows");
         assert!(driven != plain, "{test} changes nothing");
@@ -143,7 +109,7 @@ fn what_is_learned_for_features_is_learned_from_training_touches() {
 #[test]
 fn an_axis_of_test_touches_is_a_condition_with_a_robustness_row() {
     let axes = "\"test.signal.noise_std_full_scale\" = [0.01, 0.5, 5.0]";
-    let study = study::laid_out(&base(&format!("[axes]\n{axes}"))).unwrap();
+    let study = laid_out(&base(&format!("[axes]\n{axes}"))).unwrap();
     let tables = study.run(&Silent).unwrap();
     let each = [0.01, 0.5, 5.0].map(|noise| {
         let test = format!("[test]\nsignal.noise_std_full_scale = {noise:?}");
@@ -151,36 +117,21 @@ fn an_axis_of_test_touches_is_a_condition_with_a_robustness_row() {
     });
     assert_eq!(accuracies(&tables), each.concat());
     let made = tables_of(&tables).unwrap();
-    let find = |file: &str| made.iter().find(|table| table.file == file).unwrap();
-    let (column, _) = find("summary.csv")
-        .column("test_noise_std_full_scale")
-        .unwrap();
+    let summary = table(&made, "summary.csv");
+    let (column, _) = summary.column("test_noise_std_full_scale").unwrap();
     assert_eq!(column.role, Role::Condition);
-    let robustness = find("robustness.csv");
+    let robustness = table(&made, "robustness.csv");
     assert_eq!(robustness.n_rows, 1);
     let at = robustness.number("half_accuracy_at", 0);
     assert!(0.01 < at && at < 5.0, "{at}");
     assert_reads_back(&study, &made);
 }
 
-fn assert_reads_back(study: &RecognitionStudy, made: &[Table]) {
-    let folder = tempfile::tempdir().unwrap();
-    let toml = study.first().plan.spec.to_toml();
-    std::fs::write(folder.path().join("study.toml"), toml).unwrap();
-    write_files(folder.path(), table_files(made)).unwrap();
-    let read = read_tables(folder.path()).unwrap();
-    assert_eq!(read.len(), made.len());
-    for (read, made) in read.iter().zip(made) {
-        assert_eq!(read.columns, made.columns, "{}", made.file);
-        assert!(read.csv == made.csv, "{}", made.file);
-    }
-}
-
 const ONE_AT_A_TIME: &str = include_str!("../fixtures/texts/test_touches_one_at_a_time.toml");
 
 #[test]
 fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
-    let study = study::laid_out(&base(ONE_AT_A_TIME)).unwrap();
+    let study = laid_out(&base(ONE_AT_A_TIME)).unwrap();
     let settings = study.all_cells().map(|configuration| {
         let values = configuration.variant.values.iter();
         let names: Vec<&str> = values.clone().map(|v| v.column.name.as_ref()).collect();
@@ -216,8 +167,7 @@ fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
     let test = "[test]\ntouches.offset_x_mm = { uniform = [-40.0, 40.0] }\ntouches.offset_y_mm = { uniform = [-40.0, 40.0] }";
     assert_eq!(scores[6..8], accuracies(&run(&base(test)))[..]);
     let made = tables_of(&tables).unwrap();
-    let robustness = made.iter().find(|table| table.file == "robustness.csv");
-    let robustness = robustness.unwrap();
+    let robustness = table(&made, "robustness.csv");
     let conditions: Vec<&str> = (0..robustness.n_rows)
         .map(|row| robustness.word("condition", row))
         .collect();
@@ -228,7 +178,7 @@ fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
 #[test]
 fn another_axis_or_value_leaves_the_names_of_what_was_done() {
     let names = |axes: &str| -> Vec<(String, String)> {
-        let pieces = study::laid_out(&base(axes)).unwrap().work_items();
+        let pieces = laid_out(&base(axes)).unwrap().work_items();
         let names = pieces.into_iter().map(|piece| (piece.name, piece.inputs));
         names.collect()
     };

@@ -74,6 +74,15 @@ impl AxisValues {
             values: values.collect(),
         }
     }
+
+    /// Returns the table cells of the axes: the name of the column and the value.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = (&'static str, &Option<toml::Value>)> {
+        let values = self.values.iter();
+        values.filter_map(|axis| match axis.column.name {
+            Cow::Borrowed(name) => Some((name, &axis.value)),
+            Cow::Owned(_) => None,
+        })
+    }
 }
 
 impl StudyAxes {

@@ -1,9 +1,8 @@
 //! Touches of objects, drawn from placements (distributions of touch poses).
 
 use crate::learning::evaluation::next_touch::Poses;
-use crate::objects::Object;
 use crate::studies::prelude::*;
-use crate::world::{Placement, RestPose, Spread, touches};
+use crate::world::{RestPose, Spread, touches};
 use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 use std::f64::consts::TAU;

@@ -2,8 +2,8 @@
 
 use crate::files::FilePath;
 use crate::inputs::params::Described;
+use crate::scene::spec::SHAPE_RULES;
 use crate::scene::spec_motion::metres;
-use crate::scene::spec_object::SHAPE_RULES;
 use crate::scene::{Carrier, JointsSpec, Movement, ObjectSpec, PlannedRobot, Reader};
 use crate::studies::prelude::*;
 use crate::studies::whole_body::ladders::{ScalingPoint, rungs};

@@ -1,53 +1,17 @@
 //! Law: a configuration gives the same rows alone as within a sweep.
 
-use super::generator::{GeneratedStudy, Generator, n_studies};
+use super::generator::{GeneratedStudy, Generator, keys, n_studies};
 use super::outcome::{Row, rows, run, sorted_without};
 use bubbletouch::sensing::Ensemble;
+use rand::seq::SliceRandom;
 use std::collections::BTreeSet;
 use toml::Value;
 
-/// Keys of a generated study that may be axes.
-const AXES: &[&str] = &[
-    "seed",
-    "skin.pitch_mm",
-    "skin.taxels",
-    "skin.stroke_mm",
-    "skin.layout",
-    "skin.stiffness_n_per_m",
-    "touches.depth_mm",
-    "touches.frames",
-    "touches.per_object",
-    "touches.speed_mm_per_s",
-    "skin.damping_n_s_per_m",
-    "skin.friction",
-    "signal.noise_std_full_scale",
-    "signal.smoothing_mm",
-    "sensing.ensemble",
-    "sensing.ratio",
-    "recognition.features",
-    "recognition.classifier",
-    "recognition.scaling",
-    "recognition.c",
-    "recognition.n_neighbours",
-    "recognition.train_touches",
-    "recognition.mislabelled_fraction",
-    "recognition.class_imbalance",
-    "recognition.touches_per_decision",
-    "recognition.readings_per_touch",
-    "recognition.test_fraction",
-    "recognition.temporal_features",
-    "recognition.tilt_augmentation",
-    "recognition.depth_window_full_scale",
-    "recognition.gamma",
-];
-
 /// Removes the columns that exist only because of an axis, and that the table of a single study does not have.
 fn common(rows: Vec<Row>, columns: &BTreeSet<String>) -> Vec<Row> {
-    let other: Vec<String> = rows
-        .iter()
-        .flat_map(|row| row.keys())
-        .filter(|column| !columns.contains(*column) || *column == "configuration")
-        .cloned()
+    let names = rows.iter().flat_map(|row| row.keys().cloned());
+    let other: Vec<String> = names
+        .filter(|name| !columns.contains(name) || name == "configuration")
         .collect();
     let other: Vec<&str> = other.iter().map(String::as_str).collect();
     sorted_without(rows, &other)
@@ -57,6 +21,14 @@ fn accuracy_rows(study: &GeneratedStudy) -> bubbletouch::Result<Vec<Row>> {
     Ok(rows(&run(&study.load()?)?["accuracy.csv"]))
 }
 
+/// Returns the study with axes.
+fn with_axes(study: &GeneratedStudy, axes: &[(String, Vec<Value>)]) -> GeneratedStudy {
+    let sweep = |study: GeneratedStudy, (key, values): &(String, Vec<Value>)| {
+        study.swept(key, values.clone())
+    };
+    axes.iter().fold(study.clone(), sweep)
+}
+
 /// Checks one study in which two keys are swept; returns the number of compared configurations.
 fn check(
     generator: &mut Generator,
@@ -64,76 +36,62 @@ fn check(
     is_wanted: fn(&GeneratedStudy) -> bool,
 ) -> usize {
     let study = generator.study(is_wanted);
-    let mut axes: Vec<(String, Vec<Value>)> = Vec::new();
-    if let Some((key, values)) = first_axis {
-        axes.push((key.to_owned(), values));
-    }
+    let first_axis = first_axis.map(|(key, values)| (key.to_owned(), values));
+    let mut axes = Vec::from_iter(first_axis);
     // Kernel SVMs are solved along C from the previous solution, to an equal tolerance; decisions with an exact value of 0 may differ.
     let classifier = study.get("recognition.classifier").and_then(Value::as_str);
     let is_path = classifier.is_some_and(|name| name.ends_with("_svm"));
-    let given = AXES.iter().filter(|key| study.get(key).is_some());
-    let given = given.filter(|key| !(is_path && **key == "recognition.c"));
-    let mut given: Vec<&str> = given.copied().collect();
-    rand::seq::SliceRandom::shuffle(&mut given[..], &mut generator.rng);
+    let mut given = keys();
+    given.retain(|key| study.get(key).is_some() && !(is_path && key == "recognition.c"));
+    given.shuffle(&mut generator.rng);
     for key in given {
-        let mut values = generator.values(key);
+        let mut values = generator.values(&key);
         values.truncate(2);
-        let is_new = axes.iter().all(|(known, _)| known != key);
-        let swept = axes.iter().fold(study.clone(), |study, (key, values)| {
-            study.swept(key, values.clone())
-        });
-        if axes.len() < 2 && is_new && swept.swept(key, values.clone()).load().is_ok() {
-            axes.push((key.to_owned(), values));
+        let is_new = axes.iter().all(|(known, _)| *known != key);
+        let swept = with_axes(&study, &axes).swept(&key, values.clone());
+        if axes.len() < 2 && is_new && swept.load().is_ok() {
+            axes.push((key, values));
         }
     }
-    let swept = axes.iter().fold(study.clone(), |study, (key, values)| {
-        study.swept(key, values.clone())
-    });
+    let swept = with_axes(&study, &axes);
     let Ok(together) = accuracy_rows(&swept) else {
         return 0;
     };
-    let combinations = axes
-        .iter()
-        .fold(vec![study.clone()], |studies, (key, values)| {
-            let with = |study: &GeneratedStudy| {
-                let values = values.iter();
-                values
-                    .map(|value| study.with(key, value.clone()))
-                    .collect::<Vec<_>>()
-            };
-            studies.iter().flat_map(with).collect()
-        });
-    let mut alone = Vec::new();
-    let mut n_compared = 0;
-    for study in &combinations {
-        if let Ok(rows) = accuracy_rows(study) {
-            n_compared += 1;
-            alone.push(rows);
-        }
+    let mut combinations = vec![study];
+    for (key, values) in &axes {
+        let with = |study: GeneratedStudy| {
+            let values = values.iter();
+            let studies = values.map(|value| study.with(key, value.clone()));
+            studies.collect::<Vec<_>>()
+        };
+        combinations = combinations.into_iter().flat_map(with).collect();
     }
     let columns = |rows: &[Row]| -> BTreeSet<String> { rows[0].keys().cloned().collect() };
-    for rows in alone {
+    let mut n_compared = 0;
+    for rows in combinations.iter().flat_map(accuracy_rows) {
         let columns = &columns(&rows) & &columns(&together);
         let known = common(together.clone(), &columns);
         for row in common(rows, &columns) {
+            let is_known = known.binary_search(&row).is_ok();
             assert!(
-                known.binary_search(&row).is_ok(),
+                is_known,
                 "alone but not in the sweep: {row:#?}\n{}",
                 swept.text()
             );
         }
+        n_compared += 1;
     }
     n_compared
 }
 
 #[test]
 fn a_configuration_alone_gives_the_rows_that_it_gives_in_a_sweep() {
-    let mut n_compared = 0;
-    for number in 0..n_studies() {
-        n_compared += check(&mut Generator::new("alone or swept", number), None, |_| {
+    let n_compared = |number| {
+        check(&mut Generator::new("alone or swept", number), None, |_| {
             true
-        });
-    }
+        })
+    };
+    let n_compared: usize = (0..n_studies()).map(n_compared).sum();
     assert!(n_compared as u64 >= 2 * n_studies(), "{n_compared}");
 }
 
@@ -154,13 +112,10 @@ fn learns_on_two_skins(study: &GeneratedStudy) -> bool {
 
 #[test]
 fn a_test_sensor_alone_gives_the_rows_that_it_gives_beside_another() {
-    let mut n_compared = 0;
-    for number in 0..n_studies() {
-        n_compared += check(
-            &mut Generator::new("test sensors", number),
-            Some(test_sensors()),
-            learns_on_two_skins,
-        );
-    }
+    let n_compared = |number| {
+        let mut generator = Generator::new("test sensors", number);
+        check(&mut generator, Some(test_sensors()), learns_on_two_skins)
+    };
+    let n_compared: usize = (0..n_studies()).map(n_compared).sum();
     assert!(n_compared as u64 >= n_studies(), "{n_compared}");
 }

@@ -67,8 +67,8 @@ fn check(law: &str, with_times: bool, is_noticed: impl Fn(&Case, &str) -> Result
         let mut generator = Generator::new(law, number);
         let (study, ..) = swept(&case, &mut generator);
         fs::rename(case.path("fresh"), case.path("results")).unwrap();
-        case.succeeds(&["run", "study.toml", "--out", "other"]);
-        let mut files = tables(&case.path("results"));
+        case.succeeds("run study.toml --out other");
+        let mut files = tables(&case, "results");
         if with_times {
             for name in ["timing.csv", "pareto.csv", "stages.csv"] {
                 let content = fs::read(case.path("results").join(name)).unwrap();
@@ -99,7 +99,7 @@ fn check(law: &str, with_times: bool, is_noticed: impl Fn(&Case, &str) -> Result
 #[test]
 fn an_edited_table_is_noticed_by_verify() {
     check("edited tables", true, |case, name| {
-        let verified = case.run(&["verify", "results", "--configurations", "1"]);
+        let verified = case.run("verify results --configurations 1");
         let error = String::from_utf8_lossy(&verified.stderr).into_owned();
         match !verified.status.success() && error.contains(name) {
             true => Ok(()),

@@ -1,14 +1,13 @@
 //! Laws of result folders: an extended, sharded or killed run gives the results of a fresh run. A run of a changed study also gives the results of a fresh run,
 //! or the folder rejects it.
 
-use super::generator::{GeneratedStudy, Generator, is_sample, n_studies};
+use super::generator::{GeneratedStudy, Generator, is_sample, keys, n_studies};
 use super::outcome::{Tables, without_times};
 use crate::command::Case;
 use bubbletouch::study::all_strengths;
 use rand::Rng;
 use rand::seq::SliceRandom;
 use std::fs;
-use std::path::Path;
 use toml::Value;
 
 /// Returns the number of studies for each law of folders; each study needs several runs of the command.
@@ -17,14 +16,14 @@ pub fn n_folders() -> u64 {
 }
 
 /// Returns the tables of a folder without times.
-pub fn tables(folder: &Path) -> Tables {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
-    let files = entries.filter_map(|entry| {
-        let name = entry.file_name().into_string().unwrap();
-        let is_table = name.ends_with(".csv");
-        is_table.then(|| (name, fs::read(entry.path()).unwrap()))
-    });
-    without_times(files.collect())
+pub fn tables(case: &Case, folder: &str) -> Tables {
+    let names = case.names_in(folder).into_iter();
+    let tables = names.filter(|name| name.ends_with(".csv"));
+    let read = |name: String| {
+        let content = case.bytes(&format!("{folder}/{name}"));
+        (name, content)
+    };
+    without_times(tables.map(read).collect())
 }
 
 /// Returns a study with an axis of three values, which the command runs into the folder `fresh`.
@@ -43,7 +42,7 @@ pub fn swept(case: &Case, generator: &mut Generator) -> (GeneratedStudy, &'stati
         let mut values = generator.values(axis);
         values.truncate(3);
         case.file("study.toml", study.swept(axis, values.clone()).text());
-        let output = case.run(&["run", "study.toml", "--out", "fresh"]);
+        let output = case.run("run study.toml --out fresh");
         if output.status.success() {
             return (study, axis, values);
         }
@@ -65,9 +64,9 @@ fn an_extended_run_gives_the_tables_of_a_fresh_one() {
         }
         for values in [first, values] {
             case.file("study.toml", study.swept(axis, values).text());
-            case.succeeds(&["run", "study.toml", "--out", "extended"]);
+            case.succeeds("run study.toml --out extended");
         }
-        let (fresh, extended) = (tables(&case.path("fresh")), tables(&case.path("extended")));
+        let (fresh, extended) = (tables(&case, "fresh"), tables(&case, "extended"));
         assert!(fresh == extended, "{axis} of\n{}", study.text());
     }
 }
@@ -81,8 +80,8 @@ fn merged_shards_give_the_tables_of_a_fresh_run() {
         for shard in ["1/2", "2/2"] {
             case.succeeds(&["run", "study.toml", "--out", "merged", "--shard", shard]);
         }
-        case.succeeds(&["merge", "study.toml", "--out", "merged"]);
-        let (fresh, merged) = (tables(&case.path("fresh")), tables(&case.path("merged")));
+        case.succeeds("merge study.toml --out merged");
+        let (fresh, merged) = (tables(&case, "fresh"), tables(&case, "merged"));
         assert!(fresh == merged, "{axis} of\n{}", study.text());
     }
 }
@@ -93,51 +92,16 @@ fn a_run_that_lost_the_end_of_its_journal_gives_the_tables_of_a_fresh_one() {
         let case = Case::new();
         let mut generator = Generator::new("resumed runs", number);
         let (study, axis, _) = swept(&case, &mut generator);
-        case.succeeds(&["run", "study.toml", "--out", "resumed"]);
+        case.succeeds("run study.toml --out resumed");
         let journal = case.path("resumed/journal.jsonl");
         let bytes = fs::read(&journal).unwrap();
         let kept = generator.rng.gen_range(0..bytes.len());
         fs::write(&journal, &bytes[..kept]).unwrap();
-        case.succeeds(&["run", "study.toml", "--out", "resumed"]);
-        let (fresh, resumed) = (tables(&case.path("fresh")), tables(&case.path("resumed")));
+        case.succeeds("run study.toml --out resumed");
+        let (fresh, resumed) = (tables(&case, "fresh"), tables(&case, "resumed"));
         assert!(fresh == resumed, "{axis} of\n{}", study.text());
     }
 }
-
-/// Keys that change between two runs, without the keys of the signal.
-const CHANGED: &[&str] = &[
-    "seed",
-    "trials",
-    "skin.pitch_mm",
-    "skin.taxels",
-    "skin.stroke_mm",
-    "skin.layout",
-    "skin.stiffness_n_per_m",
-    "skin.damping_n_s_per_m",
-    "skin.friction",
-    "touches.depth_mm",
-    "touches.frames",
-    "touches.per_object",
-    "touches.speed_mm_per_s",
-    "sensing.ensemble",
-    "sensing.ratio",
-    "recognition.features",
-    "recognition.classifier",
-    "recognition.scaling",
-    "recognition.c",
-    "recognition.gamma",
-    "recognition.n_neighbours",
-    "recognition.n_trees",
-    "recognition.temporal_features",
-    "recognition.tilt_augmentation",
-    "recognition.depth_window_full_scale",
-    "recognition.train_touches",
-    "recognition.mislabelled_fraction",
-    "recognition.class_imbalance",
-    "recognition.touches_per_decision",
-    "recognition.readings_per_touch",
-    "recognition.test_fraction",
-];
 
 /// Returns the study with another value of a key, or with another signal; it may be the same study, or be refused.
 fn changed(study: &GeneratedStudy, generator: &mut Generator) -> GeneratedStudy {
@@ -170,7 +134,8 @@ fn changed(study: &GeneratedStudy, generator: &mut Generator) -> GeneratedStudy 
             }
         }
         _ => {
-            let key = CHANGED.choose(&mut generator.rng).copied().unwrap();
+            let keys = keys();
+            let key = keys.choose(&mut generator.rng).unwrap();
             let value = generator.values(key).swap_remove(0);
             match generator.rng.gen_bool(0.2) && study.get(key).is_some() {
                 true => study.without(key),
@@ -194,16 +159,16 @@ fn a_changed_study_is_refused_by_the_folder_or_gives_the_tables_of_a_fresh_run()
                 continue;
             }
             case.file("study.toml", other.text());
-            let fresh = case.run(&["run", "study.toml", "--fresh", "--out", "alone"]);
+            let fresh = case.run("run study.toml --fresh --out alone");
             if !fresh.status.success() {
                 continue;
             }
-            let output = case.run(&["run", "study.toml", "--out", "fresh"]);
+            let output = case.run("run study.toml --out fresh");
             if !output.status.success() {
                 assert_eq!(output.status.code(), Some(2), "{}", other.text());
                 continue;
             }
-            let (alone, extended) = (tables(&case.path("alone")), tables(&case.path("fresh")));
+            let (alone, extended) = (tables(&case, "alone"), tables(&case, "fresh"));
             assert!(
                 alone == extended,
                 "{}\nthen\n{}",

@@ -9,6 +9,7 @@ use bubbletouch::study::all_strengths;
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::sync::LazyLock;
 use toml::{Table, Value};
 
 /// Maximum number of attempts to draw a study that the program accepts; the limit ends a broken generator.
@@ -27,6 +28,29 @@ pub fn is_sample() -> bool {
 
 /// Number of studies per law in `cargo test`. With a larger value, the tests take longer than a few seconds.
 const SAMPLE: u64 = 3;
+
+/// Values of keys that no descriptor has.
+static VALUES: LazyLock<GeneratedStudy> = LazyLock::new(|| GeneratedStudy {
+    table: toml::from_str(include_str!("values.toml")).unwrap(),
+});
+
+/// Returns the keys that a generated study may have, without the strengths of sensor errors.
+pub fn keys() -> Vec<String> {
+    let mut keys: Vec<String> = [
+        "sensing.ensemble",
+        "recognition.features",
+        "recognition.classifier",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    for (name, value) in &VALUES.table {
+        match value {
+            Value::Table(table) => keys.extend(table.keys().map(|key| format!("{name}.{key}"))),
+            _ => keys.push(name.clone()),
+        }
+    }
+    keys
+}
 
 /// Generated study: the TOML text of each key's value, by key path.
 #[derive(Clone, Debug)]
@@ -86,17 +110,9 @@ impl GeneratedStudy {
 
     /// Returns the study with another classifier, without the keys of the previous classifier.
     pub fn classified_by(&self, classifier: impl Into<Value>) -> Self {
-        let keys = [
-            "c",
-            "gamma",
-            "c_grid",
-            "cv_folds",
-            "n_neighbours",
-            "n_trees",
-        ];
-        let plain = keys.iter().fold(self.clone(), |study, key| {
-            study.without(&format!("recognition.{key}"))
-        });
+        let keys = "c gamma c_grid cv_folds n_neighbours n_trees".split(' ');
+        let keys = keys.map(|key| format!("recognition.{key}"));
+        let plain = keys.fold(self.clone(), |study, key| study.without(&key));
         plain.with("recognition.classifier", classifier)
     }
 
@@ -151,54 +167,20 @@ impl Generator {
 
     /// Returns values of a key that a study may have, in random order; none for a key that this generator does not support.
     pub fn values(&mut self, key: &str) -> Vec<Value> {
-        let mut values: Vec<Value> = match key {
-            "seed" => vec![1.into(), 2.into(), 3.into()],
-            "skin.pitch_mm" => vec![3.0.into(), 4.0.into(), 5.0.into()],
-            "skin.taxels" => vec![6.into(), 7.into(), 8.into()],
-            "skin.stroke_mm" => vec![2.0.into(), 5.0.into()],
-            "skin.stiffness_n_per_m" => vec![50.0.into(), 100.0.into(), 300.0.into()],
-            "skin.layout" => words(&["grid", "hexagonal", "disc"]),
-            "touches.depth_mm" => vec![1.0.into(), 2.0.into(), 4.0.into()],
-            "touches.frames" => vec![1.into(), 2.into(), 3.into()],
-            "touches.per_object" => vec![12.into(), 16.into()],
-            "touches.speed_mm_per_s" => vec![5.0.into(), 20.0.into()],
-            "skin.damping_n_s_per_m" => vec![0.1.into(), 0.5.into()],
-            "skin.friction" => vec![0.1.into(), 0.3.into(), 0.6.into()],
-            "touches.slide_mm" => vec![2.0.into(), 4.0.into()],
-            "trials" => vec![2.into(), 4.into()],
-            "signal.noise_std_full_scale" => vec![0.02.into(), 0.1.into(), 0.3.into()],
-            "signal.smoothing_mm" => vec![3.0.into(), 6.0.into()],
-            "sensing.ensemble" => Ensemble::NAMES
-                .iter()
-                .map(|(name, _)| (*name).into())
-                .collect(),
-            "sensing.ratio" => vec![2.0.into(), 4.0.into(), 6.0.into()],
+        let names = |names: &[(&'static str, &str)]| -> Vec<&str> {
+            names.iter().map(|(name, _)| *name).collect()
+        };
+        let mut values = match key {
+            "sensing.ensemble" => words(&names(Ensemble::NAMES)),
             "recognition.features" => {
-                let images = ImageFeature::NAMES.iter().map(|(name, _)| *name);
                 let plain = ["raw", "centred", "unit_norm", "centred_unit_norm"];
-                words(&plain.into_iter().chain(images).collect::<Vec<_>>())
+                words(&[&plain[..], &names(ImageFeature::NAMES)].concat())
             }
-            "recognition.classifier" => {
-                let names = ClassifierKind::NAMES.iter();
-                names.map(|(name, _)| (*name).into()).collect()
-            }
-            "recognition.scaling" => words(&["none", "standard", "overall"]),
-            "recognition.c" => vec![0.01.into(), 1.0.into(), 100.0.into()],
-            "recognition.n_neighbours" => vec![1.into(), 3.into(), 5.into()],
-            "recognition.n_trees" => vec![3.into(), 7.into()],
-            "recognition.train_touches" => vec![4.into(), 6.into(), 8.into()],
-            "recognition.mislabelled_fraction" => vec![0.0.into(), 0.2.into(), 0.4.into()],
-            "recognition.class_imbalance" => vec![1.0.into(), 2.0.into()],
-            "recognition.touches_per_decision" => vec![1.into(), 2.into()],
-            "recognition.readings_per_touch" => vec![1.into(), 2.into(), 3.into()],
-            "recognition.test_fraction" => vec![0.25.into(), 0.5.into()],
-            "recognition.temporal_features" => {
-                words(&["deepest", "moments", "course", "summarised"])
-            }
-            "recognition.tilt_augmentation" => vec![1.into(), 2.into()],
-            "recognition.depth_window_full_scale" => vec![0.2.into(), 0.6.into()],
-            "recognition.gamma" => vec![0.01.into(), 0.1.into(), 1.0.into()],
-            key => strength_values(key.strip_prefix("signal.").unwrap_or_default()),
+            "recognition.classifier" => words(&names(ClassifierKind::NAMES)),
+            key => match VALUES.get(key).and_then(Value::as_array) {
+                Some(values) => values.clone(),
+                None => strength_values(key.strip_prefix("signal.").unwrap_or_default()),
+            },
         };
         values.shuffle(&mut self.rng);
         values

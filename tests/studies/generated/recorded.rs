@@ -125,9 +125,8 @@ fn recorded_touches_give_the_tables_of_the_simulated_ones() {
         let Some(simulated) = found(&study) else {
             continue;
         };
-        let case = Case::new();
-        case.file("study.toml", study.text());
-        case.succeeds(&["touches", "study.toml", "--out", "touches"]);
+        let case = Case::with("study.toml", study.text());
+        case.succeeds("touches study.toml --out touches");
         let recorded = of_folder(&study, &case.path("touches"));
         let told = |name: &str| format!("{name} of\n{}\n{}", study.text(), recorded.text());
         let again = found(&recorded).unwrap_or_else(|| {

@@ -2,37 +2,51 @@
 
 use crate::command::{Case, says};
 use crate::kinds::Kind;
+use crate::study::changed;
 
-fn json(case: &Case, arguments: &[&str]) -> serde_json::Value {
-    let (said, _) = case.succeeds(&[&["advise", "found", "--json"], arguments].concat());
+const STUDY: &str = include_str!("../../fixtures/texts/asked.toml");
+
+/// Runs the study with these keys of `[signal]` and these changes into the folder `found`.
+fn found(signal: &str, changes: &[(&str, &str)]) -> Case {
+    let study = changed(&STUDY.replace("SIGNAL", signal), changes);
+    let case = Case::with("study.toml", study);
+    case.succeeds("run study.toml --out found");
+    case
+}
+
+/// Returns the advice for options of the command, as JSON.
+fn advice(case: &Case, options: &str) -> serde_json::Value {
+    let (said, _) = case.succeeds(&format!("advise found --json {options}"));
     serde_json::from_str(&said).unwrap()
 }
 
-fn refused(case: &Case, arguments: &[&str]) -> String {
-    case.refuses(arguments)
+/// Asserts that the command refuses these options, each in its words.
+fn refuses_options(case: &Case, refusals: &[(&str, &str)]) {
+    for (options, wanted) in refusals {
+        let error = case.refuses(&format!("advise found {options}"));
+        says(&error, &[wanted]);
+    }
 }
 
 #[test]
 fn axes_of_a_study_are_choices_that_are_advised_and_settings_that_are_compared() {
-    let case = Case::new();
-    let study = "question = \"?\"\n[objects]\nsets = [\"cans\"]\n[skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n[touches]\n\
-         per_object = 16\noffset_x_mm = { uniform = [-9.0, 9.0] }\n[signal]\nnoise_std_full_scale = [0.0, 0.3]\n[sensing]\n\
-         ratio = 4\n[recognition]\nclassifier = \"linear_svm\"\n[axes]\n\"touches.depth_mm\" = [1.0, 3.0]\n";
-    case.file("study.toml", study);
-    case.succeeds(&["run", "study.toml", "--out", "found"]);
-    let advice = json(&case, &["--budget", "1e9", "--given", "noise=0.3"]);
+    let axes = "classifier = \"linear_svm\"\n[axes]\n\"touches.depth_mm\" = [1.0, 3.0]";
+    let changes = [
+        ("depth_mm = 3.0\n", ""),
+        ("ratio = [2, 8]", "ratio = 4"),
+        ("classifier = \"linear_svm\"", axes),
+    ];
+    let case = found("noise_std_full_scale = [0.0, 0.3]", &changes);
+    let advice = advice(&case, "--budget 1e9 --given noise=0.3");
     let answers = advice["answers"].as_array().unwrap();
     assert_eq!(answers.len(), 1, "{advice}");
     let setting = answers[0]["choice"]["setting"].as_str().unwrap();
     says(setting, &["depth"]);
-    let error = refused(
-        &case,
-        &["advise", "found", "--budget", "1", "--given", "depth_mm=1"],
-    );
-    says(&error, &["is a choice"]);
+    refuses_options(&case, &[("--budget 1 --given depth_mm=1", "is a choice")]);
+    let study = case.read("study.toml");
     case.file("deeper.toml", study.replace("[1.0, 3.0]", "[3.0, 4.0]"));
-    case.succeeds(&["run", "deeper.toml", "--out", "deeper"]);
-    let (said, _) = case.succeeds(&["compare", "found", "deeper"]);
+    case.succeeds("run deeper.toml --out deeper");
+    let (said, _) = case.succeeds("compare found deeper");
     let line = said.lines().find(|line| line.starts_with("accuracy.csv"));
     let counts: Vec<&str> = line.unwrap().split_whitespace().skip(1).collect();
     assert_eq!(counts, ["2", "2", "2"], "{said}");
@@ -41,159 +55,117 @@ fn axes_of_a_study_are_choices_that_are_advised_and_settings_that_are_compared()
 #[test]
 fn studies_of_two_kinds_have_nothing_to_compare() {
     let case = Case::new();
-    for (folder, kind) in [("a", Kind::STABILITY), ("b", Kind::TEST_TOUCHES)] {
-        case.file(&format!("{folder}.toml"), kind.study);
-        case.succeeds(&["run", &format!("{folder}.toml"), "--out", folder]);
+    for (folder, kind) in [("a", "stability"), ("b", "test_touches")] {
+        case.file("study.toml", Kind::named(kind).study);
+        case.succeeds(&["run", "study.toml", "--out", folder]);
     }
-    let error = refused(&case, &["compare", "a", "b"]);
+    let error = case.refuses("compare a b");
     says(&error, &["recognises objects; a folder of"]);
 }
 
 #[test]
 fn the_advisor_reads_a_study_that_recognises_objects() {
-    let case = Case::new();
-    case.file(
-        "study.toml",
-        "question = \"?\"\n[objects]\nsets = [\"cans\"]\n[skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n[touches]\n\
-         per_object = 16\noffset_x_mm = { uniform = [-9.0, 9.0] }\ndepth_mm = 3.0\n[sensing]\nratio = [2, 8]\n[recognition]\n\
-         classifier = \"linear_svm\"\n",
-    );
-    case.succeeds(&["run", "study.toml", "--out", "results"]);
-    let (said, _) = case.succeeds(&["advise", "results", "--budget", "1e9"]);
+    let case = found("", &[]);
+    let (said, _) = case.succeeds("advise found --budget 1e9");
     says(&said, &["No configuration is better"]);
     // Every requirement is a filter of the same front.
-    let all = |more: &[&str]| {
-        let (said, _) = case.succeeds(&[&["advise", "results", "--json"], more].concat());
-        let advice: serde_json::Value = serde_json::from_str(&said).unwrap();
-        advice["answers"][0]["choice"]["measurements"].as_f64()
-    };
-    assert_eq!(all(&["--max-measurements", "8"]), Some(8.0));
-    assert_eq!(
-        all(&["--max-measurements", "31", "--accuracy", "0.1"]),
-        Some(8.0)
-    );
-    let (m, taxels) = ("measurements", ["--max-taxels", "64"]);
-    assert_eq!(
-        all(&[
-            &taxels[..],
-            &[
-                "--max-answer-ms",
-                "1e6",
-                "--max-training-s",
-                "1e6",
-                "--reach",
-                "0.01",
-                "--cost",
-                m
-            ]
-        ]
-        .concat()),
-        Some(8.0)
-    );
-    for (arguments, wanted) in [
-        (
-            &["--max-measurements", "7"][..],
-            "measurements a decision 7; the smallest here is measurements a decision 8",
-        ),
-        (
-            &["--accuracy", "0.1", "--budget", "7", "--cost", m],
-            "the smallest here is measurements a decision 8",
-        ),
-        (&["--max-taxels", "-1"], "a positive number"),
-        (&["--accuracy", "1.5"], "at most 1"),
-        (&[], "--accuracy"),
-        (
-            &["--accuracy", "0.5", "--reach", "0.5"],
-            "cannot be used with",
-        ),
+    for options in [
+        "--max-measurements 8",
+        "--max-measurements 31 --accuracy 0.1",
+        "--max-taxels 64 --max-answer-ms 1e6 --max-training-s 1e6 --reach 0.01 --cost measurements",
     ] {
-        let error = case.refuses(&[&["advise", "results"], arguments].concat());
-        assert!(error.contains(wanted), "{arguments:?}: {error}");
+        let choice = &advice(&case, options)["answers"][0]["choice"];
+        assert_eq!(choice["measurements"].as_f64(), Some(8.0), "{options}");
     }
+    let smallest = "the smallest here is measurements a decision 8";
+    let few = format!("measurements a decision 7; {smallest}");
+    refuses_options(
+        &case,
+        &[
+            ("--max-measurements 7", &few),
+            ("--accuracy 0.1 --budget 7 --cost measurements", smallest),
+            ("--max-taxels -1", "a positive number"),
+            ("--accuracy 1.5", "at most 1"),
+            ("", "--accuracy"),
+            ("--accuracy 0.5 --reach 0.5", "cannot be used with"),
+        ],
+    );
 }
 
 #[test]
 fn conditions_of_the_world_are_given_and_never_advised() {
-    let case = Case::new();
-    case.file(
-        "study.toml",
-        "question = \"?\"\n[objects]\nsets = [\"cans\"]\n[skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n[touches]\n\
-         per_object = 16\noffset_x_mm = { uniform = [-9.0, 9.0] }\ndepth_mm = 3.0\n[signal]\nnoise_std_full_scale = [0.0, 0.05, 0.2]\n\
-         smoothing_mm = [0.0, 8.0]\nsteps = [\"noise\", \"smoothing\"]\n[sensing]\nratio = [2, 8]\n[recognition]\n\
-         classifier = \"linear_svm\"\n",
-    );
-    case.succeeds(&["run", "study.toml", "--out", "r"]);
-    let advise = |more: &[&str]| {
-        let (said, _) = case.succeeds(&[&["advise", "r", "--accuracy", "0.1"], more].concat());
+    let signal = "noise_std_full_scale = [0.0, 0.05, 0.2]\nsmoothing_mm = [0.0, 8.0]\nsteps = [\"noise\", \"smoothing\"]";
+    let case = found(signal, &[]);
+    let advise = |more: &str| {
+        let (said, _) = case.succeeds(&format!("advise found --accuracy 0.1 {more}"));
         said
     };
-    let said = advise(&[]);
+    let said = advise("");
     for noise in ["0 %", "5 %", "20 %"] {
         let head = format!("With noise {noise}:\n");
         assert_eq!(said.matches(&head).count(), 1, "{said}");
     }
     // Noise occurs only here: it is neither part of a setting nor a next choice.
     assert_eq!(said.matches("noise").count(), 3, "{said}");
-    assert!(said.contains("smoothing") && said.contains("compression"));
+    says(&said, &["smoothing", "compression"]);
     for key in ["noise=0.05", "noise_std=0.05"] {
-        let given = advise(&["--given", key]);
+        let given = advise(&format!("--given {key}"));
         assert!(given.starts_with("With noise 5 %:\n"), "{given}");
         assert_eq!(given.matches("With noise").count(), 1, "{given}");
-        assert!(
-            said.contains(given.trim_end()),
-            "as among all conditions: {given}"
-        );
+        // The answer is the same among all conditions.
+        says(&said, &[given.trim_end()]);
     }
-    let worst = advise(&["--worst"]);
+    let worst = advise("--worst");
     assert!(
         worst.starts_with("With the worst of 3 conditions:\n"),
         "{worst}"
     );
     // The fewest measurements, and the fewest taxels; all belong to one array.
-    let few = advise(&["--cost", "measurements", "--given", "noise=0"]);
+    let few = advise("--cost measurements --given noise=0");
     says(&few, &["measurements a decision 8", "m = 8"]);
-    let taxels = advise(&["--cost", "taxels", "--given", "noise=0", "--json"]);
-    let taxels: serde_json::Value = serde_json::from_str(&taxels).unwrap();
+    let taxels = advice(&case, "--accuracy 0.1 --cost taxels --given noise=0");
     assert_eq!(taxels["answers"][0]["choice"]["taxels"], 64.0);
-    for (given, said) in [
-        ("smoothing_mm=0", "is a choice"),
-        ("noise=0.07", "one of 0, 0.05, 0.2"),
-        (
-            "gain_std=0.1",
-            "is no condition of this study; one of noise_std",
-        ),
-        ("noise", "a condition and its value"),
-    ] {
-        let error = case.refuses(&["advise", "r", "--accuracy", "0.1", "--given", given]);
-        assert!(error.contains(said), "{given}: {error}");
-    }
+    let given = |given: &str| format!("--accuracy 0.1 --given {given}");
+    refuses_options(
+        &case,
+        &[
+            (&given("smoothing_mm=0"), "is a choice"),
+            (&given("noise=0.07"), "one of 0, 0.05, 0.2"),
+            (
+                &given("gain_std=0.1"),
+                "is no condition of this study; one of noise_std",
+            ),
+            (&given("noise"), "a condition and its value"),
+        ],
+    );
 }
 
 #[test]
 fn training_touches_that_follow_the_split_are_no_choice() {
-    let case = Case::new();
-    let study = "question = \"?\"\ntrials = 2\n[objects]\nsets = [\"cans\"]\n[skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n\
-         [touches]\noffset_x_mm = { grid = [-6.0, 6.0, 4] }\nyaw_deg = { grid = [0.0, 45.0, 4] }\ndepth_mm = 3.0\n\
-         [recognition]\nclassifier = [\"linear_svm\", \"nearest_centroid\"]\n";
-    let axes = "[axes]\n\"recognition.split\" = [\"random\", \"half_of_yaws\"]\n";
-    case.file("study.toml", format!("{study}{axes}"));
-    case.succeeds(&["run", "study.toml", "--out", "found"]);
-    let advice = json(&case, &["--max-measurements", "64", "--worst"]);
+    let offsets = "offset_x_mm = { grid = [-6.0, 6.0, 4] }\nyaw_deg = { grid = [0.0, 45.0, 4] }";
+    let changes = [
+        ("question = \"?\"", "question = \"?\"\ntrials = 2"),
+        (
+            "per_object = 16\noffset_x_mm = { uniform = [-9.0, 9.0] }",
+            offsets,
+        ),
+        ("[sensing]\nratio = [2, 8]\n", ""),
+        (
+            "classifier = \"linear_svm\"",
+            "classifier = [\"linear_svm\", \"nearest_centroid\"]\n[axes]\n\"recognition.split\" = [\"random\", \"half_of_yaws\"]",
+        ),
+    ];
+    let case = found("", &changes);
+    let advice = advice(&case, "--max-measurements 64 --worst");
     let answer = &advice["answers"][0];
     assert_eq!(answer["n_left_out"], 0, "{advice}");
     let setting = answer["choice"]["setting"].as_str().unwrap();
-    assert!(
-        setting.starts_with("classifier ") && !setting.contains("training"),
-        "{setting}"
-    );
+    assert!(setting.starts_with("classifier "), "{setting}");
+    assert!(!setting.contains("training"), "{setting}");
     // A value together with a limit of its cost.
-    for arguments in [["--reach", "0.01"], ["--accuracy", "0.01"]] {
-        let arguments = [&["advise", "found", "--budget", "1e-6"][..], &arguments].concat();
-        let error = refused(&case, &arguments);
-        says(
-            &error,
-            &["in none of 2 conditions; with poses held out random: "],
-        );
-        says(&error, &["limit of time of a decision"]);
+    for value in ["--reach 0.01", "--accuracy 0.01"] {
+        let error = case.refuses(&format!("advise found --budget 1e-6 {value}"));
+        let none = "in none of 2 conditions; with poses held out random: ";
+        says(&error, &[none, "limit of time of a decision"]);
     }
 }

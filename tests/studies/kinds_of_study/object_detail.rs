@@ -7,7 +7,6 @@ use bubbletouch::kinds::object_detail::rows::{
     DetailConfiguration, DetailRecognition, DetailScore, DetailSummary, DetailTime,
 };
 use bubbletouch::mesh::TriangleMesh;
-use bubbletouch::report::csv_tables::read_rows;
 use bubbletouch::study::{Plan, StudySpec};
 use glam::DVec3;
 use std::fmt::Write;
@@ -36,41 +35,32 @@ fn ply(mesh: &TriangleMesh) -> String {
 
 /// Creates a ball and a box, and a study of them.
 fn case(study: &str) -> Case {
-    let case = Case::new();
-    fs::create_dir(case.path("meshes")).unwrap();
+    let case = Case::with("study.toml", study);
     case.file("meshes/ball.ply", ply(&icosphere(0.03, 2)));
     let half = DVec3::new(0.02, 0.015, 0.01);
     case.file("meshes/box.ply", ply(&cuboid(half)));
-    case.file("study.toml", study);
     case
 }
 
 #[test]
 fn a_study_of_packed_meshes_packs_once() {
     let case = case(RECOGNITION);
-    case.succeeds(&["run", "study.toml", "--out", "1"]);
-    let packings = || {
-        let files = fs::read_dir(case.path("packings")).unwrap();
-        let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
-        files.sort();
-        files
-    };
-    let kept = packings();
+    case.succeeds("run study.toml --out 1");
+    let kept = case.names_in("packings");
     assert_eq!(kept.len(), 2, "a packing each");
     // A packing that is computed again would be written again.
-    let written = || {
-        packings()
-            .iter()
-            .map(|p| p.metadata().unwrap().modified().unwrap())
-            .max()
+    let written = |name: &String| {
+        let path = case.path("packings").join(name);
+        path.metadata().unwrap().modified().unwrap()
     };
-    let before = written();
-    case.succeeds(&["run", "study.toml", "--out", "2"]);
-    assert!(packings() == kept && written() == before);
+    let before: Vec<_> = kept.iter().map(written).collect();
+    case.succeeds("run study.toml --out 2");
+    assert_eq!(case.names_in("packings"), kept);
+    assert_eq!(kept.iter().map(written).collect::<Vec<_>>(), before);
     // Without the cache, the packings are the same.
-    fs::create_dir(case.path("elsewhere")).unwrap();
-    case.succeeds(&["run", "study.toml", "--out", "elsewhere/3"]);
-    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
+    case.create_folder("elsewhere");
+    case.succeeds("run study.toml --out elsewhere/3");
+    let read = |folder: &str, name: &str| case.bytes(&format!("{folder}/{name}"));
     for name in ["accuracy.csv", "summary.csv", "confusion.csv", "study.toml"] {
         assert!(!read("1", name).is_empty());
         assert!(read("1", name) == read("2", name), "{name}");
@@ -80,18 +70,15 @@ fn a_study_of_packed_meshes_packs_once() {
         );
     }
     let press = "press --mesh meshes/box.ply --model packed --surface-error-mm 2 --out a.csv";
-    case.succeeds(&press.split(' ').collect::<Vec<_>>());
+    case.succeeds(press);
 }
 
 #[test]
 fn packed_meshes_are_as_fine_as_a_tenth_of_the_finest_pitch_unless_a_study_says() {
     let settled = |text: &str| {
         let spec = StudySpec::parse("study.toml", text).unwrap();
-        Plan::new("study.toml", spec)
-            .unwrap()
-            .spec
-            .objects
-            .surface_error_mm
+        let plan = Plan::new("study.toml", spec).unwrap();
+        plan.spec.objects.surface_error_mm
     };
     assert_eq!(settled(RECOGNITION), Some(2.0));
     let left_out = RECOGNITION.replace("surface_error_mm = 2.0\n", "");
@@ -105,15 +92,14 @@ fn packed_meshes_are_as_fine_as_a_tenth_of_the_finest_pitch_unless_a_study_says(
 #[test]
 fn a_kept_packing_that_is_broken_is_named_and_made_again() {
     let case = case(RECOGNITION);
-    case.succeeds(&["run", "study.toml", "--out", "1"]);
-    let kept = fs::read_dir(case.path("packings")).unwrap().next();
-    let kept = kept.unwrap().unwrap().path();
-    let whole = fs::read(&kept).unwrap();
-    fs::write(&kept, "x,y,z,r\n0,0,zero,1\n").unwrap();
-    let (_, said) = case.succeeds(&["run", "study.toml", "--out", "2"]);
-    let name = kept.file_name().unwrap().to_str().unwrap();
-    assert!(said.contains(name), "{said}");
-    assert!(whole == fs::read(&kept).unwrap());
+    case.succeeds("run study.toml --out 1");
+    let name = case.names_in("packings").swap_remove(0);
+    let kept = format!("packings/{name}");
+    let whole = case.bytes(&kept);
+    case.file(&kept, "x,y,z,r\n0,0,zero,1\n");
+    let (_, said) = case.succeeds("run study.toml --out 2");
+    says(&said, &[name]);
+    assert!(whole == case.bytes(&kept));
     let table = |folder: &str| fs::read(case.path(folder).join("accuracy.csv")).unwrap();
     assert!(table("1") == table("2"));
 }
@@ -126,7 +112,7 @@ fn a_mesh_that_cannot_be_packed_is_named_with_what_it_lacks() {
         let triangles = closed.triangles()[1..].to_vec();
         let open = TriangleMesh::new("open", closed.vertices().to_vec(), triangles).unwrap();
         case.file("meshes/open.ply", ply(&open));
-        let said = case.refuses(&["run", "study.toml", "--out", "1", "--fail-fast"]);
+        let said = case.refuses("run study.toml --out 1 --fail-fast");
         says(&said, &["open.ply: a hole ", "a closed mesh"]);
     }
 }
@@ -134,21 +120,16 @@ fn a_mesh_that_cannot_be_packed_is_named_with_what_it_lacks() {
 #[test]
 fn detail_tables_obey_their_laws() {
     let case = case(DETAIL);
-    let (said, _) = case.succeeds(&["run", "study.toml", "--out", "1"]);
+    let (said, _) = case.succeeds("run study.toml --out 1");
     says(&said, &["most exact model of spheres is packing"]);
-    let configurations: Vec<DetailConfiguration> =
-        read_rows(&case.path("1/object_detail.csv")).unwrap();
-    let scores: Vec<DetailScore> = read_rows(&case.path("1/object_detail.csv")).unwrap();
+    let configurations: Vec<DetailConfiguration> = case.rows("1/object_detail.csv");
+    let scores: Vec<DetailScore> = case.rows("1/object_detail.csv");
     assert_eq!(configurations.len(), 2 * (1 + 1 + 3 + 3 + 3));
     for (configuration, score) in configurations.iter().zip(&scores) {
-        assert!(
-            score.n_touches == 8 && score.n_missed == 0 && score.n_taxels > 100,
-            "{score:?}"
-        );
-        assert!(
-            score.error_after_offset_mm <= score.error_mm,
-            "{configuration:?} {score:?}"
-        );
+        let about = format!("{configuration:?} {score:?}");
+        assert_eq!((score.n_touches, score.n_missed), (8, 0), "{about}");
+        assert!(score.n_taxels > 100, "{about}");
+        assert!(score.error_after_offset_mm <= score.error_mm, "{about}");
         match (configuration.method, configuration.tolerance_mm) {
             (DetailMethod::Mesh, _) => {
                 assert_eq!((score.error_mm, score.error_p95_mm), (0.0, 0.0), "itself");
@@ -157,42 +138,34 @@ fn detail_tables_obey_their_laws() {
             }
             (DetailMethod::Packing, Some(tolerance)) => {
                 let farthest = score.protrusion_max_mm.max(score.gap_max_mm);
-                assert!(farthest <= tolerance, "{configuration:?} {score:?}");
+                assert!(farthest <= tolerance, "{about}");
             }
             _ => assert!(score.surface_error_mm > 0.0),
         }
     }
-    let summary: Vec<DetailSummary> = read_rows(&case.path("1/object_detail_summary.csv")).unwrap();
-    let packed: Vec<&DetailSummary> = summary
-        .iter()
-        .filter(|row| row.method == DetailMethod::Packing)
-        .collect();
+    let summary: Vec<DetailSummary> = case.rows("1/object_detail_summary.csv");
+    let packed = summary.iter();
+    let packed = packed.filter(|row| row.method == DetailMethod::Packing);
+    let packed: Vec<&DetailSummary> = packed.collect();
     assert_eq!(packed.len(), 3);
     for pair in packed.windows(2) {
         assert!(pair[1].tolerance_mm < pair[0].tolerance_mm);
-        assert!(
-            pair[1].error_median_mm <= pair[0].error_median_mm,
-            "finer is no worse"
-        );
+        // A finer packing is no worse.
+        assert!(pair[1].error_median_mm <= pair[0].error_median_mm);
         assert_eq!(pair[1].times_packing, Some(1.0));
     }
-    let times: Vec<DetailTime> = read_rows(&case.path("1/timing.csv")).unwrap();
-    assert!(
-        times.len() == configurations.len() && times.iter().all(|time| time.us_per_touch > 0.0)
-    );
+    let times: Vec<DetailTime> = case.rows("1/timing.csv");
+    assert_eq!(times.len(), configurations.len());
+    assert!(times.iter().all(|time| time.us_per_touch > 0.0));
     for chart in ["surface_error_by_spheres", "deflection_error_by_spheres"] {
-        let svg = fs::read_to_string(case.path(&format!("1/{chart}.svg"))).unwrap();
+        let svg = case.read(&format!("1/{chart}.svg"));
         assert!(svg.contains("spheres an object") && svg.contains("(mm)"));
     }
     // Classifiers that were trained on models are tested on the meshes.
     says(&said, &["by its own test"]);
-    let path = case.path("1/object_detail_recognition.csv");
-    let rows: Vec<DetailRecognition> = read_rows(&path).unwrap();
-    assert_eq!(
-        rows.len(),
-        (1 + 1 + 3 + 3 + 3) * 2,
-        "levels and classifiers"
-    );
+    let rows: Vec<DetailRecognition> = case.rows("1/object_detail_recognition.csv");
+    // Levels and classifiers.
+    assert_eq!(rows.len(), (1 + 1 + 3 + 3 + 3) * 2);
     for row in &rows {
         assert_eq!((row.n_objects, row.n_training, row.n_test), (2, 24, 16));
         assert!(row.accuracy_on_mesh_low <= row.accuracy_on_mesh);
@@ -203,8 +176,8 @@ fn detail_tables_obey_their_laws() {
             assert_eq!(row.accuracy_on_mesh, row.accuracy_on_itself);
         }
     }
-    let svg = fs::read_to_string(case.path("1/recognition_by_deflection_error.svg")).unwrap();
+    let svg = case.read("1/recognition_by_deflection_error.svg");
     assert!(svg.contains("median deflection error past own contact (mm)"));
     fs::remove_file(case.path("meshes/box.ply")).unwrap();
-    case.refuses(&["run", "study.toml", "--out", "2"]);
+    case.refuses("run study.toml --out 2");
 }

@@ -1,36 +1,32 @@
 //! Small and fast whole-body studies.
 
 use crate::command::{Case, says};
+use crate::study::changed;
 use bubbletouch::kinds::whole_body::rows::{
     BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStage, BodyTouch, Series, StepPart,
     StepTime,
 };
-use bubbletouch::report::csv_tables::read_rows;
-use std::fs;
 
 const ROBOT: &str = include_str!("../../fixtures/texts/whole_body_robot.urdf");
 
 const STUDY: &str = include_str!("../../fixtures/texts/whole_body.toml");
 
 fn case(study: &str) -> Case {
-    let case = Case::new();
-    fs::create_dir(case.path("robots")).unwrap();
+    let case = Case::with("study.toml", study);
     case.file("robots/post.urdf", ROBOT);
-    case.file("study.toml", study);
     case
 }
 
 #[test]
 fn tables_obey_their_laws() {
     let case = case(STUDY);
-    let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
+    let (said, _) = case.succeeds("run study.toml --threads 1 --out 1");
     says(
         &said,
         &["From touch to answer on 18118 taxels", "bytes a taxel"],
     );
-    let read = |name: &str| fs::read_to_string(case.path("1").join(name)).unwrap();
-    let cases: Vec<BodyCase> = read_rows(&case.path("1/whole_body.csv")).unwrap();
-    let counts: Vec<BodyCount> = read_rows(&case.path("1/whole_body.csv")).unwrap();
+    let cases: Vec<BodyCase> = case.rows("1/whole_body.csv");
+    let counts: Vec<BodyCount> = case.rows("1/whole_body.csv");
     // 900 of 2,000 taxels are too many for a cushion.
     assert_eq!(cases.len(), 3 + 3 + 2 + 2);
     for (case, count) in cases.iter().zip(&counts) {
@@ -53,79 +49,61 @@ fn tables_obey_their_laws() {
         }
         assert!(count.patches_touched_mean <= count.patches_visited_mean);
     }
-    let sensed: Vec<BodySensed> = read_rows(&case.path("1/sensed.csv")).unwrap();
+    let sensed: Vec<BodySensed> = case.rows("1/sensed.csv");
     assert_eq!(sensed.len(), 3 * 3, "scenes and compressions");
     for row in &sensed {
-        assert_eq!(
-            row.measurement_sum_mm == 0.0,
-            row.scene == "nothing",
-            "{row:?}"
-        );
+        let is_untouched = row.measurement_sum_mm == 0.0;
+        assert_eq!(is_untouched, row.scene == "nothing", "{row:?}");
     }
-    let learned: Vec<BodyRecognition> = read_rows(&case.path("1/recognition.csv")).unwrap();
+    let learned: Vec<BodyRecognition> = case.rows("1/recognition.csv");
     assert_eq!(learned.len(), 3);
     for row in &learned {
         assert_eq!((row.n_objects, row.n_training, row.n_test), (2, 40, 20));
-        assert!(
-            row.accuracy >= 0.9,
-            "a ball and a box feel different: {row:?}"
-        );
+        // A ball and a box feel different.
+        assert!(row.accuracy >= 0.9, "{row:?}");
     }
-    assert!(
-        learned[0].read_fraction < learned[1].read_fraction,
-        "larger blocks read more"
-    );
-    let timed: Vec<BodyCase> = read_rows(&case.path("1/timing.csv")).unwrap();
-    let stages: Vec<BodyStage> = read_rows(&case.path("1/timing.csv")).unwrap();
-    let times: Vec<StepTime> = read_rows(&case.path("1/timing.csv")).unwrap();
+    // Larger blocks read more.
+    assert!(learned[0].read_fraction < learned[1].read_fraction);
+    let timed: Vec<BodyCase> = case.rows("1/timing.csv");
+    let stages: Vec<BodyStage> = case.rows("1/timing.csv");
+    let times: Vec<StepTime> = case.rows("1/timing.csv");
     assert_eq!(times.len(), 3 * (1 + 3 * 3) + 7);
     for ((case, of), time) in timed.iter().zip(&stages).zip(&times) {
         assert!(time.us_p05 <= time.us_median && time.us_median <= time.us_p95);
-        assert_eq!(
-            of.compression.is_empty(),
-            of.stage == StepPart::Press,
-            "{case:?}"
-        );
+        let is_press = of.stage == StepPart::Press;
+        assert_eq!(of.compression.is_empty(), is_press, "{case:?}");
     }
-    let steps: Vec<BodyTouch> = read_rows(&case.path("1/steps.csv")).unwrap();
-    let times: Vec<StepTime> = read_rows(&case.path("1/steps.csv")).unwrap();
+    let steps: Vec<BodyTouch> = case.rows("1/steps.csv");
+    let times: Vec<StepTime> = case.rows("1/steps.csv");
     assert_eq!(steps.len(), cases.len(), "one with all threads of each");
     for ((step, time), count) in steps.iter().zip(&times).zip(&counts) {
         assert_eq!(step.touched_mean, count.touched_mean);
         assert!((step.touched - step.touched_mean).abs() <= 0.05 * step.touched_mean);
         assert!((time.steps_per_s * time.us_median / 1e6 - 1.0).abs() < 1e-12);
     }
-    for chart in [
-        "time_by_taxels",
-        "time_by_touched",
-        "time_by_spheres",
-        "time_by_stage",
-    ] {
-        let svg = read(&format!("{chart}.svg"));
-        assert!(svg.contains("time of a step") && svg.contains("a millisecond"));
+    for by in ["taxels", "touched", "spheres", "stage"] {
+        let svg = case.read(&format!("1/time_by_{by}.svg"));
+        says(&svg, &["time of a step", "a millisecond"]);
     }
-    let page = read("report.html");
-    assert!(page.contains("What does a post of skin cost?") && page.contains("timing.csv"));
+    let page = case.read("1/report.html");
+    says(&page, &["What does a post of skin cost?", "timing.csv"]);
     assert!(!page.contains("{{") && !page.contains("(no value"));
 }
 
 #[test]
 fn scaling_points_are_named_and_grouped_by_what_was_measured() {
-    let changed = STUDY
-        .replace("taxels = [2000, 20000]", "taxels = [20000, 5000, 2000]")
-        .replace(
-            "touched_at_taxels = [200, 900]",
-            "touched_at_taxels = [200, 6000]",
-        )
-        .replace("touched = [100, 400]", "touched = [100, 30000]")
-        .replace("steps = 20", "steps = 5");
-    let case = case(&changed);
-    let (said, _) = case.succeeds(&["plan", "study.toml"]);
+    let changes = [
+        ("taxels = [2000, 20000]", "taxels = [20000, 5000, 2000]"),
+        ("at_taxels = [200, 900]", "at_taxels = [200, 6000]"),
+        ("touched = [100, 400]", "touched = [100, 30000]"),
+        ("steps = 20", "steps = 5"),
+    ];
+    let case = case(&changed(STUDY, &changes));
+    let (said, _) = case.succeeds("plan study.toml");
     says(&said, &["on a body of about 18118 taxels"]);
-    case.succeeds(&["run", "study.toml", "--out", "1"]);
-    let path = case.path("1/steps.csv");
-    let cases: Vec<BodyCase> = read_rows(&path).unwrap();
-    let steps: Vec<BodyTouch> = read_rows(&path).unwrap();
+    case.succeeds("run study.toml --out 1");
+    let cases: Vec<BodyCase> = case.rows("1/steps.csv");
+    let steps: Vec<BodyTouch> = case.rows("1/steps.csv");
     let number = |text: &str| -> f64 { text.split(' ').next().unwrap().parse().unwrap() };
     let mut groups = Vec::new();
     for (case, step) in cases.iter().zip(&steps) {
@@ -153,15 +131,10 @@ fn scaling_points_are_named_and_grouped_by_what_was_measured() {
 fn a_study_of_a_body_takes_no_objects_and_misses_none() {
     let case = case(STUDY);
     for command in ["plan", "run"] {
-        let output = case.run(&[command, "study.toml", "--objects", "robots"]);
-        assert_eq!(output.status.code(), Some(2), "{command}");
+        case.refuses(&[command, "study.toml", "--objects", "robots"]);
     }
     let away = STUDY.replace("[30.0, 0.0, -100.0]", "[900.0, 900.0, 0.0]");
     case.file("away.toml", away);
-    let output = case.run(&["run", "away.toml", "--out", "1", "--fail-fast"]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        output.status.code() == Some(2) && said.contains("scene ball, approach: no contact"),
-        "{said}"
-    );
+    let error = case.refuses("run away.toml --out 1 --fail-fast");
+    says(&error, &["scene ball, approach: no contact"]);
 }

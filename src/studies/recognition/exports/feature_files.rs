@@ -21,15 +21,11 @@ use crate::note::note;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::Frames;
 use crate::studies::recognition::measurements::{MeasuredTrial, Measurements, measure_group};
-use crate::studies::recognition::plan::MeasurementGroup;
-use crate::studies::recognition::rows::Configuration;
 use crate::studies::recognition::spec::RecognitionSpec;
 use crate::studies::recognition::sweep::{StudyPart, Sweep, TrainingRows};
 use crate::studies::recognition::training::{FamilyInputs, learned_rows};
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
-use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Array2, Axis};
-use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -93,11 +89,12 @@ impl StudyPart {
         let family = FamilyInputs::new(plan, sweep, std::slice::from_ref(configuration));
         let (split, labels) = inputs.training(&family.training_rows)?;
         // As in a run, nested measurements are the first m of the largest set.
+        let of_group = group.inputs(plan);
         let n_projected = match group.ensemble.is_prefix_nested() {
-            true => group.projected()[0],
+            true => of_group.projected[0],
             false => configuration.measurements,
         };
-        let fitted = group.inputs(plan).fitted_rows(plan, group, configuration);
+        let fitted = of_group.fitted_rows(plan, group, configuration);
         let of = (group, fitted, n_projected);
         let measured = self.measured(of, trial, ("touch", progress))?;
         let (trained, trained_labels) =

@@ -18,19 +18,16 @@
 
 use crate::files::{CsvFile, write_bytes};
 use crate::inputs::npy::{NpyFile, write_integers};
-use crate::objects::Object;
 use crate::studies::prelude::*;
 use crate::studies::recognition::exports::find;
 use crate::studies::recognition::frames::{ArrayPress, ArrayWorkspace, HumanTouches, TouchSet};
-use crate::studies::recognition::plan::{MeasurementGroup, Sensed, as_written};
+use crate::studies::recognition::plan::{Sensed, as_written};
 use crate::studies::recognition::spec::{HumanTouchSpec, PreviousTouch};
 use crate::studies::recognition::sweep::{StudyPart, TrainingRows};
 use crate::studies::recognition::touches::touch_stream;
-use crate::world::ImageShape;
 use crate::world::{ArrayLayout, RestPose, TouchSource};
 use ndarray::Array2;
 use rayon::prelude::*;
-use serde::Serialize;
 use std::path::Path;
 
 /// Number of frames that are simulated and kept in memory before they are written to a file.

@@ -1,14 +1,13 @@
 //! Human touches of a study, which are drawn once and recorded with each array; their pictures are film strips.
 
 use crate::contact::{Workspace, press_with_contacts};
-use crate::objects::{Hand, Model};
+use crate::objects::Hand;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     Frames, SAMPLED_TOUCHES, Samples, TouchSet, TouchToRead, named_samples, touches_to_read,
 };
-use crate::studies::recognition::plan::MeasurementGroup;
 use crate::studies::recognition::spec::HumanTouchSpec;
 use crate::world::{HumanTouch, Patch, TouchRanges};
 use bubbletouch_sim::frame_coding::round_to_single;

@@ -3,13 +3,11 @@
 use crate::contact::{
     Approach, Contact, FrictionState, Workspace, press_to_depth, saturation_limit,
 };
-use crate::geometry::Pose;
-use crate::objects::Model;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     Frames, Samples, TouchSet, TouchToRead, sample_frames, touches_to_read,
 };
-use crate::studies::recognition::plan::{KeepTogether, MeasurementGroup, Sensed};
+use crate::studies::recognition::plan::{KeepTogether, Sensed};
 use crate::world::Shears;
 use bubbletouch_sim::frame_coding::round_to_single;
 use glam::{DVec2, DVec3};

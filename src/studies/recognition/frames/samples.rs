@@ -3,13 +3,12 @@
 use crate::engine::axes::CombineSpec;
 use crate::inputs::sensor_errors::strength_columns;
 use crate::report::pictures::snapshots::Snapshots;
-use crate::sensing::Projection;
 use crate::signal::{Chain, SensorError, SignalStep, Strength};
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     ReadSkin, Reading, Samples, TouchSet, measure, simulate_array, touches_to_read,
 };
-use crate::studies::recognition::plan::{MeasurementGroup, skin};
+use crate::studies::recognition::plan::skin;
 use ndarray::{Array2, ArrayView1};
 
 /// Default number of objects that a sample picture shows.

@@ -4,7 +4,7 @@ use crate::learning::data::split::Side;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{Frames, TouchToRead};
-use crate::studies::recognition::plan::{KeepTogether, MeasurementGroup};
+use crate::studies::recognition::plan::KeepTogether;
 use crate::studies::recognition::touches::touch_labels;
 use bubbletouch_sim::frame_coding::most_bytes;
 use ndarray::Array1;

@@ -1,6 +1,6 @@
 //! Image features: features of frame images that are estimated from measurements, also of tilted copies of training touches.
 
-use crate::sensing::{ImageEstimate, ImagePrior, Projection, Readings};
+use crate::sensing::{ImageEstimate, ImagePrior, Readings};
 use crate::studies::prelude::*;
 use crate::studies::recognition::measurements::CopyInputs;
 use crate::studies::recognition::plan::SensorImage;
@@ -97,8 +97,8 @@ impl Images {
                 .unzip();
             let parts = rows.into_iter().map(|r| r.split_at(Axis(0), n_touches));
             let (rows, of_copies): (Vec<_>, Vec<_>) = parts.unzip();
-            let blocks = blocks(rows, n_touches, 1).into_par_iter();
-            blocks.for_each_init(
+            let blocks_of_touches = blocks(rows, n_touches, 1).into_par_iter();
+            blocks_of_touches.for_each_init(
                 FeatureWorkspace::default,
                 |workspace, (touches, mut rows)| {
                     let frames = touches.start * n_frames..touches.end * n_frames;
@@ -109,28 +109,29 @@ impl Images {
                     }
                 },
             );
-            let Some(copies) = copies else {
+            let Some(TiltedCopies {
+                touches,
+                n_copies,
+                slopes,
+                ..
+            }) = copies
+            else {
                 continue;
             };
-            let (touches, n_copies) = (&copies.touches, copies.n_copies);
-            let blocks = self::blocks(of_copies, touches.len(), n_copies).into_par_iter();
-            blocks.for_each_init(
+            let blocks_of_copies = blocks(of_copies, touches.len(), *n_copies).into_par_iter();
+            blocks_of_copies.for_each_init(
                 FeatureWorkspace::default,
                 |workspace, (places, mut rows)| {
-                    let (first, places_len) = (places.start * n_copies, places.len());
+                    let slopes = &slopes[places.start * n_copies..places.end * n_copies];
                     let frames = touches[places].iter();
                     let frames = frames.flat_map(|touch| touch * n_frames..(touch + 1) * n_frames);
                     let measured = values.select(Axis(0), &frames.collect::<Vec<usize>>());
                     let images = self.images(estimate, measured.slice(s![.., ..*m]));
-                    for place in 0..places_len {
-                        let images = of_touch(&images, place, n_frames);
-                        for copy in 0..n_copies {
-                            let row = place * n_copies + copy;
-                            let slope = copies.slopes[first + row];
-                            let tilted = self.tilted(&images, slope, estimate);
-                            let tilted: Vec<_> = tilted.iter().map(Array2::view).collect();
-                            write(&features, &tilted, workspace, (&mut rows, row));
-                        }
+                    for (row, &slope) in slopes.iter().enumerate() {
+                        let images = of_touch(&images, row / n_copies, n_frames);
+                        let tilted = self.tilted(&images, slope, estimate);
+                        let tilted: Vec<_> = tilted.iter().map(Array2::view).collect();
+                        write(&features, &tilted, workspace, (&mut rows, row));
                     }
                 },
             );

@@ -1,6 +1,6 @@
 //! Measurement of frames after the signal chain, for one signal condition, ensemble and trial.
 
-use crate::sensing::{Projection, Readings, TrainingFrames};
+use crate::sensing::{Readings, TrainingFrames};
 use crate::signal::SignalWorkspace;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
@@ -13,6 +13,7 @@ use crate::studies::recognition::plan::{projection_of, skin};
 use crate::studies::recognition::rows::{FeaturesOfImages, RowInputs};
 use crate::studies::recognition::sweep::learned_touches;
 use ndarray::{Array1, Array2, ArrayViewMut2, Axis, s};
+use std::iter::repeat_n;
 
 /// Measurements of all touches of a group of configurations. If touches are read several times, the first readings of all touches come first, followed by the
 /// second readings. Reading r of a touch has the number r · n_touches + touch.
@@ -105,9 +106,7 @@ impl Measurements {
             let mut made = self.of_images.iter();
             let made = made.find(|(known, _)| *known == wanted);
             let (_, made) = made.expect("features of all configurations of the group");
-            for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
-                row.assign(&made.row(*touch));
-            }
+            rows.assign(&made.select(Axis(0), touches));
             return Ok(());
         }
         if let Some(foreign) = inputs.features.foreign() {
@@ -118,14 +117,8 @@ impl Measurements {
             let measured = self.values.slice(s![.., ..m]);
             let frames = measured.select(Axis(0), &places.collect::<Vec<_>>());
             let made = foreign.compute(frames.view())?;
-            for (mut row, frames) in rows
-                .outer_iter_mut()
-                .zip(made.axis_chunks_iter(Axis(0), self.n_frames))
-            {
-                row.iter_mut()
-                    .zip(frames)
-                    .for_each(|(to, value)| *to = *value);
-            }
+            let made = made.to_shape(rows.raw_dim());
+            rows.assign(&made.expect("one row of features for each frame"));
             return Ok(());
         }
         for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
@@ -256,17 +249,17 @@ fn sensed_by(
     };
     let touch_labels = touch_labels.unwrap_or_default();
     // The number of whole touches that give enough frames; the split alternates between objects.
-    let n_touches = learned_touches(whole.skins[0].frames.facts.n_frames);
+    let n_frames = whole.skins[0].frames.facts.n_frames;
+    let n_touches = learned_touches(n_frames);
     let train = &train[..n_touches.min(train.len())];
     let learned: Vec<TouchToRead> = train.iter().map(|&touch| touches[touch]).collect();
     let (training, _) = measure(whole, &learned)?;
     // The frames of a touch have its class and its group.
     let of_frames = |of_touch: &dyn Fn(usize) -> usize| -> Vec<usize> {
-        let n_frames = whole.skins[0].frames.facts.n_frames;
-        let touches = train.iter().map(|&touch| of_touch(touch));
-        touches
-            .flat_map(|value| std::iter::repeat_n(value, n_frames))
-            .collect()
+        let values = train
+            .iter()
+            .map(|&touch| repeat_n(of_touch(touch), n_frames));
+        values.flatten().collect()
     };
     let frames = TrainingFrames {
         frames: training.view(),

@@ -4,14 +4,12 @@
 //! bytes share their measurements.
 
 use crate::inputs::content_hash::Hashed;
-use crate::signal::{Noise, NoiseUnit, SignalStep};
+use crate::signal::{Noise, SignalStep};
 use crate::studies::prelude::*;
-use crate::studies::recognition::plan::{Condition, MeasurementGroup};
-use crate::studies::recognition::rows::{Configuration, FeaturesOfImages};
+use crate::studies::recognition::plan::Condition;
+use crate::studies::recognition::rows::FeaturesOfImages;
 use crate::studies::recognition::sweep::{Sweep, TrainingRows};
-use bubbletouch_svm::split::Split;
 use ndarray::Array1;
-use serde::Serialize;
 use std::collections::BTreeSet;
 
 /// All inputs that determine the measurements of a group of configurations.
@@ -211,21 +209,23 @@ impl MeasurementGroup {
         signal_inputs(plan, self.condition)
     }
 
-    /// Returns a copy of the group that contains only the given configurations.
-    pub fn with_cells(&self, configurations: &[Configuration]) -> Self {
-        Self {
-            array: self.array,
-            frames: self.frames,
-            condition: self.condition,
-            test_sensor: self.test_sensor,
-            ensemble: self.ensemble,
-            selection: self.selection,
-            configurations: configurations.to_vec(),
-        }
-    }
-
     /// Returns all inputs that determine the measurements of this group.
     pub fn inputs<'a>(&self, plan: &'a Plan) -> MeasurementInputs<'a> {
+        self.inputs_of(plan, &self.configurations)
+    }
+
+    /// Returns all inputs that determine the measurements that some configurations of this group alone need.
+    pub fn inputs_of<'a>(
+        &self,
+        plan: &'a Plan,
+        configurations: &[Configuration],
+    ) -> MeasurementInputs<'a> {
+        let mut of_images: Vec<FeaturesOfImages> = Vec::new();
+        for one in configurations.iter().filter_map(Configuration::of_images) {
+            if !of_images.contains(&one) {
+                of_images.push(one);
+            }
+        }
         let test = plan.tested.as_deref().map(|tested| {
             let condition = plan.tested_condition(self.condition);
             TestInputs {
@@ -244,27 +244,22 @@ impl MeasurementGroup {
             test,
             ensemble: self.ensemble,
             selection: self.selection,
-            projected: self.projected(),
+            projected: self.projected(configurations),
             n_readings: self.n_readings(plan),
-            of_images: self.features_of_images(),
-            copies: self.copies(plan),
+            of_images,
+            copies: CopyInputs::new(plan, configurations),
         }
     }
+}
 
-    /// Returns the inputs of the tilted copies, whose number is the largest that any configuration of the group uses.
-    fn copies(&self, plan: &Plan) -> Option<CopyInputs> {
+impl CopyInputs {
+    /// Returns the inputs of the tilted copies, whose number is the largest that any of the configurations uses; `None` without copies.
+    fn new(plan: &Plan, configurations: &[Configuration]) -> Option<Self> {
         let recognition = &plan.spec.recognition;
-        let copied = self.configurations.iter();
-        let copied =
-            copied.filter(|configuration| configuration.tilt_augmentation.is_some_and(|n| n > 0));
-        let n_touches = copied
-            .clone()
-            .map(|configuration| configuration.train_touches)
-            .max();
-        Some(CopyInputs {
-            n_copies: copied
-                .filter_map(|configuration| configuration.tilt_augmentation)
-                .max()?,
+        let copied = configurations.iter().filter(|one| one.n_copies() > 0);
+        let n_touches = copied.clone().map(|one| one.train_touches).max();
+        Some(Self {
+            n_copies: copied.map(Configuration::n_copies).max()?,
             n_touches: n_touches.filter(|_| recognition.train_touches.is_some()),
             tilt: recognition.copies_tilt(),
         })

@@ -11,7 +11,6 @@ use crate::studies::recognition::spec::{
     RecognitionSpec, SensingSpec, key,
 };
 use crate::world::RestPoses;
-use bubbletouch_sim::features::Features;
 
 impl Check<'_> {
     /// Checks that `[sensing]` contains either a compression ratio or a number of measurements. The number may not exceed the number of taxels of any array.
@@ -26,20 +25,15 @@ impl Check<'_> {
             let allowed = format!("at most {smallest}, the numbers of the smallest frame");
             return Err(self.error(key, given, allowed));
         }
-        if let Some(rate) = sensing.readings_per_s {
-            self.number("sensing.readings_per_s", rate)?;
-        }
         let mut ensembles = sensing.ensemble.values().into_iter();
         let of_rows = ensembles.find(|ensemble| ensemble.about().needs_rows);
         let no_rows = arrays.iter().find(|array| array.equal_images().is_none());
         if let (Some(ensemble), Some(array)) = (of_rows, no_rows) {
             let given = format!("{} of {}", ensemble.about().words, array.layout_words());
-            let allowed = match array.image_shapes().len() {
-                1 => "ensembles that need no rows and columns",
-                _ => {
-                    "ensembles that need no rows and columns, or sensors of equal rows and columns"
-                }
-            };
+            let mut allowed = "ensembles that need no rows and columns".to_owned();
+            if array.image_shapes().len() > 1 {
+                allowed += ", or sensors of equal rows and columns";
+            }
             return Err(self.error("sensing.ensemble", given, allowed));
         }
         if let Some(ensemble) = of_rows {
@@ -47,13 +41,9 @@ impl Check<'_> {
                 let (n_images, _) = array.measured_images(ensemble);
                 let counts = sensing.measurements_on(array.n_values());
                 if let Some(m) = counts.into_iter().find(|&m| m < n_images) {
-                    let key = match sensing.ratio {
-                        Some(_) => "sensing.ratio",
-                        None => "sensing.measurements",
-                    };
                     let given = format!("{m} measurements of {n_images} images");
                     let allowed = format!("at least {n_images}, one for each kind of value");
-                    return Err(self.error(key, given, allowed));
+                    return Err(self.error(sensing.count_key(), given, allowed));
                 }
             }
         }
@@ -276,6 +266,14 @@ impl Check<'_> {
 }
 
 impl SensingSpec {
+    /// Returns the key that gives the numbers of measurements.
+    pub fn count_key(&self) -> &'static str {
+        match self.measurements {
+            Some(_) => "sensing.measurements",
+            None => "sensing.ratio",
+        }
+    }
+
     /// Returns the methods of selection for an ensemble; the single value `None` if the ensemble selects no taxels.
     pub fn selections(&self, ensemble: Ensemble) -> Vec<Option<Selection>> {
         match (ensemble, &self.selection) {
@@ -307,33 +305,6 @@ impl RecognitionSpec {
     /// Returns the fraction of the touches that is held out for testing if the study has no folds; the default is 0.25.
     pub fn test_share(&self) -> f64 {
         self.test_fraction.unwrap_or(DEFAULT_TEST_FRACTION)
-    }
-
-    /// Returns the depth windows that image features use, as fractions of the full scale. For features of measurements, which have no window, returns a single
-    /// `None`.
-    pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
-        match features.of_image() {
-            Some(_) => Axis::optional_values(&self.depth_window_full_scale),
-            None => vec![self.depth_window_full_scale.as_ref().map(|_| 1.0)],
-        }
-    }
-
-    /// Returns the numbers of tilted copies per training touch, for image features. For features of measurements, which have no copies, returns a single
-    /// `None`.
-    pub fn copies(&self, features: Features) -> Vec<Option<usize>> {
-        match features.of_image() {
-            Some(_) => Axis::optional_values(&self.tilt_augmentation),
-            None => vec![self.tilt_augmentation.as_ref().map(|_| 0)],
-        }
-    }
-
-    /// Returns the rules that choose all touches after the first, for decisions on `k` touches. For k = 1, all policies are equal, and a single one is
-    /// returned.
-    pub fn next_touches(&self, k: usize) -> Vec<Option<NextTouch>> {
-        match (k, &self.next_touch) {
-            (1, Some(_)) => vec![Some(NextTouch::Random)],
-            _ => Axis::optional_values(&self.next_touch),
-        }
     }
 
     /// Returns the rules for the next touch that do not choose it at random.

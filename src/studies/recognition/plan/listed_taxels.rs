@@ -3,15 +3,13 @@
 //! Sensors that are read together are separate skins. In the patch, they are so far apart that no taxel is a neighbour of a taxel of another sensor. In
 //! pictures, they are side by side.
 
-use crate::geometry::Pose;
 use crate::inputs::content_hash::Hashed;
 use crate::inputs::units::MAX_SIDE;
 use crate::studies::prelude::*;
-use crate::world::ImageShape;
 use crate::world::{Grid, Layout, Neighbours, Patch, nearest_distances};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
-use serde::{Serialize, Serializer};
+use serde::Serializer;
 use std::ops::Range;
 
 /// Largest relative difference between the pitch of a sensor and the distance of taxels in a grid. With a larger value, the results of the grid would differ

@@ -1,6 +1,5 @@
 //! Plan of a recognition study: checked keys, converted to SI units.
 
-pub mod group;
 pub(crate) mod human;
 pub(crate) mod learning;
 pub mod listed_taxels;
@@ -15,5 +14,5 @@ pub mod tested;
 pub(crate) mod unused_keys;
 
 pub use self::{
-    group::*, listed_taxels::*, pose_groups::*, sensed::*, signal::*, study_plan::*, taxel_array::*,
+    listed_taxels::*, pose_groups::*, sensed::*, signal::*, study_plan::*, taxel_array::*,
 };

@@ -3,7 +3,6 @@
 use crate::studies::prelude::*;
 use crate::world::Shear;
 use glam::DVec2;
-use serde::Serialize;
 
 /// Quantity that a taxel reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

@@ -2,10 +2,9 @@
 
 use crate::engine::axes::CombineSpec;
 use crate::inputs::sensor_errors::{NOISES, Strengths};
-use crate::signal::{NoiseUnit, SensorError, Strength};
+use crate::signal::{SensorError, Strength};
 use crate::studies::prelude::*;
 use crate::studies::recognition::spec::{SignalAxis, SignalSpec};
-use serde::Serialize;
 
 /// Signal condition: one strength of noise, smoothing and each sensor error, that is, one value for each axis of `[signal]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

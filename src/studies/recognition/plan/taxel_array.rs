@@ -5,12 +5,11 @@ use crate::studies::prelude::*;
 use crate::studies::recognition::plan::{
     ListedTaxels, PlacedSensor, Sensed, SensorImage, of_channel,
 };
-use crate::world::ImageShape;
-use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
+use crate::world::{ArrayLayout, Grid, Patch, Taxels};
 use bubbletouch_sim::features::Chart;
 use glam::{DVec2, DVec3};
 use ndarray::Array2;
-use serde::{Serialize, Serializer};
+use serde::Serializer;
 use std::sync::Arc;
 
 /// Number of picture cells per taxel pitch, for layouts other than the grid. With a smaller value, the offset of staggered rows is not visible.

@@ -15,7 +15,6 @@ use crate::inputs::toml_value::table_of;
 use crate::studies::prelude::*;
 use crate::studies::recognition::plan::Condition;
 use crate::studies::recognition::spec::SignalAxis;
-use crate::world::ImageShape;
 use std::sync::Arc;
 use toml::{Table, Value};
 

@@ -157,43 +157,30 @@ impl Check<'_> {
     /// one in either. A key of `[test]` must have an effect in test touches.
     pub(crate) fn unused_keys(&self, plan: &Plan) -> Result<()> {
         self.sticking_shear(plan)?;
-        let (own, axes) = (table_of(&plan.spec), &plan.spec.axes);
-        let tested = plan.tested.as_deref();
-        let tested = tested.map(|tested| (tested, table_of(&tested.spec)));
-        let each = USES
-            .iter()
-            .flat_map(|key_use| key_use.keys.iter().map(move |key| (key_use, *key)));
-        for (key_use, key) in each {
-            let own_value = key_use.unused(key, (plan, &own), (axes, ""));
-            let Some((tested, of_test)) = &tested else {
-                self.refuse_unused((key_use, key), "", own_value)?;
-                continue;
-            };
-            let of_test = key_use.unused(key, (tested, of_test), (axes, "test."));
-            match value_at(&plan.spec.test, key) {
-                Some(_) => {
-                    self.refuse_unused((key_use, key), "", own_value)?;
-                    self.refuse_unused((key_use, key), "test.", of_test)?;
-                }
-                None => self.refuse_unused((key_use, key), "", own_value.and(of_test))?,
+        let axes = &plan.spec.axes;
+        let of_test = plan.tested.as_deref().map(|tested| ("test.", tested));
+        let plans = [("", plan)].into_iter().chain(of_test);
+        let plans: Vec<_> = plans
+            .map(|(prefix, plan)| (prefix, plan, table_of(&plan.spec)))
+            .collect();
+        let each = USES.iter();
+        for (key_use, key) in each.flat_map(|one| one.keys.iter().map(move |key| (one, key))) {
+            let unused = plans.iter().map(|(prefix, plan, table)| {
+                let value = key_use.unused(key, (plan, table), (axes, prefix))?;
+                Some((format!("{prefix}{key}"), value))
+            });
+            let mut unused: Vec<Option<(String, String)>> = unused.collect();
+            if value_at(&plan.spec.test, key).is_none() {
+                // Training touches and test touches share the value.
+                let acts_in_one = unused.contains(&None);
+                unused.retain(|_| !acts_in_one);
+            }
+            if let Some((path, value)) = unused.into_iter().flatten().next() {
+                let given = format!("{value}, but {}", key_use.reason);
+                return Err(self.error(&path, given, key_use.allowed));
             }
         }
         Ok(())
-    }
-
-    /// Returns an error if `unused` is the value of a key without effect; `table` is `test.` for a key of `[test]`.
-    fn refuse_unused(
-        &self,
-        (key_use, key): (&KeyUse, &str),
-        table: &str,
-        unused: Option<String>,
-    ) -> Result<()> {
-        let place = format!("{table}{key}");
-        let refused = |given| {
-            let given = format!("{given}, but {}", key_use.reason);
-            self.error(&place, given, key_use.allowed)
-        };
-        unused.map(refused).map_or(Ok(()), Err)
     }
 
     /// Checks that the springs, the dampers and the speed have an effect in a study of another kind than recognition. `of_force` states which keys make the

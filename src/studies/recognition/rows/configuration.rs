@@ -1,27 +1,31 @@
 //! Configuration of a recognition study: one value for every axis. The parameters of a configuration are the first columns of a row of results.
+//!
+//! [`RowInputs`] are those parameters that determine the features of its touches; [`by_condition`] groups configurations by their external settings.
 
 use crate::doc_of;
-use crate::engine::axes::AxisValues;
-use crate::inputs::sensor_errors::{Strengths, TestSensor, strength_columns};
-use crate::learning::classifiers::ClassifierKind;
+use crate::inputs::sensor_errors::{Strengths, strength_columns};
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
-use crate::sensing::{Ensemble, Selection};
-use crate::signal::NoiseUnit;
-use crate::studies::recognition::rows::{FeaturesOfImages, RowInputs};
-use crate::studies::recognition::spec::key;
+use crate::studies::prelude::*;
+use crate::studies::recognition::spec::{key, with_version};
 use crate::table::{Column, Columns, Role, Scale};
-use crate::world::ImageShape;
-use bubbletouch_sim::features::Features;
+use bubbletouch_sim::features::{Features, Join};
+use serde::Serializer;
 use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
-use std::borrow::Cow;
 
-/// Declares a configuration: each parameter has a type, a condition for the existence of its column, and the key or column that describes it. The struct, the
-/// columns and the file format are generated from this list, in its order.
+/// Declares a configuration: each parameter has a type, the form of its column, and the key or the words that describe it. The struct, its columns and its
+/// format in files are generated from this list, in its order.
+///
+/// | form | columns |
+/// |---|---|
+/// | `always` | one in the tables of every study |
+/// | `if_given` | one if the study sets the key |
+/// | `each` | one for each of the strengths that the study sets |
+/// | `each_axis` | one for each axis of `[axes]`, which the study describes |
+/// | `hidden` | none, because the parameter is derived from others |
 macro_rules! configuration {
     ($(#[$of_cell:meta])* pub struct $configuration:ident {
-        $($(#[$($of_field:tt)*])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(of $key:literal)?;)*
+        $($(#[$($of_field:tt)*])* $field:ident: $type:ty => $form:ident $(($($words:tt)*))? $(of $key:literal)?;)*
     }) => {
         $(#[$of_cell])*
         #[derive(Clone, Debug, PartialEq)]
@@ -30,10 +34,10 @@ macro_rules! configuration {
         }
 
         impl Serialize for $configuration {
-            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
                 let n_fields = [$(stringify!($field)),*].len() + self.variant.values.len();
                 let mut row = serializer.serialize_struct("Configuration", n_fields)?;
-                $($how::write(&self.$field, stringify!($field), &mut row)?;)*
+                $(configuration!(@write $form, row, stringify!($field), &self.$field);)*
                 row.end()
             }
         }
@@ -43,17 +47,39 @@ macro_rules! configuration {
             fn columns() -> Vec<Column> {
                 let mut columns = Vec::new();
                 $(
-                    #[allow(unused_mut, unused_assignments)]
-                    let mut column: Option<Column> = None;
-                    $(column = Some(Column::new(stringify!($field), Role::$role, $words, $unit, Scale::$scale));)?
-                    $(column = Some(key($key).column(stringify!($field)));)?
-                    let column = column.map(|column| column.meaning(doc_of!($(#[$($of_field)*])*)));
-                    $how::columns(column, &mut columns);
+                    let of_field = configuration!(@columns $form, stringify!($field) $(, ($($words)*))? $(, $key)?);
+                    let meaning = doc_of!($(#[$($of_field)*])*);
+                    columns.extend(of_field.into_iter().map(|column: Column| match column.meaning.is_empty() {
+                        true => column.meaning(meaning),
+                        false => column,
+                    }));
                 )*
                 columns
             }
         }
     };
+    (@write always, $row:ident, $name:expr, $value:expr) => {
+        $row.serialize_field($name, $value)?
+    };
+    (@write if_given, $row:ident, $name:expr, $value:expr) => {
+        if let Some(value) = $value {
+            $row.serialize_field($name, value)?;
+        }
+    };
+    (@write hidden, $row:ident, $name:expr, $value:expr) => {};
+    (@write $each:ident, $row:ident, $name:expr, $value:expr) => {
+        for (name, value) in $value.cells() {
+            $row.serialize_field(name, &value)?;
+        }
+    };
+    (@columns always, $name:expr, $how:tt) => { [configuration!(@column $name, $how)] };
+    (@columns if_given, $name:expr, $how:tt) => { [configuration!(@column $name, $how).optional()] };
+    (@columns each, $name:expr) => { strength_columns().to_vec() };
+    (@columns $none:ident, $name:expr) => { None };
+    (@column $name:expr, ($role:ident, $words:literal, $unit:literal, $scale:ident)) => {
+        Column::new($name, Role::$role, $words, $unit, Scale::$scale)
+    };
+    (@column $name:expr, $key:literal) => { key($key).column($name) };
 }
 
 configuration! {
@@ -81,7 +107,7 @@ pub struct Configuration {
     /// Standard deviation of the Gaussian filter that smooths the readings over the array, mm; 0 without smoothing.
     smoothing_mm: f64 => always of "signal.smoothing_mm";
     /// Strength of each sensor error, such as the gain error. The study has one column for each strength that it sets.
-    strengths: Strengths => each_strength;
+    strengths: Strengths => each;
     /// Skin on which the test touches are simulated: the training skin or another one. The column is present only if the study has the key.
     test_sensor: Option<TestSensor> => if_given of "signal.test_sensor";
     /// Ensemble from which the measurement matrix is drawn, such as `gaussian`.
@@ -139,12 +165,17 @@ impl Configuration {
             temporal_features: self.temporal_features,
             features: self.features,
             depth_window_full_scale: self.depth_window_full_scale.filter(|_| is_of_images),
-            n_copies: self.tilt_augmentation.unwrap_or(0),
+            n_copies: self.n_copies(),
         }
     }
 
+    /// Returns the number of tilted copies of each training touch.
+    pub fn n_copies(&self) -> usize {
+        self.tilt_augmentation.unwrap_or(0)
+    }
+
     /// Returns an error if the running program does not provide the features of the configuration.
-    pub(crate) fn check_features(&self) -> crate::error::Result<()> {
+    pub(crate) fn check_features(&self) -> Result<()> {
         match self.features.foreign() {
             Some(foreign) => foreign.n_values(self.measurements).map(drop),
             None => Ok(()),
@@ -162,95 +193,111 @@ impl Configuration {
     }
 }
 
-/// Parameters of a configuration with a column in the tables of every study.
-mod always {
-    use super::*;
-
-    pub fn columns(column: Option<Column>, columns: &mut Vec<Column>) {
-        columns.extend(column);
-    }
-
-    pub fn write<R: SerializeStruct>(
-        value: &impl Serialize,
-        name: &'static str,
-        row: &mut R,
-    ) -> Result<(), R::Error> {
-        row.serialize_field(name, value)
-    }
+/// Inputs that determine how features are computed from the measurements of a touch.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RowInputs {
+    /// Numbers of rows and columns of the images that represent frames, one for each sensor.
+    pub image_shapes: Vec<ImageShape>,
+    /// Number of values of a measured frame: m measurements, or one value per taxel if the ensemble gives frames.
+    pub measurements: usize,
+    /// Number F of frames per touch.
+    pub frames: usize,
+    /// Method that combines the frames of a touch into features; `None` if the frames are concatenated.
+    pub temporal_features: Option<TemporalFeatures>,
+    /// Features that are computed from the measurements of a frame.
+    #[serde(serialize_with = "with_version")]
+    pub features: Features,
+    /// Depth window of image features, as a fraction of the full scale; `None` for no window. Image features use only deflections that are within the window
+    /// below the largest deflection of a frame.
+    pub depth_window_full_scale: Option<f64>,
+    /// Number of tilted copies that are added for each training touch.
+    pub n_copies: usize,
 }
 
-/// Parameters of a configuration that have a column only if the study sets their key.
-mod if_given {
-    use super::*;
-
-    pub fn columns(column: Option<Column>, columns: &mut Vec<Column>) {
-        columns.extend(column.map(Column::optional));
+impl RowInputs {
+    /// Returns the description of the image features; `None` if the features are computed from measurements.
+    pub fn of_images(&self) -> Option<FeaturesOfImages> {
+        Some(FeaturesOfImages {
+            join: self.features.of_image()?,
+            foremost: self.depth_window_full_scale,
+            measurements: self.measurements,
+        })
     }
 
-    pub fn write<R: SerializeStruct>(
-        value: &Option<impl Serialize>,
-        name: &'static str,
-        row: &mut R,
-    ) -> Result<(), R::Error> {
-        match value {
-            Some(value) => row.serialize_field(name, value),
-            None => Ok(()),
+    /// Returns the number of features per frame.
+    pub fn n_frame_features(&self) -> usize {
+        match self.features.of_image() {
+            Some(join) => join_values(join, &self.image_shapes),
+            None => self
+                .features
+                .n_values(self.measurements, ImageShape::row(1)),
         }
     }
-}
 
-/// Parameters of a configuration that are derived from others and have no column.
-mod hidden {
-    use super::*;
-
-    pub fn columns(_: Option<Column>, _: &mut Vec<Column>) {}
-
-    pub fn write<T, R: SerializeStruct>(_: &T, _: &str, _: &mut R) -> Result<(), R::Error> {
-        Ok(())
+    /// Returns the number of features per touch.
+    pub fn n_features(&self) -> usize {
+        let (n_frames, m) = (self.frames, self.n_frame_features());
+        self.temporal_features
+            .map_or(n_frames * m, |kind| kind.n_features(n_frames, m))
     }
 }
 
-/// Strengths of sensor errors, with one column for each strength that the study sets.
-mod each_strength {
-    use super::*;
-
-    pub fn columns(_: Option<Column>, columns: &mut Vec<Column>) {
-        columns.extend_from_slice(strength_columns());
-    }
-
-    pub fn write<R: SerializeStruct>(
-        strengths: &Strengths,
-        _: &str,
-        row: &mut R,
-    ) -> Result<(), R::Error> {
-        for (_, strength, value) in strengths.given() {
-            match strength.is_whole {
-                true => row.serialize_field(strength.key, &(value as u64))?,
-                false => row.serialize_field(strength.key, &value)?,
-            }
-        }
-        Ok(())
-    }
+/// Image features that the configurations of a group need.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FeaturesOfImages {
+    /// Kinds of image features whose values are concatenated into one feature vector.
+    pub join: Join,
+    /// Depth window of the features, as a fraction of the full scale; `None` for the whole image. The features use only deflections that are within the window
+    /// below the largest deflection of a frame.
+    pub foremost: Option<f64>,
+    /// Number of measurements from which the images of frames are estimated.
+    pub measurements: usize,
 }
 
-/// Values of the further axes in the table `[axes]`: one column per axis.
-mod each_axis {
-    use super::*;
+/// Returns the number of values of a combination of image features for a frame. The frame has one image for each sensor, given as numbers of rows and
+/// columns.
+pub fn join_values(join: Join, shapes: &[ImageShape]) -> usize {
+    shapes.iter().map(|&shape| join.n_values(shape)).sum()
+}
 
-    pub fn columns(_: Option<Column>, _: &mut Vec<Column>) {}
+/// Returns a table with the settings of the given configurations, without scores.
+///
+/// # Errors
+/// If a configuration cannot be written as a row of a table.
+pub fn settings_of(configurations: &[&Configuration]) -> Result<Table> {
+    let axes = configurations
+        .first()
+        .map(|configuration| configuration.variant.values.iter());
+    let axes = axes.into_iter().flatten();
+    let axes = axes.map(|axis| axis.column.clone().optional());
+    let columns = Configuration::columns().into_iter().chain(axes).collect();
+    File::<Configuration>::new("configurations.csv", "Configurations", "")
+        .of_columns(columns, configurations)
+}
 
-    pub fn write<R: SerializeStruct>(
-        axes: &AxisValues,
-        _: &str,
-        row: &mut R,
-    ) -> Result<(), R::Error> {
-        for axis in axes.values.iter() {
-            if let Cow::Borrowed(name) = axis.column.name {
-                row.serialize_field(name, &axis.value)?;
-            }
-        }
-        Ok(())
-    }
+/// Returns the indices of the configurations under each condition, which is a combination of external settings such as noise. The conditions are in the order
+/// of first occurrence.
+///
+/// # Errors
+/// If [`settings_of`] fails.
+pub fn by_condition<'a>(
+    configurations: impl IntoIterator<Item = &'a Configuration>,
+) -> Result<Vec<Vec<usize>>> {
+    let configurations = settings_of(&configurations.into_iter().collect::<Vec<_>>())?;
+    Ok(configurations.groups(
+        &configurations.of_role(Role::Condition),
+        0..configurations.n_rows,
+    ))
+}
+
+/// Returns the index of the highest accuracy; if several are equal, the first index. Returns `None` if there are no accuracies.
+pub fn most_accurate(accuracies: impl IntoIterator<Item = (usize, f64)>) -> Option<usize> {
+    let better = |best: (usize, f64), other: (usize, f64)| match other.1 > best.1 {
+        true => other,
+        false => best,
+    };
+    let best = accuracies.into_iter().reduce(better);
+    best.map(|(place, _)| place)
 }
 
 #[cfg(test)]
@@ -291,5 +338,19 @@ pub(crate) mod tests {
             next_touch: None,
             variant: AxisValues::default(),
         }
+    }
+
+    #[test]
+    fn cells_that_differ_in_choices_alone_share_a_condition() {
+        let mut configurations = vec![configuration(); 6];
+        configurations[1].measurements = 16;
+        configurations[2].noise_std = 0.0;
+        configurations[3].smoothing_mm = 4.0;
+        for configuration in &mut configurations {
+            configuration.test_sensor = Some(TestSensor::SameSkin);
+        }
+        configurations[4].test_sensor = Some(TestSensor::AnotherSkin);
+        let alike = by_condition(&configurations).unwrap();
+        assert_eq!(alike, [vec![0, 1, 3, 5], vec![2], vec![4]]);
     }
 }

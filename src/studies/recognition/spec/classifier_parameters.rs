@@ -1,10 +1,11 @@
 //! Keys of `[recognition]` that are declared by classifiers, such as `n_trees`.
 
 use crate::inputs::keys::{AxisPlace, KeyAbout};
-use crate::inputs::params::{Described, sentence};
+use crate::inputs::params::{Described, key_schema, sentence};
 use crate::inputs::range::Range;
+use crate::inputs::toml_value::{number, number_value};
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::classifiers::parameters::{DefaultValue, declared};
+use crate::learning::classifiers::parameters::{DefaultValue, Parameter, declared};
 use crate::table::Role;
 use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -14,13 +15,13 @@ use std::sync::LazyLock;
 
 /// Values of [declared] classifier parameters, by key: those given in the study, and defaults that are always written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ClassifierParameters(BTreeMap<&'static str, f64>);
+pub struct ClassifierParameters(BTreeMap<&'static str, toml::Value>);
 
 impl Default for ClassifierParameters {
     fn default() -> Self {
         let written = declared().filter(|parameter| parameter.is_always_written);
-        let numbers = written.filter_map(|one| Some((one.key, one.default_number()?)));
-        Self(numbers.collect())
+        let values = written.filter_map(|one| Some((one.key, about(one).usual_value()?)));
+        Self(values.collect())
     }
 }
 
@@ -33,30 +34,25 @@ impl ClassifierParameters {
         let kind = classifier.kind;
         let used = self.0.iter().filter(|(key, _)| kind.uses(key));
         used.fold(classifier, |classifier, (key, value)| {
-            let changed = classifier.with(key, *value);
+            let changed = number(value).map(|value| classifier.with(key, value));
+            let changed = changed.expect("every parameter is a number");
             changed.expect("the ranges of all keys of a study are checked")
         })
     }
 }
 
-/// Writes the parameters as keys of a table, in the order of their declaration; integers have no decimal point.
+/// Writes the parameters as keys of a table, in the order of their declaration.
 impl Serialize for ClassifierParameters {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        #[serde(untagged)]
-        enum Number {
-            Integer(u64),
-            Real(f64),
-        }
-        let given = declared().filter_map(|one| Some((one, *self.0.get(one.key)?)));
-        serializer.collect_map(given.map(|(parameter, value)| {
-            let number = match parameter.is_integer {
-                true => Number::Integer(value as u64),
-                false => Number::Real(value),
-            };
-            (parameter.key, number)
-        }))
+        serializer.collect_map(declared().filter_map(|one| self.0.get_key_value(one.key)))
     }
+}
+
+/// Returns the description of the key of a declared parameter.
+fn about(parameter: &'static Parameter) -> KeyAbout {
+    let path = format!("recognition.{}", parameter.key).leak();
+    let range = Range::Declared(parameter);
+    KeyAbout::new(path, AxisPlace::Axes, Role::Choice, range)
 }
 
 /// The table around the parameters reads their keys.
@@ -69,26 +65,20 @@ impl<'de> Deserialize<'de> for ClassifierParameters {
 impl Described for ClassifierParameters {
     fn schema() -> Value {
         let keys = declared().map(|parameter| {
-            let number = |value: f64| match parameter.is_integer {
-                true => json!(value as u64),
-                false => json!(value),
+            let number = match parameter.is_integer {
+                true => usize::schema(),
+                false => f64::schema(),
             };
-            let words = sentence(parameter.words);
-            let mut key = json!({
-                "type": if parameter.is_integer { "integer" } else { "number" },
-            });
             let default = match parameter.default {
-                DefaultValue::Number(default) => {
-                    key["default"] = number(default);
-                    default.to_string()
-                }
+                DefaultValue::Number(default) => default.to_string(),
                 DefaultValue::Rule(rule, meaning) => format!("'{rule}', {meaning}"),
             };
-            key["description"] = format!("{words}. Default: {default}.").into();
-            let bounds = Range::Declared(parameter).keywords();
-            key.as_object_mut()
-                .into_iter()
-                .for_each(|key| key.extend(bounds.clone()));
+            let words = format!("{}. Default: {default}.", sentence(parameter.words));
+            let about = about(parameter);
+            let mut key = key_schema(number, Some(about.range), &[&words]);
+            if let Some(default) = about.usual_value() {
+                key["default"] = json!(default);
+            }
             (parameter.key.to_owned(), key)
         });
         json!({ "properties": Map::from_iter(keys) })
@@ -99,15 +89,7 @@ impl Described for ClassifierParameters {
     }
 
     fn describe_keys(_: &str, keys: &mut Vec<KeyAbout>) {
-        keys.extend(declared().map(|parameter| {
-            let path = format!("recognition.{}", parameter.key).leak();
-            KeyAbout::new(
-                path,
-                AxisPlace::Axes,
-                Role::Choice,
-                Range::Declared(parameter),
-            )
-        }));
+        keys.extend(declared().map(about));
     }
 
     fn inner_names() -> &'static [&'static str] {
@@ -123,8 +105,8 @@ impl Described for ClassifierParameters {
     ) -> Result<(), M::Error> {
         let is_integer = declared().any(|one| one.key == name && one.is_integer);
         let value = match is_integer {
-            true => map.next_value::<usize>()? as f64,
-            false => map.next_value()?,
+            true => number_value(map.next_value::<usize>()? as f64, true),
+            false => number_value(map.next_value()?, false),
         };
         slot.get_or_insert_default().0.insert(name, value);
         Ok(())

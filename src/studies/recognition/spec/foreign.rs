@@ -11,7 +11,7 @@ use crate::studies::recognition::spec::RecognitionSpec;
 use bubbletouch_sim::features::{Features, ImageFeature, foreign};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{self, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserializer, Serializer};
 use serde_json::{Value, json};
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -4,7 +4,6 @@ use crate::inputs::keys::{AxisPlace, find};
 use crate::inputs::range::Range::{self, Between};
 use crate::inputs::toml_value::{is_at, table_of};
 use crate::studies::prelude::*;
-use serde::Serialize;
 
 /// Maximum number of trials of a study, because the splits of all trials are kept in memory.
 pub(super) const MAX_TRIALS: usize = 100_000;

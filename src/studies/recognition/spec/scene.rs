@@ -1,8 +1,8 @@
 //! Specification of the touched scene: the tables `[objects]`, `[skin]` and `[touches]`, and `[human_touch]`, which replaces `[objects]` and `[touches]`.
 
 use crate::inputs::params::{empty_table, named, variants};
-use crate::inputs::range::Range::{Any, Count, Finite, NotNegative, Positive};
-use crate::inputs::range::{SIDE, TOUCHES};
+use crate::inputs::range::Range::Finite;
+use crate::inputs::range::SIDE;
 use crate::inputs::toml_value::table_of;
 use crate::inputs::units::MAX_FRAMES;
 use crate::studies::prelude::*;

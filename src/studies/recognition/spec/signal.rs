@@ -2,14 +2,12 @@
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
-use crate::inputs::keys::{AxisPlace, KeyAbout};
+use crate::inputs::keys::KeyAbout;
 use crate::inputs::params::{Described, empty_table, is_default, key_schema, params, unknown};
-use crate::inputs::range::Range::{self, Any, Unchecked};
-use crate::inputs::sensor_errors::{
-    NOISES, TestSensor, all_strengths, noise_words, strength_keys, strength_words,
-};
-use crate::signal::{NoiseUnit, SensorError};
-use crate::table::{Role, Scale};
+use crate::inputs::range::Range::{Any, Unchecked};
+use crate::inputs::sensor_errors::{SMOOTHING, TestSensor, signal_keys};
+use crate::signal::SensorError;
+use crate::table::Scale;
 use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
@@ -47,16 +45,6 @@ pub struct SignalAxes(BTreeMap<usize, SignalAxis>);
 /// Axis of a signal parameter: its key, the signal step to which it belongs, and its values.
 pub type SignalAxis = (&'static str, StepSpec, Axis<f64>);
 
-/// Returns all axes that `[signal]` may contain, in the order in which they are swept.
-fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
-    let errors = all_strengths().map(|(error, strength)| (strength.key, StepSpec::Error(error)));
-    NOISES
-        .iter()
-        .map(|(key, _)| (*key, StepSpec::Noise))
-        .chain([("smoothing_mm", StepSpec::Smoothing)])
-        .chain(errors)
-}
-
 impl SignalAxes {
     /// Returns the values of the axis with this key; `None` if the study does not set it.
     pub fn get(&self, key: &str) -> Option<&Axis<f64>> {
@@ -71,9 +59,17 @@ impl SignalAxes {
 
     /// Sets the values of the signal axis with this key; does nothing if `[signal]` has no such axis.
     fn set(&mut self, key: &str, axis: Axis<f64>) {
-        let found = all_axes().enumerate().find(|(_, (known, _))| *known == key);
-        if let Some((place, (key, step))) = found {
-            self.0.insert(place, (key, step, axis));
+        let found = signal_keys()
+            .iter()
+            .position(|known| known.about.name() == key);
+        if let Some(place) = found {
+            let known = &signal_keys()[place];
+            let step = match known.error {
+                Some(error) => StepSpec::Error(error),
+                None if known.about.name() == SMOOTHING => StepSpec::Smoothing,
+                None => StepSpec::Noise,
+            };
+            self.0.insert(place, (known.about.name(), step, axis));
         }
     }
 }
@@ -148,15 +144,13 @@ impl<'de> Deserialize<'de> for SignalAxes {
 
 impl Described for SignalAxes {
     fn schema() -> Value {
-        let keys = all_about().map(|(about, words, is_whole)| {
-            let number = match is_whole {
+        let keys = signal_keys().iter().map(|key| {
+            let number = match key.is_whole {
                 true => Axis::<u64>::schema(),
                 false => Axis::<f64>::schema(),
             };
-            (
-                about.name().to_owned(),
-                key_schema(number, Some(about.range), &[&words]),
-            )
+            let schema = key_schema(number, Some(key.about.range), &[&key.words]);
+            (key.about.name().to_owned(), schema)
         });
         json!({ "properties": Map::from_iter(keys) })
     }
@@ -166,12 +160,12 @@ impl Described for SignalAxes {
     }
 
     fn describe_keys(_: &str, keys: &mut Vec<KeyAbout>) {
-        keys.extend(all_about().map(|(about, ..)| about));
+        keys.extend(signal_keys().iter().map(|key| key.about));
     }
 
     fn inner_names() -> &'static [&'static str] {
         static NAMES: LazyLock<Vec<&str>> =
-            LazyLock::new(|| all_axes().map(|(key, _)| key).collect());
+            LazyLock::new(|| signal_keys().iter().map(|key| key.about.name()).collect());
         &NAMES
     }
 
@@ -185,56 +179,6 @@ impl Described for SignalAxes {
         Ok(())
     }
 }
-
-/// Returns the description and the meaning of each numeric key of `[signal]`, and whether its numbers are whole.
-fn all_about() -> impl Iterator<Item = (KeyAbout, String, bool)> {
-    let key = |name: &str, role, range, scale| {
-        let path: &'static str = format!("signal.{name}").leak();
-        let about = KeyAbout::new(path, AxisPlace::Table, role, range);
-        KeyAbout {
-            scale: Some(scale),
-            ..about
-        }
-    };
-    let noises = NOISES.iter().map(move |(name, unit)| {
-        let about = match unit {
-            NoiseUnit::FullScale => KeyAbout {
-                unit: Some("%"),
-                gives_way: Some(10),
-                ..key(name, Role::Condition, NOISE, Scale::Share)
-            },
-            _ => key(name, Role::Condition, Range::NotNegative, Scale::Linear),
-        };
-        let about = KeyAbout {
-            title: Some("noise"),
-            ..about
-        };
-        (about, noise_words(*unit), false)
-    });
-    let smoothing = KeyAbout {
-        gives_way: Some(9),
-        ..key(
-            "smoothing_mm",
-            Role::Choice,
-            Range::NotNegative,
-            Scale::Linear,
-        )
-    };
-    let strengths = strength_keys().iter().zip(all_strengths());
-    let strengths = strengths.map(|(about, (error, strength))| {
-        (*about, strength_words(error, strength), strength.is_whole)
-    });
-    noises
-        .chain([(smoothing, SMOOTHING.to_owned(), false)])
-        .chain(strengths)
-}
-
-const SMOOTHING: &str =
-    "Standard deviation of the Gaussian smoothing over the array, mm. Default: no smoothing.";
-
-/// Allowed noise standard deviations, as fractions of full scale. At the upper bound, nothing of the signal remains, and squares of features still fit into
-/// f32.
-const NOISE: Range = Range::ZeroOrBetween(1e-12, 1000.0, "0, or 1e-12 to 1000");
 
 impl Described for StepSpec {
     fn schema() -> Value {

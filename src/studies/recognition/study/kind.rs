@@ -2,7 +2,6 @@
 
 use crate::report::page::Section;
 use crate::report::pictures::snapshots::snapshots;
-use crate::report::study_folder::{Beyond, NamedPicture};
 use crate::studies::prelude::*;
 use crate::studies::recognition::charts;
 use crate::studies::recognition::frames::Samples;
@@ -11,7 +10,6 @@ use crate::studies::recognition::study::{RecognitionRows, RecognitionStudy, dist
 use crate::studies::recognition::sweep::StudyPart;
 use crate::studies::recognition::training::FamilyInputs;
 use crate::studies::study::settings_words;
-use crate::world::ImageShape;
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::path::Path;
@@ -103,16 +101,17 @@ impl Study for RecognitionStudy {
         let families = 0..self.families.len();
         let of_family = |family: usize| {
             let (part, configurations) = self.family(family);
-            let number = self.families[family].group;
-            let placed = &self.groups[number];
+            let placed = &self.families[family];
             let touches = [placed.touches, placed.tested];
             let touches = touches.map(|touches| &self.touch_sets[touches].content);
             // The measurements are those that the family alone needs.
-            let alone = self.group(number).1.with_cells(configurations);
+            let measured = self.group(family).1.inputs_of(&part.plan, configurations);
             let inputs = FamilyInputs::new(&part.plan, &part.sweep, configurations);
-            identity(&(touches, alone.inputs(&part.plan), inputs))
+            identity(&(touches, measured, inputs))
         };
         let families: Vec<String> = families.into_par_iter().map(of_family).collect();
+        let last = self.families.iter().map(|family| family.measurement).max();
+        let n_measurements = last.map_or(0, |last| last + 1);
         let mut items = Vec::with_capacity(self.n_trials() * families.len());
         for trial in 0..self.n_trials() {
             let of_part = |StudyPart { plan, sweep, .. }: &StudyPart| {
@@ -120,12 +119,10 @@ impl Study for RecognitionStudy {
             };
             let trials: Vec<String> = self.parts().iter().map(of_part).collect();
             for (family, inputs) in self.families.iter().zip(&families) {
-                let group = trial * self.groups.len() + family.group;
-                let of_trial = &trials[self.groups[family.group].part];
                 items.push(WorkItem {
                     name: format!("trial {trial}"),
-                    inputs: format!("{inputs} {of_trial}"),
-                    group,
+                    inputs: format!("{inputs} {}", trials[family.part]),
+                    group: trial * n_measurements + family.measurement,
                     is_result: true,
                 });
             }
@@ -136,7 +133,7 @@ impl Study for RecognitionStudy {
             let name = format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m");
             items.push(WorkItem {
                 is_result: false,
-                ..WorkItem::of(name, touches.group, &touches.content)
+                ..WorkItem::of(name, touches.measurement, &touches.content)
             });
         }
         items
@@ -154,11 +151,11 @@ impl Study for RecognitionStudy {
         let touches = match number.checked_sub(self.touches_item(0)) {
             Some(touches) => touches,
             None => {
-                let family = &self.families[number % self.families.len()];
-                for (row, configuration) in rows.iter_mut().zip(family.configurations.clone()) {
-                    row.at = (family.group, configuration);
+                let family = number % self.families.len();
+                for (place, row) in rows.iter_mut().enumerate() {
+                    row.at = (family, place);
                 }
-                self.groups[family.group].touches
+                self.families[family].touches
             }
         };
         for row in touch_rows {

@@ -14,7 +14,10 @@ impl RecognitionStudy {
         rows: &[TouchRow],
     ) -> Vec<Limit> {
         // The deepest frame is equal for any number of frames per touch.
-        let is_first = |&touches: &usize| self.on(touches).2 == self.first_frames(touches);
+        let is_first = |&touches: &usize| {
+            let set = &self.touch_sets[touches];
+            set.n_frames == self.parts()[set.part].plan.frames[0]
+        };
         let is_counted = |row: &&TouchRow| row.is_made && is_first(&row.on);
         let made: Vec<&TouchRow> = rows.iter().filter(is_counted).collect();
         let sum = |count: fn(&TouchRow) -> usize| made.iter().map(|row| count(row)).sum();

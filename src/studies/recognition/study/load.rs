@@ -3,17 +3,13 @@
 use crate::files::with_folder;
 use crate::inputs::memory::check_memory;
 use crate::learning::classifiers::foreign::Foreign;
-use crate::mesh::SizeLimits;
 use crate::note::note;
 use crate::studies::check_recognition;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     HumanTouches, RecordedFrames, TouchSet, note_shear_ripple,
 };
-use crate::studies::recognition::spec::HumanTouchSpec;
 use crate::studies::recognition::study::{RecognitionStudy, recognition_scale};
-use crate::world::Placement;
-use serde::Serialize;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;
@@ -80,30 +76,29 @@ impl RecognitionStudy {
         let (mut objects, mut has_noted) = (HashMap::new(), false);
         let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
         let mut draw = |plan: &Plan| -> Result<Arc<dyn TouchSet + Send>> {
-            let inputs = TouchInputs::new(plan);
-            let (content, seed) = (identity(&inputs), Seed::new(inputs.seed));
+            let (content, spec) = (touch_content(plan), &plan.spec);
+            let seed = Seed::new(spec.seed);
             let touched: Arc<dyn TouchSet + Send> = if let Some(known) = drawn.get(&content) {
                 known.clone()
-            } else if let Some(human) = inputs.human_touch {
+            } else if let Some(human) = &spec.human_touch {
                 check_touches(plan, human.kinds.len(), ceiling)?;
                 Arc::new(HumanTouches::draw(human, &seed)?)
-            } else if let Some((recorded, _)) = inputs.recorded {
+            } else if let Some(recorded) = &spec.recorded {
                 Arc::new(RecordedFrames::read(recorded, ceiling)?)
             } else {
-                let known = objects.entry(identity(&inputs.objects));
-                let objects = match known {
+                let objects = match objects.entry(identity(&objects_inputs(plan))) {
                     Entry::Occupied(known) => known.into_mut(),
-                    Entry::Vacant(new) => new.insert(load_objects(inputs.objects.keys, packings)?),
+                    Entry::Vacant(new) => new.insert(load_objects(&spec.objects, packings)?),
                 };
                 if !has_noted {
                     has_noted = note_shear_ripple(plan, objects)?;
                 }
                 check_touches(plan, objects.len(), ceiling)?;
-                let n_touches = inputs.placement.n_touches() * objects.len() as f64;
-                if let Some(slow) = slow_splits(n_touches, plan.spec.trials) {
+                let n_touches = plan.placement.n_touches() * objects.len() as f64;
+                if let Some(slow) = slow_splits(n_touches, spec.trials) {
                     note(format_args!("{place}: {slow}"));
                 }
-                let drawn = draw_touches(objects.clone(), inputs.placement, &seed);
+                let drawn = draw_touches(objects.clone(), &plan.placement, &seed);
                 Arc::new(drawn.map_err(|error| error.under(format!("{place}, ")))?)
             };
             drawn.insert(content, touched.clone());
@@ -133,9 +128,18 @@ fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
         .then(|| format!("splitting {n_touches} touches in {n_trials} trials"))
 }
 
-/// Returns a text that identifies the touches of a plan, independently of the array and the object files.
+/// Returns a text that identifies the touches of a plan, independently of the object files. The pitch and the sizes of the arrays only affect which objects are
+/// rejected or noted.
 pub fn touch_content(plan: &Plan) -> String {
-    identity(&TouchInputs::new(plan))
+    let recorded = plan.spec.recorded.as_ref();
+    let recorded = recorded.map(|recorded| (recorded, recorded.n_values));
+    identity(&(recorded, objects_inputs(plan), touch_inputs(plan)))
+}
+
+/// Returns the inputs that determine the objects of a plan, without their files.
+fn objects_inputs(plan: &Plan) -> impl Serialize + '_ {
+    let objects = &plan.spec.objects;
+    (objects, objects.pitch, objects.sizes)
 }
 
 /// Memory that a touch occupies, bytes: its pose, its label and its reading parameters.
@@ -160,60 +164,18 @@ fn check_touches(plan: &Plan, n_classes: usize, ceiling: Option<u64>) -> Result<
         .map_err(|allowed| Error::input(format!("key {key}"), n_each, allowed))
 }
 
-/// Inputs that determine the touches of a plan, without the array and the object files. Plans with equal inputs share their touches.
-#[derive(Serialize)]
-pub(crate) struct TouchInputs<'a> {
-    pub(crate) objects: ObjectInputs<'a>,
-    pub(crate) placement: &'a Placement,
-    pub(crate) human_touch: Option<&'a HumanTouchSpec>,
-    /// Keys of the recording, and the number of values per taxel in its frames.
-    pub(crate) recorded: Option<(&'a RecordedSpec, usize)>,
-    pub(crate) seed: u64,
+/// Returns the identity of a plan's set of touches. It does not depend on the pitch and the sizes of the arrays, so that an axis of arrays may be extended.
+/// Files of a recording are identified by their contents.
+pub(crate) fn set_content(plan: &Plan, touched: &dyn TouchSet) -> String {
+    let recorded = touched.recorded_content();
+    let recorded = recorded.map(|content| &content.identity);
+    identity(&(recorded, touch_inputs(plan)))
 }
 
-/// Inputs that determine the objects of a plan, without their files. The pitch and the sizes of the arrays only affect which objects are rejected or noted.
-#[derive(Clone, Copy, Serialize)]
-pub(crate) struct ObjectInputs<'a> {
-    pub(crate) keys: &'a ObjectsSpec,
-    pitch: Option<f64>,
-    sizes: Option<SizeLimits>,
-}
-
-impl<'a> TouchInputs<'a> {
-    /// Returns the inputs that determine the touches of a plan.
-    pub fn new(plan: &'a Plan) -> Self {
-        let spec = &plan.spec;
-        let recorded = spec.recorded.as_ref();
-        Self {
-            objects: ObjectInputs {
-                keys: &spec.objects,
-                pitch: spec.objects.pitch,
-                sizes: spec.objects.sizes,
-            },
-            placement: &plan.placement,
-            human_touch: spec.human_touch.as_ref(),
-            recorded: recorded.map(|recorded| (recorded, recorded.n_values)),
-            seed: spec.seed,
-        }
-    }
-
-    /// Returns the identity of the set of touches. It does not depend on the pitch and the sizes of the arrays, so that an axis of arrays may be extended. Files
-    /// of a recording are identified by their contents.
-    pub fn content(&self, touched: &dyn TouchSet) -> String {
-        let content = touched.recorded_content();
-        let objects = ObjectInputs {
-            pitch: None,
-            sizes: None,
-            ..self.objects
-        };
-        let recorded = self.recorded.filter(|_| content.is_none());
-        let touches = TouchInputs {
-            objects,
-            recorded,
-            ..*self
-        };
-        identity(&(touches, content.map(|content| &content.identity)))
-    }
+/// Returns the inputs that determine the touches of a plan, without the array, the object files and the recording.
+fn touch_inputs(plan: &Plan) -> impl Serialize + '_ {
+    let spec = &plan.spec;
+    (&spec.objects, &plan.placement, &spec.human_touch, spec.seed)
 }
 
 #[cfg(test)]

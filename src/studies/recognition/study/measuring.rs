@@ -1,15 +1,11 @@
 //! Work items and their results: touches are simulated once per array, each group is measured once per trial, and each pending family is evaluated.
 
 use crate::engine::at_once::run_at_once;
-use crate::engine::work_items::PendingItems;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::Frames;
 use crate::studies::recognition::measurements::Measurements;
-use crate::studies::recognition::rows::Configuration;
 use crate::studies::recognition::study::{Family, RecognitionStudy, in_frames};
-use crate::studies::recognition::sweep::TrainingRows;
 use crate::studies::recognition::training::{Evaluation, FamilyInputs, Trial};
-use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -21,7 +17,7 @@ pub type RecognitionRows = (Vec<ConfigurationRow>, Vec<TouchRow>);
 /// Result of one configuration in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConfigurationRow {
-    /// Position of the configuration in the current study: index of its group, and index within the group.
+    /// Position of the configuration in the current study: index of its family, and index within the family.
     #[serde(skip)]
     pub at: (usize, usize),
     /// Scores and times of the configuration in the trial.
@@ -46,15 +42,11 @@ pub struct TouchRow {
     pub cpu_s: f64,
 }
 
-/// Measurement to compute: a group of configurations in one trial, and the group's pending families.
+/// Measurement to compute in one trial, and the pending families of configurations that are evaluated on it.
 pub(crate) struct Job<'a> {
     pub study: &'a RecognitionStudy,
-    /// Index of the group; among groups with equal measurements, the index of the first group.
-    pub group: usize,
     trial: usize,
-    pub n_measurements: usize,
-    /// Training rows to which the measurements are fitted.
-    rows: TrainingRows,
+    /// Indices of the families, at least one.
     pub families: Vec<usize>,
 }
 
@@ -66,11 +58,10 @@ impl RecognitionStudy {
         left: &PendingItems<RecognitionRows>,
     ) -> Result<Vec<Error>> {
         let mut missing = BTreeMap::new();
-        for (number, family) in self.families.iter().enumerate() {
-            let is_left = |trial| left.has(self.family_item(trial, number));
+        for family in 0..self.families.len() {
+            let is_left = |trial| left.has(self.family_item(trial, family));
             if (0..self.n_trials()).any(is_left) {
-                let configurations = &self.group(family.group).1.configurations;
-                let configuration = &configurations[family.configurations.start];
+                let configuration = &self.family(family).1[0];
                 match (check_provided(configuration), configuration.classifier) {
                     (Err(error), ClassifierKind::Foreign(foreign))
                         if foreign.may_be_elsewhere() =>
@@ -92,8 +83,8 @@ impl RecognitionStudy {
         let mut jobs = self.jobs_left(left);
         // Sets with most frames first, because their items take longest.
         jobs.sort_by_key(|(touches, _)| {
-            let (part, array, n_frames) = self.made_on(*touches);
-            (part, array, Reverse(n_frames))
+            let set = &self.touch_sets[*touches];
+            (set.part, set.array, Reverse(set.n_frames))
         });
         if self.has_axes() {
             // Progress lines for every combination would be too many.
@@ -138,50 +129,29 @@ impl RecognitionStudy {
         jobs.filter(is_left).collect()
     }
 
-    /// Returns the measurements of a set of touches that pending families of configurations need. If smaller sets of measurements are prefixes of larger ones,
-    /// a group is measured once for all its configurations. Otherwise, each number m of measurements is measured separately. So are training rows to which
-    /// something is fitted.
+    /// Returns the measurements of a set of touches that pending families of configurations need.
     pub(crate) fn jobs(
         &self,
         touches: usize,
         trials: Range<usize>,
         is_left: impl Fn(usize) -> bool,
     ) -> Vec<Job<'_>> {
-        let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (number, family) in self.families.iter().enumerate() {
-            let group = &self.groups[family.group];
-            if group.touches == touches {
-                alike.entry(group.measured_as).or_default().push(number);
-            }
-        }
+        let of_touches = |&family: &usize| self.families[family].touches == touches;
+        let own: Vec<usize> = (0..self.families.len()).filter(of_touches).collect();
         let mut jobs = Vec::new();
         for trial in trials {
-            for (&group, families) in &alike {
-                let measured = self.group(group).1;
-                let is_nested = measured.ensemble.is_prefix_nested();
-                for n_measurements in measured.projected() {
-                    let is_served = |&family: &usize| {
-                        (is_nested || self.family(family).1[0].measurements == n_measurements)
-                            && is_left(self.family_item(trial, family))
-                    };
-                    let mut by_rows: Vec<(TrainingRows, Vec<usize>)> = Vec::new();
-                    for family in families.iter().copied().filter(is_served) {
-                        let rows = self.families[family].rows;
-                        match by_rows.iter_mut().find(|(known, _)| *known == rows) {
-                            Some((_, families)) => families.push(family),
-                            None => by_rows.push((rows, vec![family])),
-                        }
-                    }
-                    jobs.extend(by_rows.into_iter().map(|(rows, families)| Job {
-                        study: self,
-                        group,
-                        trial,
-                        n_measurements,
-                        rows,
-                        families,
-                    }));
+            let mut measured: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+            for &family in &own {
+                if is_left(self.family_item(trial, family)) {
+                    let measurement = self.families[family].measurement;
+                    measured.entry(measurement).or_default().push(family);
                 }
             }
+            jobs.extend(measured.into_values().map(|families| Job {
+                study: self,
+                trial,
+                families,
+            }));
         }
         jobs
     }
@@ -199,8 +169,7 @@ impl RecognitionStudy {
         };
         let mut by_tested: BTreeMap<usize, Vec<Job>> = BTreeMap::new();
         for job in jobs {
-            let tested = self.groups[job.group].tested;
-            by_tested.entry(tested).or_default().push(job);
+            by_tested.entry(job.first().tested).or_default().push(job);
         }
         for (tested, jobs) in by_tested {
             let run = |tested: &Frames| {
@@ -266,6 +235,11 @@ impl RecognitionStudy {
 }
 
 impl Job<'_> {
+    /// Returns the first family of the job. All families of a job have equal touches, numbers of measurements and training rows.
+    pub(crate) fn first(&self) -> &Family {
+        &self.study.families[self.families[0]]
+    }
+
     /// Returns the numbers of the work items that are finished by this job.
     fn items(&self) -> impl Iterator<Item = usize> + '_ {
         let families = self.families.iter();
@@ -287,7 +261,7 @@ impl Job<'_> {
             left.finish(item, || {
                 // The row of the measured touches is recorded only once.
                 let touches = (place == 0).then(|| TouchRow {
-                    n_touches: self.study.group(self.group).0.sweep.labels.len(),
+                    n_touches: self.study.parts()[self.first().part].sweep.labels.len(),
                     cpu_s,
                     ..TouchRow::default()
                 });
@@ -309,24 +283,18 @@ impl Job<'_> {
     }
 
     fn measure(&self, frames: [&Frames; 2]) -> Result<Measurements> {
-        let (part, group) = self.study.group(self.group);
-        part.measure(
-            (group, self.rows),
-            frames,
-            (self.trial, self.n_measurements),
-        )
+        let (part, group) = self.study.group(self.families[0]);
+        let family = self.first();
+        let trial = (self.trial, family.n_measurements);
+        part.measure((group, family.rows), frames, trial)
     }
 
     /// Returns whether a family of configurations is the first of the study that uses the measurements of this job.
     fn is_first(&self, family: usize) -> bool {
         let m = |family: usize| self.study.family(family).1[0].measurements;
-        let is_same = |earlier: usize| {
-            let Family { group, rows, .. } = self.study.families[earlier];
-            self.study.groups[group].measured_as == self.group
-                && rows == self.rows
-                && m(earlier) == m(family)
-        };
-        !(0..family).any(is_same)
+        let measurement = self.first().measurement;
+        let mut earlier = self.study.families[..family].iter().enumerate();
+        !earlier.any(|(number, one)| one.measurement == measurement && m(number) == m(family))
     }
 
     fn evaluate(

@@ -1,21 +1,15 @@
 //! Recognition study with its work items and result tables.
 
-use crate::engine::work_items::Scale;
-use crate::engine::work_items::Shared;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{Samples, TouchSet};
-use crate::studies::recognition::plan::MeasurementGroup;
-use crate::studies::recognition::rows::{
-    Configuration, Prediction, Predictions, StageTime, Tables,
-};
+use crate::studies::recognition::rows::{Prediction, Predictions, StageTime, Tables};
 use crate::studies::recognition::spec::ConfusionMatrices;
-use crate::studies::recognition::study::{RecognitionRows, TouchInputs, TouchRow};
+use crate::studies::recognition::study::{RecognitionRows, TouchRow, set_content};
 use crate::studies::recognition::sweep::{StudyPart, Sweep, TrainingRows};
 use crate::studies::recognition::tables::published::{check_published, compare_with_published};
 use crate::studies::recognition::tables::tabulate::tabulate;
 use crate::studies::recognition::training::Evaluation;
 use crate::studies::study::run_whole;
-use crate::world::ImageShape;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
@@ -33,42 +27,44 @@ pub struct RecognitionStudy {
     samples: Shared<Samples>,
     /// All distinct sets of touches that are simulated.
     pub(crate) touch_sets: Vec<Touches>,
-    /// Groups of configurations of all parts, ordered by part.
-    pub(crate) groups: Vec<PlacedGroup>,
-    /// Families of configurations of all groups, ordered by group.
+    /// Families of configurations of all parts, ordered by part.
     pub(crate) families: Vec<Family>,
 }
 
 /// Set of touches to simulate on one array, with a fixed number of frames per touch.
 pub(crate) struct Touches {
-    /// Index of the first group of configurations that reads these touches.
-    pub group: usize,
-    /// Whether the touches serve only as test touches of the group `group`.
+    /// Index of the part of the study that has these touches.
+    pub part: usize,
+    /// Index of the array in the plan of the part.
+    pub array: usize,
+    /// Number of frames per touch.
+    pub n_frames: usize,
+    /// Whether the touches serve only as test touches.
     is_tested: bool,
+    /// Number of the first measurement of these touches.
+    pub measurement: usize,
     /// Hash of all inputs that determine the touches, except the files of objects.
     pub content: String,
 }
 
-/// Group of configurations, with its position in the study.
-pub(crate) struct PlacedGroup {
-    /// Index of the part of the study that contains the group.
-    pub part: usize,
-    /// Index of the group within its part of the study.
-    place: usize,
-    /// Index of the group's training touches in the list of all sets of touches.
-    pub touches: usize,
-    /// Index of the group's test touches in the list of all sets of touches; equal to `touches` if the study has no table `[test]`.
-    pub tested: usize,
-    /// Index of the first group whose measurements are equal to the measurements of this group.
-    pub measured_as: usize,
-}
-
-/// Family of configurations: its group, and the index range of its configurations in the group.
+/// Family of configurations that use the same rows of features, with its position in the study.
 pub(crate) struct Family {
-    pub group: usize,
-    pub configurations: Range<usize>,
+    /// Index of the part of the study that contains the family.
+    pub part: usize,
+    /// Index of the family's group of configurations within the part.
+    group: usize,
+    /// Index range of the configurations in the group.
+    configurations: Range<usize>,
     /// Training rows to which the measurements of the family are fitted.
     pub rows: TrainingRows,
+    /// Number m of measurements per frame that are computed for the family.
+    pub n_measurements: usize,
+    /// Index of the training touches in the list of all sets of touches.
+    pub touches: usize,
+    /// Index of the test touches in the list of all sets of touches; equal to `touches` if the study has no table `[test]`.
+    pub tested: usize,
+    /// Number of the measurement, from 0. Families with equal numbers are evaluated on the same measurements.
+    pub measurement: usize,
 }
 
 impl RecognitionStudy {
@@ -100,7 +96,6 @@ impl RecognitionStudy {
             scale: Scale::default(),
             samples: Shared::default(),
             touch_sets: Vec::new(),
-            groups: Vec::new(),
             families: Vec::new(),
         };
         let mut n_configurations = 0;
@@ -127,34 +122,32 @@ impl RecognitionStudy {
             let allowed = "all, because configurations differ in their number of objects";
             return Err(Error::input("key report.confusion", "best", allowed));
         }
-        study.place_groups();
+        study.place_families();
         Ok(study)
     }
 
-    /// Lists all groups and families of configurations, and determines groups with equal touches or measurements.
-    fn place_groups(&mut self) {
+    /// Lists all families of configurations, and determines those with equal touches or measurements. If smaller sets of measurements are prefixes of larger
+    /// ones, a group is measured once for all its families. Otherwise, each number m of measurements is measured separately. So are training rows to which
+    /// something is fitted.
+    fn place_families(&mut self) {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
-        let mut known_groups: HashMap<String, usize> = HashMap::new();
+        let mut measurements: HashMap<String, usize> = HashMap::new();
         for (part, of_part) in self.parts.iter().enumerate() {
             let StudyPart { plan, sweep, .. } = of_part;
-            let touched = [
-                (plan, &of_part.touched),
-                (plan.tested.as_deref().unwrap_or(plan), &of_part.tested),
-            ];
-            let content = |(plan, set): (_, &Arc<dyn TouchSet + Send>)| {
-                (plan, TouchInputs::new(plan).content(set.as_ref()))
-            };
-            let touched = touched.map(content);
-            for (place, group) in sweep.groups.iter().enumerate() {
-                let number = self.groups.len();
+            let plans = [plan, plan.tested.as_deref().unwrap_or(plan)];
+            let sets = [&of_part.touched, &of_part.tested];
+            let contents = [0, 1].map(|of| set_content(plans[of], sets[of].as_ref()));
+            for (number, group) in sweep.groups.iter().enumerate() {
                 let mut place_touches = |of: usize| {
-                    let (plan, touched) = &touched[of];
-                    let array = &plan.arrays[group.array];
-                    let content = identity(&(touched, array, group.frames));
+                    let array = &plans[of].arrays[group.array];
+                    let content = identity(&(&contents[of], array, group.frames));
                     *known_touches.entry(content.clone()).or_insert_with(|| {
                         self.touch_sets.push(Touches {
-                            group: number,
+                            part,
+                            array: group.array,
+                            n_frames: group.frames,
                             is_tested: of > 0,
+                            measurement: measurements.len(),
                             content,
                         });
                         self.touch_sets.len() - 1
@@ -166,23 +159,28 @@ impl RecognitionStudy {
                 let splits = trials.map_while(|trial| Some((trial.split?, trial.group_keys)));
                 let splits: Vec<_> = splits.collect();
                 let content = identity(&(touches, tested, &inputs, splits));
-                self.groups.push(PlacedGroup {
-                    part,
-                    place,
-                    touches,
-                    tested,
-                    measured_as: *known_groups.entry(content).or_insert(number),
-                });
                 let mut start = 0;
-                self.families.extend(group.families().map(|family| {
+                for family in group.families() {
                     let configurations = start..start + family.len();
                     start = configurations.end;
-                    Family {
+                    let rows = inputs.fitted_rows(plan, group, &family[0]);
+                    let n_measurements = match group.ensemble.is_prefix_nested() {
+                        true => inputs.projected[0],
+                        false => family[0].measurements,
+                    };
+                    let next = measurements.len();
+                    let measured = identity(&(&content, rows, n_measurements));
+                    self.families.push(Family {
+                        part,
                         group: number,
                         configurations,
-                        rows: inputs.fitted_rows(plan, group, &family[0]),
-                    }
-                }));
+                        rows,
+                        n_measurements,
+                        touches,
+                        tested,
+                        measurement: *measurements.entry(measured).or_insert(next),
+                    });
+                }
             }
         }
     }
@@ -215,38 +213,28 @@ impl RecognitionStudy {
         keys.join(", ")
     }
 
-    /// Returns the part of the study that contains the configuration with this number; the last part if no part contains it.
+    /// Returns the part of the study that contains the configuration with this number; the first part if no part contains it.
     pub fn part_of(&self, configuration: usize) -> &StudyPart {
-        let has_it = |part: &&StudyPart| {
-            part.sweep
-                .configurations()
-                .any(|known| known.configuration == configuration)
-        };
-        self.parts
-            .iter()
-            .find(has_it)
-            .unwrap_or_else(|| self.first())
+        let mut cells = self.all_cells();
+        let found = cells.find(|known| known.configuration == configuration);
+        found.map_or(self.first(), |known| &self.parts[known.variant.number])
     }
 
     /// Returns all configurations of the study in the order of their numbers.
     pub fn all_cells(&self) -> impl Iterator<Item = &Configuration> {
-        self.parts
-            .iter()
-            .flat_map(|part| part.sweep.configurations())
+        let parts = self.parts.iter();
+        parts.flat_map(|part| part.sweep.configurations())
     }
 
     /// Returns the number of configurations of the study.
     pub fn n_configurations(&self) -> usize {
-        self.parts
-            .iter()
-            .map(|part| part.sweep.n_configurations())
-            .sum()
+        self.all_cells().count()
     }
 
     /// Returns the number of different arrays on which touches are simulated.
     pub fn n_arrays(&self) -> usize {
-        let made = (0..self.touch_sets.len()).map(|touches| self.made_on(touches));
-        let arrays = made.map(|(part, array, _)| identity(&self.parts[part].plan.arrays[array]));
+        let sets = self.touch_sets.iter();
+        let arrays = sets.map(|set| identity(&self.parts[set.part].plan.arrays[set.array]));
         arrays.collect::<HashSet<_>>().len()
     }
 
@@ -287,18 +275,18 @@ impl RecognitionStudy {
         self.first().plan.spec.trials
     }
 
-    /// Returns the group of configurations with this number, and its part of the study.
-    pub(crate) fn group(&self, number: usize) -> (&StudyPart, &MeasurementGroup) {
-        let PlacedGroup { part, place, .. } = self.groups[number];
+    /// Returns the part of the study that contains a family, and the family's group of configurations.
+    pub(crate) fn group(&self, family: usize) -> (&StudyPart, &MeasurementGroup) {
+        let Family { part, group, .. } = self.families[family];
         let part = &self.parts[part];
-        (part, &part.sweep.groups[place])
+        (part, &part.sweep.groups[group])
     }
 
-    /// Returns the configurations of a family, and the part of the study that contains them.
+    /// Returns the part of the study that contains a family, and the configurations of the family.
     pub(crate) fn family(&self, family: usize) -> (&StudyPart, &[Configuration]) {
-        let family = &self.families[family];
-        let (part, group) = self.group(family.group);
-        (part, &group.configurations[family.configurations.clone()])
+        let (part, group) = self.group(family);
+        let configurations = self.families[family].configurations.clone();
+        (part, &group.configurations[configurations])
     }
 
     /// Returns the number of the work item that computes a family of configurations in a trial.
@@ -311,27 +299,15 @@ impl RecognitionStudy {
         self.family_item(self.n_trials(), 0) + touches
     }
 
-    /// Returns the study part, the array index and the number of frames per touch of a set of touches.
-    pub(crate) fn made_on(&self, touches: usize) -> (usize, usize, usize) {
-        let group = self.touch_sets[touches].group;
-        let (_, MeasurementGroup { array, frames, .. }) = self.group(group);
-        (self.groups[group].part, *array, *frames)
-    }
-
     /// Returns the set of touches with this index, its array, and its number of frames per touch.
     pub(crate) fn on(&self, touches: usize) -> (&dyn TouchSet, &TaxelArray, usize) {
         let set = &self.touch_sets[touches];
-        let (part, group) = self.group(set.group);
+        let part = &self.parts[set.part];
         let (plan, touched) = match (&part.plan.tested, set.is_tested) {
             (Some(tested), true) => (tested.as_ref(), part.tested.as_ref()),
             _ => (&part.plan, part.touched.as_ref()),
         };
-        (touched, &plan.arrays[group.array], group.frames)
-    }
-
-    /// Returns the number of frames per touch of a set of touches, in the study part with the first values of the axes.
-    pub(crate) fn first_frames(&self, touches: usize) -> usize {
-        self.group(self.touch_sets[touches].group).0.plan.frames[0]
+        (touched, &plan.arrays[set.array], set.n_frames)
     }
 
     /// Returns the rows of `stages.csv`: the times to simulate and to measure the touches of each array.
@@ -399,21 +375,19 @@ impl RecognitionStudy {
     /// If the trials of a configuration have no rows, or a file cannot be read.
     pub fn outcome(&self, (configurations, touches): RecognitionRows) -> Result<Tables> {
         let mut tables = Tables::default();
-        let arrays: HashMap<usize, (&Plan, usize)> = configurations
-            .iter()
-            .filter(|row| !row.evaluation.selected.is_empty())
-            .map(|row| {
-                let (part, group) = self.group(row.at.0);
-                let number = group.configurations[row.at.1].configuration;
-                (number, (&part.plan, group.array))
-            })
-            .collect();
+        let selected = configurations.iter();
+        let selected = selected.filter(|row| !row.evaluation.selected.is_empty());
+        let arrays = selected.map(|row| {
+            let (part, group) = self.group(row.at.0);
+            let number = self.family(row.at.0).1[row.at.1].configuration;
+            (number, &part.plan.arrays[group.array])
+        });
+        let arrays: HashMap<usize, &TaxelArray> = arrays.collect();
         let place = |configuration: &Configuration, taxel: usize| {
-            let (plan, array) = arrays.get(&configuration.configuration)?;
-            plan.arrays[*array].place_mm(taxel)
+            arrays.get(&configuration.configuration)?.place_mm(taxel)
         };
         let scored = configurations.into_iter().map(|row| {
-            let configuration = &self.group(row.at.0).1.configurations[row.at.1];
+            let configuration = &self.family(row.at.0).1[row.at.1];
             (configuration.clone(), row.evaluation)
         });
         let mut scored: Vec<(Configuration, Evaluation)> = scored.collect();

@@ -41,7 +41,7 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
     let stages = frames.iter().enumerate().map(|(set, bytes)| {
         let jobs = study.jobs(set, 0..1, |_| true);
         // Separate test touches are in memory together with the training touches.
-        let tested = jobs.iter().map(|job| study.groups[job.group].tested);
+        let tested = jobs.iter().map(|job| job.first().tested);
         let tested = tested.filter(|tested| *tested != set);
         let items = jobs.iter().flat_map(Job::bytes);
         Stage {
@@ -62,9 +62,9 @@ impl Job<'_> {
     /// Returns the approximate memory of the job, bytes: of the job while its thread evaluates one family, then of each further family, which idle threads
     /// evaluate at the same time.
     pub(crate) fn bytes(&self) -> Vec<f64> {
-        let (part, group) = self.study.group(self.group);
+        let (part, group) = self.study.group(self.families[0]);
         let array = &part.plan.arrays[group.array];
-        let (n, m) = (array.n_values() as f64, self.n_measurements as f64);
+        let (n, m) = (array.n_values() as f64, self.first().n_measurements as f64);
         let n_read = (part.sweep.labels.len() * group.frames * group.n_readings(&part.plan)) as f64;
         let inputs = group.inputs(&part.plan);
         let shapes = array.image_shapes();
@@ -122,7 +122,7 @@ fn family_bytes(part: &StudyPart, family: &[Configuration], n_readings: usize) -
         _ => n_classes,
     };
     let n_touches = n_classes * configuration.train_touches;
-    let n_train = n_touches * (n_readings + configuration.tilt_augmentation.unwrap_or(0));
+    let n_train = n_touches * (n_readings + configuration.n_copies());
     let n_choice = match training.c_grid.is_some() || training.gamma_grid.is_some() {
         true => training
             .cv_touches

@@ -9,17 +9,14 @@
 //! ```
 
 use crate::inputs::content_hash::{Hashed, bytes_of_counts, bytes_of_numbers};
-use crate::learning::evaluation::next_touch::Poses;
+use crate::learning::evaluation::next_touch::{NextTouch, Poses};
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{TouchSet, named_samples};
-use crate::studies::recognition::plan::{MeasurementGroup, skin};
-use crate::studies::recognition::rows::Configuration;
+use crate::studies::recognition::plan::skin;
 use crate::studies::recognition::sweep::{
     TrainingRows, draw_split, first_equal, learned_touches, train_touches,
 };
 use crate::studies::recognition::touches::scaled_poses;
-use crate::world::ImageShape;
-use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::sync::Arc;
 
@@ -144,11 +141,8 @@ impl Sweep {
 
     /// Assigns the configurations to the combination `variant` of axis values in `[axes]`, and numbers them from `first`.
     pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
-        for configuration in self
-            .groups
-            .iter_mut()
-            .flat_map(|group| &mut group.configurations)
-        {
+        let groups = self.groups.iter_mut();
+        for configuration in groups.flat_map(|group| &mut group.configurations) {
             configuration.configuration += first;
             configuration.variant.clone_from(variant);
         }
@@ -161,10 +155,7 @@ impl Sweep {
 
     /// Returns the number of configurations in the sweep.
     pub fn n_configurations(&self) -> usize {
-        self.groups
-            .iter()
-            .map(|group| group.configurations.len())
-            .sum()
+        self.configurations().count()
     }
 
     /// Checks that a learned ensemble has enough training frames: their variations must span more directions than there are measurements.
@@ -191,10 +182,7 @@ impl Sweep {
             let n_touches = n_train.unwrap_or(0).min(learned_touches(group.frames));
             let n_frames = n_touches * group.frames;
             if m >= n_frames {
-                let key = match plan.spec.sensing.measurements {
-                    Some(_) => "key sensing.measurements",
-                    None => "key sensing.ratio",
-                };
+                let key = format!("key {}", plan.spec.sensing.count_key());
                 let given = format!("{m} {}", group.ensemble.about().words);
                 let mut allowed = format!(
                     "at most {}, one fewer than the frames of the {n_touches} training touches of configuration {}",
@@ -261,15 +249,15 @@ impl Sweep {
             measurements in plan.measurement_counts(array, group.ensemble);
             temporal_features in Axis::optional_values(&learned.temporal_features);
             features in learned.all_features();
-            depth_window_full_scale in learned.foremost(features);
-            tilt_augmentation in learned.copies(features);
+            depth_window_full_scale in Axis::active_values(&learned.depth_window_full_scale, features.of_image().is_some(), 1.0);
+            tilt_augmentation in Axis::active_values(&learned.tilt_augmentation, features.of_image().is_some(), 0);
             classifier in learned.kinds();
             train_touches in train_touches.iter().copied();
             class_imbalance in Axis::optional_values(&learned.class_imbalance);
             mislabelled_fraction in Axis::optional_values(&learned.mislabelled_fraction);
             c in penalties(classifier);
             touches_per_decision in learned.touches_per_decision.values();
-            next_touch in learned.next_touches(touches_per_decision);
+            next_touch in Axis::active_values(&learned.next_touch, touches_per_decision > 1, NextTouch::Random);
         }
         // With many small groups, unused capacity would take most of the memory.
         group.configurations.shrink_to_fit();

@@ -2,6 +2,5 @@
 
 pub mod configurations;
 pub mod splits;
-pub mod training_rows;
 
-pub use self::{configurations::*, splits::*, training_rows::*};
+pub use self::{configurations::*, splits::*};

@@ -2,9 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::inputs::toml_value::number;
-use crate::studies::recognition::rows::conditions::{by_condition, most_accurate, settings_of};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{ConfigurationScore, Published};
+use crate::studies::recognition::rows::{by_condition, most_accurate, settings_of};
 use crate::studies::recognition::spec::study::PublishedSpec;
 use crate::table::{Table, Value, column_name};
 use std::fmt::Display;

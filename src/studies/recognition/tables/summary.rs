@@ -6,11 +6,11 @@ use crate::statistics::grouped::{GroupCount, GroupedTest, interval_of_groups};
 use crate::statistics::many_tests::holm_of_some;
 use crate::statistics::p_status::CONFIDENCE;
 use crate::statistics::repeats::{Paired, Repeat, scores};
-use crate::studies::recognition::rows::conditions::{by_condition, most_accurate};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
     Comparison, ConfigurationScore, Confused, Confusion, Pareto, TrialScore, TrialTime,
 };
+use crate::studies::recognition::rows::{by_condition, most_accurate};
 use crate::table::front;
 use bubbletouch_sim::statistics::interval::{Interval, RowTest};
 use std::collections::BTreeMap;

@@ -2,8 +2,8 @@
 
 use crate::error::Result;
 use crate::learning::evaluation::metrics::ConfusionMatrix;
-use crate::studies::recognition::rows::conditions::most_accurate;
 use crate::studies::recognition::rows::configuration::Configuration;
+use crate::studies::recognition::rows::most_accurate;
 use crate::studies::recognition::rows::table_rows::{
     ConfigurationScore, Confusion, Recall, SelectedTaxel, Tables, TrialScore,
 };

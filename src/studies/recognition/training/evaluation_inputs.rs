@@ -8,14 +8,11 @@ use crate::inputs::memory::GIB;
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::evaluation::next_touch::{NextTouch, Poses};
 use crate::studies::prelude::*;
-use crate::studies::recognition::plan::MeasurementGroup;
-use crate::studies::recognition::rows::{Configuration, RowInputs};
+use crate::studies::recognition::rows::RowInputs;
 use crate::studies::recognition::spec::{Metric, RecognitionSpec};
 use crate::studies::recognition::sweep::{Sweep, TrainingRows};
 use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
-use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
-use serde::Serialize;
 use std::collections::HashSet;
 
 /// Inputs of a trial that all families of configurations share.
@@ -179,32 +176,23 @@ impl Decision {
 
 impl TrainingInputs {
     fn new(recognition: &RecognitionSpec, kind: ClassifierKind, is_informed: bool) -> Self {
-        let is_used = |key: &str| kind.uses(key);
-        let usual = recognition.of_kinds.applied_to(Classifier::new(kind));
-        macro_rules! used {
-            ($key:ident = $value:expr) => {
-                match is_used(stringify!($key)) {
-                    true => $value,
-                    false => usual.$key,
-                }
-            };
+        let mut classifier = recognition.of_kinds.applied_to(Classifier::new(kind));
+        classifier.scaling = recognition.scaling;
+        if kind.uses("multiclass") {
+            classifier.multiclass = recognition.multiclass;
         }
-        let solver_memory = solver_memory(recognition.solver_memory_gib);
-        let classifier = Classifier {
-            scaling: recognition.scaling,
-            multiclass: used!(multiclass = recognition.multiclass),
-            class_weight: used!(class_weight = recognition.class_weight),
-            solver: used!(solver = recognition.solver),
-            memory_bytes: match is_used("solver_memory_gib") {
-                true => solver_memory,
-                false => usual.memory_bytes,
-            },
-            ..usual
-        };
-        let c_grid = recognition.c_grid.clone();
-        let c_grid = c_grid.filter(|_| is_used("c_grid"));
-        let gamma_grid = recognition.gamma_grid.clone();
-        let gamma_grid = gamma_grid.filter(|_| is_used("gamma_grid"));
+        if kind.uses("class_weight") {
+            classifier.class_weight = recognition.class_weight;
+        }
+        if kind.uses("solver") {
+            classifier.solver = recognition.solver;
+        }
+        if kind.uses("solver_memory_gib") {
+            classifier.memory_bytes = solver_memory(recognition.solver_memory_gib);
+        }
+        let used = |key, grid: &Option<Vec<f64>>| grid.clone().filter(|_| kind.uses(key));
+        let c_grid = used("c_grid", &recognition.c_grid);
+        let gamma_grid = used("gamma_grid", &recognition.gamma_grid);
         let is_chosen = c_grid.is_some() || gamma_grid.is_some();
         Self {
             cv_touches: recognition.cv_touches.filter(|_| is_chosen),

@@ -8,7 +8,6 @@ use crate::studies::recognition::training::TrainingInputs;
 use bubbletouch_svm::cross_validation::choice::Candidates;
 use bubbletouch_svm::dataset::{Dataset, rows};
 use bubbletouch_svm::kernel::Gamma;
-use bubbletouch_svm::split::Split;
 use ndarray::{Array1, ArrayView1, Axis, s};
 use std::collections::HashMap;
 use std::time::Instant;

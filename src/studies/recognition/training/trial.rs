@@ -106,11 +106,7 @@ impl Trial<'_> {
         let (split, learned_labels) = self.inputs.training(&family.training_rows)?;
         let training = self.training(family, (&split, &learned_labels))?;
         let groups = self.inputs.test_groups(&split.test);
-        let same_fit: Vec<&[Decision]> = family.fits().collect();
-        let penalties: Vec<Option<f64>> = same_fit
-            .iter()
-            .map(|configurations| configurations[0].c)
-            .collect();
+        let penalties: Vec<Option<f64>> = family.fits().map(|decisions| decisions[0].c).collect();
         let fitted = training.train_all(&penalties)?;
         // The rows of the test are not in memory together with the kernel values of the training.
         let test = dataset(
@@ -118,7 +114,7 @@ impl Trial<'_> {
             self.inputs.labels.select(Axis(0), &split.test),
         )?;
         let mut evaluations = Vec::with_capacity(family.decisions.len());
-        for (fitted, configurations) in fitted.iter().zip(same_fit) {
+        for (fitted, configurations) in fitted.iter().zip(family.fits()) {
             let start = Instant::now();
             let mut answered = AnsweredTouches {
                 fitted,
@@ -212,6 +208,13 @@ impl Trial<'_> {
                 of.into_iter().map(move |group| (group, is_correct))
             }))
         });
+        let mut fit_s = answered.fitted.fit_s;
+        if configuration.is_informed() {
+            fit_s += answered.model_s;
+        }
+        if classifier.trains_in_predictions() {
+            fit_s += predict_s;
+        }
         let (n_rows, n_correct) = (matrix.n_rows(), matrix.n_correct());
         let tested = answered.groups.map(|_| GroupedTest {
             n_rows,
@@ -242,17 +245,7 @@ impl Trial<'_> {
             },
             time: TrialTime {
                 trial: self.inputs.number,
-                fit_s: answered.fitted.fit_s
-                    + if configuration.is_informed() {
-                        answered.model_s
-                    } else {
-                        0.0
-                    }
-                    + if answered.fitted.classifier.trains_in_predictions() {
-                        predict_s
-                    } else {
-                        0.0
-                    },
+                fit_s,
                 predict_s,
                 predict_us_per_touch: 1e6 * predict_s / answered.test.targets.len() as f64,
             },
