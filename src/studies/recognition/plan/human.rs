@@ -38,23 +38,11 @@ impl HumanTouchSpec {
 }
 
 impl Check<'_> {
-    /// Checks the table `[human_touch]` of a study. A study has either objects or human touches; human touches exclude all keys that need objects.
+    /// Checks the table `[human_touch]` of a study: the array is a grid that fits around the arm.
     pub(crate) fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
         let Some(human) = &spec.human_touch else {
-            if spec.places_objects() && spec.touches == TouchesSpec::default() {
-                let allowed = "a table [touches]: how the objects are touched";
-                return Err(self.error("touches", "no such table", allowed));
-            }
             return Ok(());
         };
-        if spec.objects != ObjectsSpec::default() || spec.touches != TouchesSpec::default() {
-            let allowed = "it alone: it is what touches, and how";
-            return Err(self.error("human_touch", "beside [objects] or [touches]", allowed));
-        }
-        let allowed = "no such key: human touches have no groups";
-        self.absent(("recognition", &spec.recognition), &["group_by"], allowed)?;
-        let allowed = "0: the skin of human touches has no damper";
-        self.absent(("skin", &spec.skin), &["damping_n_s_per_m"], allowed)?;
         self.table("human_touch", human)?;
         self.grids(&spec.skin)?;
         let n_frames = (human.duration_s * human.frames_hz).round() + 1.0;

@@ -7,10 +7,9 @@ use crate::learning::evaluation::next_touch::NextTouch;
 use crate::studies::prelude::*;
 use crate::studies::recognition::plan::KeepTogether;
 use crate::studies::recognition::spec::{
-    DEFAULT_C, DEFAULT_CV_FOLDS, DEFAULT_TEST_FRACTION, DEFAULT_TILT_DEG, PoseSplit,
-    RecognitionSpec, SensingSpec, key,
+    DEFAULT_C, DEFAULT_CV_FOLDS, DEFAULT_TEST_FRACTION, DEFAULT_TILT_DEG, RecognitionSpec,
+    SensingSpec, key,
 };
-use crate::world::RestPoses;
 
 impl Check<'_> {
     /// Checks that `[sensing]` contains either a compression ratio or a number of measurements. The number may not exceed the number of taxels of any array.
@@ -83,24 +82,11 @@ impl Check<'_> {
         }
     }
 
-    /// Checks `[recognition]`: keys must be in range, must not contradict each other, and must have an effect.
+    /// Checks `[recognition]`: keys must be in range, and parameters of classifiers must have an effect.
     pub(crate) fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
         let mut changed = self.table("recognition", recognition)?;
         changed.retain(|name, value| !key(&format!("recognition.{name}")).is_usual(value));
-        self.parameters(recognition, &changed)?;
-        // If C or γ is chosen, the rarest objects may have too few rows for the inner folds.
-        let is_open = recognition.is_open();
-        let folded = match (is_open, recognition.is_informed()) {
-            (true, _) => Some(("c_grid or gamma_grid", "a given c and gamma")),
-            (_, true) => Some(("next_touch = \"most_informative\"", "another next_touch")),
-            _ => None,
-        };
-        if let (Some((key, other)), true) = (folded, changed.contains_key("class_imbalance")) {
-            let allowed = format!("{other}: folds need touches of every object");
-            let given = format!("given beside {key}");
-            return Err(self.error("recognition.class_imbalance", given, allowed));
-        }
-        Ok(())
+        self.parameters(recognition, &changed)
     }
 
     /// Checks that each hyper-parameter in `changed` is used by at least one classifier, and that the solver can train every SVM. `changed` contains the keys of
@@ -211,57 +197,6 @@ impl Check<'_> {
             }
         }
         Ok(())
-    }
-
-    /// Checks a split that is defined by poses; no other key may define the split in addition.
-    pub(crate) fn split(&self, spec: &StudySpec) -> Result<()> {
-        let recognition = &spec.recognition;
-        if recognition.split == PoseSplit::Random {
-            return Ok(());
-        }
-        // If the split is an axis, `test_fraction` describes the random split among its values.
-        let is_axis = spec.axes.has("recognition.split");
-        let of_others = ["group_by", "folds", "test_fraction"];
-        let of_others = &of_others[..of_others.len() - usize::from(is_axis)];
-        let allowed = "no such key: the split says what is held out";
-        self.absent(("recognition", recognition), of_others, allowed)?;
-        if !spec.places_objects() {
-            let given = recognition.split.word();
-            let allowed = "\"random\": only touches that a study places have a known pose";
-            return Err(self.error("recognition.split", given, allowed));
-        }
-        Ok(())
-    }
-
-    /// Checks the key `next_touch`, which names the rule that chooses the touches of a decision. The policy requires several touches per decision, and poses
-    /// that a robot can command for any object.
-    pub(crate) fn next_touch(&self, spec: &StudySpec) -> Result<()> {
-        let recognition = &spec.recognition;
-        let Some(chosen) = recognition.chosen_next().next() else {
-            return Ok(());
-        };
-        let (given, allowed) = if !spec.places_objects() {
-            let allowed = "\"random\": only touches that a study places have a known pose";
-            ("", allowed)
-        } else if spec.touches.rest != RestPoses::AsModelled {
-            let allowed = "rest = \"as_modelled\", or \"random\": how an unknown object lies cannot be commanded";
-            (" beside touches.rest = \"stable\"", allowed)
-        } else {
-            return Ok(());
-        };
-        let name = toml::Value::try_from(chosen).expect("every choice has a TOML form");
-        Err(self.error("recognition.next_touch", format!("{name}{given}"), allowed))
-    }
-
-    /// Checks that the number of trials is a multiple of the number of folds.
-    pub(crate) fn folds(&self, spec: &StudySpec) -> Result<()> {
-        match spec.recognition.folds {
-            Some(k) if !spec.trials.is_multiple_of(k) => {
-                let allowed = format!("a multiple of recognition.folds = {k}");
-                Err(self.error("trials", spec.trials, allowed))
-            }
-            _ => Ok(()),
-        }
     }
 }
 

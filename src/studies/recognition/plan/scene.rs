@@ -72,26 +72,6 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that a layout of taxels has all required keys and no unsupported keys.
-    pub(crate) fn layout(&self, spec: &StudySpec) -> Result<()> {
-        let radius = spec.skin.curvature_radius_mm;
-        let layout = spec.skin.layout.unwrap_or_default();
-        let (key, given, allowed) = match radius {
-            None if layout.is_curved() => (
-                "skin.layout",
-                layout.words().to_owned(),
-                "skin.curvature_radius_mm beside a cylinder or a cap",
-            ),
-            Some(_) if layout.is_curved() && spec.touches.speed_mm_per_s > 0.0 => (
-                "touches.speed_mm_per_s",
-                spec.touches.speed_mm_per_s.to_string(),
-                "0: taxels of a curved layout move at speeds of their own",
-            ),
-            _ => return Ok(()),
-        };
-        Err(self.error(key, given, allowed))
-    }
-
     pub(crate) fn arrays(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         self.table("skin", skin)?;
         let pitches = skin.pitch_mm.values();

@@ -45,33 +45,6 @@ pub(crate) fn of_channel(named: &Seed, channel: usize) -> Seed {
 }
 
 impl Check<'_> {
-    /// Checks the keys of skins that read shear forces and of touches that slide.
-    pub(crate) fn shear(&self, spec: &StudySpec) -> Result<()> {
-        self.of_sensed(spec)?;
-        let touches = &spec.touches;
-        let slides = touches.slide_mm.is_some_and(|slide| slide > 0.0);
-        let reads_shear = spec.skin.sensed == Some(SensedSpec::Shear);
-        if touches.speed_mm_per_s > 0.0 && (slides || reads_shear) {
-            let allowed = "0 where skin.sensed is shear, and where touches slide";
-            return Err(self.error("touches.speed_mm_per_s", touches.speed_mm_per_s, allowed));
-        }
-        Ok(())
-    }
-
-    fn of_sensed(&self, spec: &StudySpec) -> Result<()> {
-        let skin = &spec.skin;
-        let sensed = skin.sensed.unwrap_or_default();
-        if spec.human_touch.is_some() && sensed != SensedSpec::Deflection {
-            let allowed = "no such key in a study of human touches";
-            return Err(self.error("skin.sensed", "given", allowed));
-        }
-        if sensed != SensedSpec::Deflection && spec.signal.steps.contains(&StepSpec::Force) {
-            let allowed = "no such step where skin.sensed is a force from the first step on";
-            return Err(self.error("signal.steps", "force", allowed));
-        }
-        Ok(())
-    }
-
     /// Returns the arrays of a study, each with its measured quantity and its slide along the object.
     pub(crate) fn touching_arrays(
         &self,

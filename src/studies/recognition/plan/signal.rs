@@ -94,21 +94,6 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the key `test_sensor`: another skin for test touches requires a sensor error that differs between skins.
-    pub(crate) fn check_test_sensor(&self, signal: &SignalSpec) -> Result<()> {
-        let is_of_skin =
-            |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
-        let mut skins = signal.test_sensor.iter().flat_map(Axis::values);
-        if skins.all(|skin| skin == TestSensor::SameSkin) || signal.steps.iter().any(is_of_skin) {
-            return Ok(());
-        }
-        let all = SensorError::all().map(SensorError::about);
-        let of_skin: Vec<&str> = all.filter(|e| e.is_of_skin).map(|e| e.step).collect();
-        let given = "given for skins without a difference";
-        let allowed = format!("{} among signal.steps beside it", of_skin.join(" or "));
-        Err(self.error("signal.test_sensor", given, allowed))
-    }
-
     /// Checks the steps of the signal chain. Each step occurs at most once. A step whose axis is set is listed. A listed sensor error has at least one
     /// strength. Without the check, a key could be ignored silently.
     ///

@@ -4,6 +4,7 @@
 //! millimetres, degrees and fractions into metres, radians and absolute values. Later stages use SI units only.
 
 use crate::studies::prelude::*;
+use crate::studies::recognition::plan::unused_keys::{OF_LEARNING, OF_TOUCHES};
 use crate::studies::recognition::plan::{Condition, KeepTogether};
 use crate::studies::recognition::spec::SpreadSpec;
 use std::collections::HashSet;
@@ -58,8 +59,7 @@ impl Plan {
     pub(crate) fn with_any_keys(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.number("trials", spec.trials as f64)?;
-        check.layout(&spec)?;
-        check.shear(&spec)?;
+        check.combinations(OF_TOUCHES, &spec)?;
         if let Some(recorded) = &mut spec.recorded {
             recorded.settle_values(&spec.skin);
         }
@@ -89,7 +89,6 @@ impl Plan {
             None => spec.touches.speed_mm_per_s * MM,
         };
         check.steps(&spec.signal)?;
-        check.check_test_sensor(&spec.signal)?;
         check.sensing(&spec.sensing, &arrays)?;
         check.selection(&spec.sensing)?;
         let frames = match (&spec.human_touch, &spec.recorded) {
@@ -100,10 +99,7 @@ impl Plan {
         check.recognition(&spec.recognition)?;
         check.images(&spec.recognition, &arrays)?;
         check.over_time(&spec.recognition, &frames)?;
-        check.split(&spec)?;
-        check.next_touch(&spec)?;
-        check.folds(&spec)?;
-        check.repeats(&spec)?;
+        check.combinations(OF_LEARNING, &spec)?;
         let mut plan = Self {
             speed,
             tested: None,
@@ -263,33 +259,6 @@ impl MeasurementGroup {
             counts.drain(..counts.len() - 1);
         }
         counts
-    }
-}
-
-impl Check<'_> {
-    /// Checks that the number of trials is a multiple of the key `projections_per_split`.
-    pub(crate) fn repeats(&self, spec: &StudySpec) -> Result<()> {
-        const KEY: &str = "projections_per_split";
-        let Some(n_projections) = spec.projections_per_split else {
-            return Ok(());
-        };
-        if n_projections < 2 {
-            let allowed = "at least 2, or no such key: a projection of its own for each trial";
-            return Err(self.error(KEY, n_projections, allowed));
-        }
-        let n_splits = spec.trials / n_projections;
-        if !spec.trials.is_multiple_of(n_projections) || n_splits < 2 {
-            let allowed = format!("a multiple of {KEY} = {n_projections}, for at least 2 splits");
-            return Err(self.error("trials", spec.trials, allowed));
-        }
-        match spec.recognition.folds {
-            Some(k) if !n_splits.is_multiple_of(k) => {
-                let given = format!("{n_splits} splits of {n_projections} projections each");
-                let allowed = format!("a multiple of recognition.folds = {k} splits");
-                Err(self.error("trials", given, allowed))
-            }
-            _ => Ok(()),
-        }
     }
 }
 

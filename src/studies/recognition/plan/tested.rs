@@ -44,10 +44,6 @@ impl Check<'_> {
             true => TABLES,
             false => TABLES_OF_OTHERS,
         };
-        if spec.test.contains_key("touches") && spec.recognition.chosen_next().next().is_some() {
-            let given = "given where touches are chosen by their poses (recognition.next_touch)";
-            return Err(self.error("test.touches", given, "other tables of [test]"));
-        }
         let mut study = table_of(spec);
         study.remove("test");
         for (name, keys) in &spec.test {
