@@ -529,9 +529,10 @@ impl TableSchema {
         match absent {
             None => self.required.push(name),
             Some(value) => {
-                let value = without_nulls(json!(value));
-                if !is_empty(&value) {
-                    schema["default"] = value;
+                // A key that is absent by default has no TOML form.
+                let value = toml::Value::try_from(value).ok();
+                if let Some(value) = value.filter(|value| !is_empty(value)) {
+                    schema["default"] = json!(value);
                 }
             }
         }
@@ -561,29 +562,13 @@ pub(crate) fn key_schema(mut values: Value, range: Option<Range>, lines: &[&str]
     described(values, lines)
 }
 
-/// Returns a value without the keys that are absent: TOML has no null.
-fn without_nulls(value: Value) -> Value {
+/// Returns whether a value is an empty text, an empty list or an empty table.
+fn is_empty(value: &toml::Value) -> bool {
     match value {
-        Value::Object(keys) => {
-            let given = keys.into_iter().filter(|(_, value)| !value.is_null());
-            Value::Object(
-                given
-                    .map(|(key, value)| (key, without_nulls(value)))
-                    .collect(),
-            )
-        }
-        other => other,
-    }
-}
-
-/// Returns whether a value is nothing, an empty text, an empty list or an empty table.
-fn is_empty(value: &Value) -> bool {
-    match value {
-        Value::Null => true,
-        Value::String(text) => text.is_empty(),
-        Value::Array(values) => values.is_empty(),
-        Value::Object(keys) => keys.is_empty(),
-        Value::Bool(_) | Value::Number(_) => false,
+        toml::Value::String(text) => text.is_empty(),
+        toml::Value::Array(values) => values.is_empty(),
+        toml::Value::Table(keys) => keys.is_empty(),
+        _ => false,
     }
 }
 

@@ -56,18 +56,13 @@ impl Range {
     /// Returns whether the range contains a number.
     pub fn contains(self, value: f64) -> bool {
         match self {
-            Self::Positive => positive(value),
             Self::NotNegative => not_negative(value),
-            Self::Finite => value.is_finite(),
-            Self::Fraction => (0.0..=1.0).contains(&value),
             Self::Part => value > 0.0 && value < 1.0,
-            Self::AtLeastOne => value.is_finite() && value >= 1.0,
-            Self::Count(least, most) => (least as f64..=most as f64).contains(&value),
-            Self::Between(low, high, _) => (low..=high).contains(&value),
             Self::ZeroOrBetween(low, high, _) => value == 0.0 || (low..=high).contains(&value),
-            Self::Declared(Parameter { range, .. }) => (range[0]..=range[1]).contains(&value),
             Self::Strength(strength) => strength.is_allowed(value),
-            Self::Any | Self::Unchecked => true,
+            _ => self
+                .bounds()
+                .is_none_or(|[low, high]| value.is_finite() && (low..=high).contains(&value)),
         }
     }
 

@@ -1,6 +1,5 @@
 //! Plan of a recognition study: checked keys, converted to SI units.
 
-pub(crate) mod human;
 pub(crate) mod learning;
 pub mod listed_taxels;
 pub mod pose_groups;

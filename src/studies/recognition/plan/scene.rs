@@ -1,11 +1,11 @@
-//! Checks of `[objects]`, `[skin]` and `[touches]`.
+//! Checks of `[objects]`, `[skin]`, `[touches]` and `[human_touch]`, and conversion of their keys to SI units.
 
 use crate::inputs::check::MAX_VALUES;
-use crate::inputs::units::MAX_SIDE;
+use crate::inputs::units::{MAX_FRAMES, MAX_SIDE};
 use crate::mesh::SizeLimits;
 use crate::studies::prelude::*;
-use crate::studies::recognition::spec::{RangeSpec, SpreadSpec};
-use crate::world::{Grid, Spread};
+use crate::studies::recognition::spec::{HumanTouchSpec, RangeSpec, SpreadSpec};
+use crate::world::{Grid, Layout, Patch, Spread, Taxels};
 
 /// Returns the smallest pitch of all arrays, metres.
 fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
@@ -102,13 +102,17 @@ impl Check<'_> {
         Ok(arrays)
     }
 
-    /// Checks that all arrays are square grids, and returns them.
+    /// Checks that all arrays are square grids of taxels that read normal deflections or forces, and returns them. Any other key of `[skin]` is refused.
     pub(crate) fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
-        let allowed = "no such key: only studies of recognition have other layouts than grids";
-        self.absent(("skin", skin), &["layout", "curvature_radius_mm"], allowed)?;
-        let of_shear = ["sensed", "friction", "shear_stiffness_n_per_m"];
-        let allowed = "no such key: only studies of recognition have skins that read shear";
-        self.absent(("skin", skin), &of_shear, allowed)?;
+        let of_taxels = [
+            "taxel_radius_mm",
+            "stroke_mm",
+            "stiffness_n_per_m",
+            "damping_n_s_per_m",
+        ];
+        let of_grids = [&["pitch_mm", "size_mm", "taxels"], &of_taxels[..]].concat();
+        let allowed = "no such key: only studies of recognition use it";
+        self.only(("skin", skin), &of_grids, allowed)?;
         self.arrays(skin)
     }
 
@@ -139,14 +143,23 @@ impl Check<'_> {
         }
     }
 
-    /// Returns the placement (distribution of touch poses). Returns an error if a touch has several frames or slides.
+    /// Returns the placement (distribution of touch poses). Any key of `[touches]` that does not describe poses or
+    /// the press is refused.
     ///
     /// # Errors
     /// If the check fails; the error names the file, the key and the allowed values.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
+        let of_poses = [
+            "offset_x_mm",
+            "offset_y_mm",
+            "yaw_deg",
+            "tilt_x_deg",
+            "tilt_y_deg",
+        ];
+        let of_presses = ["rest", "per_object", "depth_mm", "speed_mm_per_s"];
         let allowed = "no such key: only studies of recognition and of breaking points use it";
-        let of_recognition = ["slide_mm", "slide_deg", "frames"];
-        self.absent(("touches", touches), &of_recognition, allowed)?;
+        let of_touches = [&of_poses[..], &of_presses].concat();
+        self.only(("touches", touches), &of_touches, allowed)?;
         self.placed(touches)
     }
 
@@ -215,5 +228,72 @@ impl Check<'_> {
         }
         let values = self.list(key, values)?;
         Ok(axis.listed(values.iter().map(|v| v * unit).collect()))
+    }
+}
+
+impl HumanTouchSpec {
+    /// Returns the distance from the axis of the arm to the outer surface of the skin, metres.
+    pub fn surface(&self) -> f64 {
+        self.arm_radius_mm * MM
+    }
+
+    /// Returns the time between two frames of a recording, seconds.
+    pub fn interval(&self) -> f64 {
+        1.0 / self.frames_hz
+    }
+
+    /// Returns the number F of frames per touch.
+    pub fn n_frames(&self) -> usize {
+        (self.duration_s * self.frames_hz).round() as usize + 1
+    }
+
+    /// Returns the time between the first and the last frame of a recording, seconds.
+    pub fn duration(&self) -> f64 {
+        (self.n_frames() - 1) as f64 * self.interval()
+    }
+
+    /// Returns a patch with the array bent around the arm. The columns of the array form rings, its rows run along the arm, and its middle is at +x.
+    ///
+    /// # Errors
+    /// If the array does not fit around the arm.
+    pub fn skin(&self, array: &TaxelArray) -> Result<Patch> {
+        let taxel = *array.taxel();
+        let layout = Layout::bent_grid(array.grid(), self.surface() - taxel.radius)?;
+        Patch::new("forearm", layout, Taxels::Equal(taxel))
+    }
+}
+
+impl Check<'_> {
+    /// Checks the table `[human_touch]` of a study: the array is a grid that fits around the arm.
+    pub(crate) fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
+        let Some(human) = &spec.human_touch else {
+            return Ok(());
+        };
+        self.table("human_touch", human)?;
+        self.grids(&spec.skin)?;
+        let n_frames = (human.duration_s * human.frames_hz).round() + 1.0;
+        if !(2.0..=MAX_FRAMES as f64).contains(&n_frames) {
+            let allowed = format!("2 to {MAX_FRAMES} frames in duration_s at frames_hz");
+            return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
+        }
+        let mut arrays = arrays.iter();
+        arrays.try_for_each(|array| self.fits_around(human, array))
+    }
+
+    /// Checks that the array leaves a gap of at least one pitch on the far side of the arm. Also checks that its layout has rows and columns.
+    fn fits_around(&self, human: &HumanTouchSpec, array: &TaxelArray) -> Result<()> {
+        let grid = array.grid();
+        let radius = human.surface() - array.taxel().radius;
+        let around = std::f64::consts::TAU * radius;
+        let width = grid.nx as f64 * grid.pitch;
+        if radius > 0.0 && width <= around && human.skin(array)?.n_taxels() == grid.n_taxels() {
+            return Ok(());
+        }
+        let (pitch_mm, width_mm) = (millimetres(grid.pitch), width / MM);
+        let columns = format!("{} columns at {pitch_mm} mm", grid.nx);
+        let given = format!("{columns}, {width_mm:.1} mm together");
+        let around_mm = around.max(0.0) / MM;
+        let allowed = format!("at most {around_mm:.1} mm, once around the taxels' rest centres");
+        Err(self.error("skin", given, allowed))
     }
 }

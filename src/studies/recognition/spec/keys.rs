@@ -100,6 +100,19 @@ impl Check<'_> {
         given.map_or(Ok(()), |path| Err(self.error(&path, "given", allowed)))
     }
 
+    /// Checks that a table contains none but the named keys, unless the value of another key has the effect of the absent key.
+    pub(crate) fn only(
+        &self,
+        (name, table): (&str, &impl Serialize),
+        keys: &[&str],
+        allowed: &str,
+    ) -> Result<()> {
+        let others = table_of(table);
+        let others: Vec<&str> = others.keys().map(String::as_str).collect();
+        let others = others.into_iter().filter(|key| !keys.contains(key));
+        self.absent((name, table), &others.collect::<Vec<_>>(), allowed)
+    }
+
     /// Checks and returns the value of a numeric key of recognition studies.
     pub(crate) fn number(&self, path: &str, value: f64) -> Result<f64> {
         let range = key(path).range;
