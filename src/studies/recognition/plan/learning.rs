@@ -82,16 +82,11 @@ impl Check<'_> {
         }
     }
 
-    /// Checks `[recognition]`: keys must be in range, and parameters of classifiers must have an effect.
+    /// Checks `[recognition]`: keys must be in range, each parameter of classifiers must be used by at least one classifier, and the solver must be able to train
+    /// every SVM.
     pub(crate) fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
         let mut changed = self.table("recognition", recognition)?;
         changed.retain(|name, value| !key(&format!("recognition.{name}")).is_usual(value));
-        self.parameters(recognition, &changed)
-    }
-
-    /// Checks that each hyper-parameter in `changed` is used by at least one classifier, and that the solver can train every SVM. `changed` contains the keys of
-    /// `[recognition]` whose values differ from the defaults.
-    fn parameters(&self, recognition: &RecognitionSpec, changed: &toml::Table) -> Result<()> {
         let kinds = recognition.kinds();
         self.list(
             "recognition.classifier",

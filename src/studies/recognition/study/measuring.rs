@@ -80,53 +80,41 @@ impl RecognitionStudy {
             part.touched.prepare();
             part.tested.prepare();
         }
-        let mut jobs = self.jobs_left(left);
-        // Sets with most frames first, because their items take longest.
-        jobs.sort_by_key(|(touches, _)| {
-            let set = &self.touch_sets[*touches];
-            (set.part, set.array, Reverse(set.n_frames))
-        });
-        if self.has_axes() {
-            // Progress lines for every combination would be too many.
-            let n_items =
-                |(_, jobs): &(usize, Vec<Job>)| 1 + jobs.iter().flat_map(Job::items).count();
-            let n_items: usize = jobs.iter().map(n_items).sum();
-            left.progress.stage("work items", n_items as u64);
-        }
-        let mut told = BTreeSet::new();
-        // Separate test touches are simulated together with the training touches.
-        let (learned, others): (Vec<_>, _) =
-            jobs.into_iter().partition(|(_, jobs)| !jobs.is_empty());
-        learned
-            .into_iter()
-            .try_for_each(|(touches, jobs)| self.on_touches(left, touches, jobs, &mut told))?;
-        others.into_iter().try_for_each(|(touches, _)| {
-            let is_told = told.contains(&touches);
-            match is_told {
-                true => Ok(()),
-                false => self.make(left, touches, &[], &mut told).map(drop),
-            }
-        })
-    }
-
-    /// Returns whether the study has a table `[axes]`.
-    fn has_axes(&self) -> bool {
-        self.parts().len() > 1
-    }
-
-    /// Returns each set of touches that pending work items need, with the measurements to compute from its frames.
-    fn jobs_left(&self, left: &PendingItems<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
-        let touches = 0..self.touch_sets.len();
-        let jobs = touches.map(|touches| {
+        let jobs = (0..self.touch_sets.len()).map(|touches| {
             let mut jobs = self.jobs(touches, 0..self.n_trials(), |item| left.has(item));
             // The largest measurements are in memory together, not at the end.
             jobs.sort_by_cached_key(|job| Reverse(job.bytes()[0] as u64));
             (touches, jobs)
         });
-        let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
-            !jobs.is_empty() || left.has(self.touches_item(*touches))
-        };
-        jobs.filter(is_left).collect()
+        let mut jobs: Vec<(usize, Vec<Job>)> = jobs.collect();
+        jobs.retain(|(touches, jobs)| !jobs.is_empty() || left.has(self.touches_item(*touches)));
+        // Separate test touches are simulated together with the training touches. Sets with most frames come first, because their items take longest.
+        jobs.sort_by_key(|(touches, jobs)| {
+            let set = &self.touch_sets[*touches];
+            (jobs.is_empty(), set.part, set.array, Reverse(set.n_frames))
+        });
+        if self.has_axes() {
+            // Progress lines for every combination would be too many.
+            let items = jobs
+                .iter()
+                .flat_map(|(_, jobs)| jobs.iter().flat_map(Job::items));
+            let n_items = jobs.len() + items.count();
+            left.progress.stage("work items", n_items as u64);
+        }
+        let mut told = BTreeSet::new();
+        for (touches, jobs) in jobs {
+            if !jobs.is_empty() {
+                self.on_touches(left, touches, jobs, &mut told)?;
+            } else if !told.contains(&touches) {
+                self.make(left, touches, &[], &mut told)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns whether the study has a table `[axes]`.
+    fn has_axes(&self) -> bool {
+        self.parts().len() > 1
     }
 
     /// Returns the measurements of a set of touches that pending families of configurations need.
