@@ -5,12 +5,11 @@ use crate::inputs::params::words;
 use crate::inputs::range::Range;
 use crate::inputs::toml_value::number_value;
 use crate::random::Seed;
-use crate::signal::{
-    MAX_OWN_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength,
-};
+use crate::signal::{NoiseUnit, SensorError, SignalStep, Strength};
 use crate::table::{Column, Role, Scale};
 use serde::{Serialize, Serializer};
-use std::sync::LazyLock;
+use std::collections::BTreeMap;
+use std::sync::{Arc, LazyLock};
 
 words! {
     /// Skin of the test touches, compared with the skin of the training touches.
@@ -21,16 +20,6 @@ words! {
         AnotherSkin = "another_skin",
     }
 }
-
-/// Number of strengths (parameters) that all built-in sensor errors have together.
-const N_STRENGTHS: usize = {
-    let (mut n, mut place) = (0, 0);
-    while place < SENSOR_ERRORS.len() {
-        n += SENSOR_ERRORS[place].about().strengths.len();
-        place += 1;
-    }
-    n
-};
 
 /// Returns the strengths (parameters) of all sensor errors in the order of table columns, from the material to the electronics.
 pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)> {
@@ -139,30 +128,10 @@ pub fn strength_columns() -> &'static [Column] {
     &COLUMNS
 }
 
-/// Strengths of all sensor errors in the units of their keys, in the order of [`all_strengths`]. A configuration has one copy, so a strength takes 8 bytes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Strengths([Slot; N_STRENGTHS + MAX_OWN_STRENGTHS]);
-
-/// Bits of a strength; those of NaN for a strength that a study does not set.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Slot(u64);
-
-impl Slot {
-    fn new(value: Option<f64>) -> Self {
-        // Adding 0 makes a negative zero positive.
-        Self(value.map_or(f64::NAN, |value| value + 0.0).to_bits())
-    }
-
-    fn value(self) -> Option<f64> {
-        Some(f64::from_bits(self.0)).filter(|value| !value.is_nan())
-    }
-}
-
-impl Default for Strengths {
-    fn default() -> Self {
-        Self([Slot::new(None); N_STRENGTHS + MAX_OWN_STRENGTHS])
-    }
-}
+/// Strengths of sensor errors that a study sets, in the units of their keys, by their places in [`all_strengths`]. Configurations with equal strengths share one
+/// copy.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Strengths(Arc<BTreeMap<usize, f64>>);
 
 /// Writes the strengths that are not zero, by their keys: a strength that a study does not set equals zero.
 impl Serialize for Strengths {
@@ -181,19 +150,23 @@ impl Strengths {
         given.find_map(|(_, strength, value)| (strength.key == key).then_some(value))
     }
 
-    /// Returns a copy in which the strength with this key has a different value.
+    /// Returns a copy in which the strength with this key has a different value; `None` for a strength that the study does not set.
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
-        let mut slots = all_strengths().zip(&mut self.0);
-        if let Some((_, slot)) = slots.find(|((_, strength), _)| strength.key == key) {
-            *slot = Slot::new(value);
+        if let Some(place) = all_strengths().position(|(_, strength)| strength.key == key) {
+            let given = Arc::make_mut(&mut self.0);
+            match value {
+                // Adding 0 makes a negative zero positive.
+                Some(value) => given.insert(place, value + 0.0),
+                None => given.remove(&place),
+            };
         }
         self
     }
 
     /// Returns the strengths of sensor errors that the study sets.
     pub fn given(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
-        let all = all_strengths().zip(self.0);
-        all.filter_map(|((error, strength), slot)| Some((error, strength, slot.value()?)))
+        let all = all_strengths().enumerate();
+        all.filter_map(|(place, (error, strength))| Some((error, strength, *self.0.get(&place)?)))
     }
 
     /// Returns the table cells of the strengths that the study sets: the name of the column and the value.
@@ -243,19 +216,22 @@ pub(crate) fn strength_words(error: SensorError, strength: &Strength) -> String 
 mod tests {
     use super::*;
     use crate::inputs::params::keys_of;
-    use crate::signal::ErrorAbout;
+    use crate::signal::{ErrorAbout, SENSOR_ERRORS};
     use crate::study::SignalSpec;
 
     #[test]
     fn a_strength_is_found_by_its_key_and_zero_is_none_of_it() {
         let all: Vec<_> = all_strengths().collect();
-        assert_eq!(all.len(), N_STRENGTHS);
+        let built_in = SENSOR_ERRORS
+            .iter()
+            .map(|error| error.about().strengths.len());
+        assert_eq!(all.len(), built_in.sum::<usize>());
         for (error, strength) in all {
             let strengths = Strengths::default().with(strength.key, Some(0.5));
             assert_eq!(strengths.get(strength.key), Some(0.5));
             let present: Vec<_> = strengths.present().map(|(e, s, v)| (e, s.key, v)).collect();
             assert_eq!(present, [(error, strength.key, 0.5)]);
-            let none = strengths.with(strength.key, Some(0.0));
+            let none = strengths.clone().with(strength.key, Some(0.0));
             assert_eq!((none.present().count(), none.given().count()), (0, 1));
         }
     }

@@ -206,7 +206,7 @@ fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
 impl MeasurementGroup {
     /// Returns the inputs of the signal chain under the condition of this group.
     pub fn signal(&self, plan: &Plan) -> SignalInputs {
-        signal_inputs(plan, self.condition)
+        signal_inputs(plan, self.condition.clone())
     }
 
     /// Returns all inputs that determine the measurements of this group.
@@ -227,7 +227,7 @@ impl MeasurementGroup {
             }
         }
         let test = plan.tested.as_deref().map(|tested| {
-            let condition = plan.tested_condition(self.condition);
+            let condition = plan.tested_condition(self.condition.clone());
             TestInputs {
                 array: &tested.arrays[self.array],
                 speed: tested.speed,

@@ -7,7 +7,7 @@ use crate::studies::prelude::*;
 use crate::studies::recognition::spec::{SignalAxis, SignalSpec};
 
 /// Signal condition: one strength of noise, smoothing and each sensor error, that is, one value for each axis of `[signal]`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Condition {
     /// Noise standard deviation of a reading, in the noise unit of the plan.
     pub noise: f64,
@@ -152,15 +152,15 @@ impl Plan {
             condition.with((key, *step), axis.values()[0])
         };
         let first = signal.axes.given().fold(Condition::default(), first);
-        let mut conditions = vec![first];
+        let mut conditions = vec![first.clone()];
         for (key, step, axis) in signal.axes.given() {
             let values = axis.values();
             let with = |condition: Condition, values: &[f64]| -> Vec<Condition> {
-                let with = |value: &f64| condition.with((key, *step), *value);
+                let with = |value: &f64| condition.clone().with((key, *step), *value);
                 values.iter().map(with).collect()
             };
             match signal.combine {
-                CombineSpec::OneAtATime => conditions.extend(with(first, &values[1..])),
+                CombineSpec::OneAtATime => conditions.extend(with(first.clone(), &values[1..])),
                 // The last axis changes fastest.
                 CombineSpec::All => {
                     let all = conditions.into_iter();

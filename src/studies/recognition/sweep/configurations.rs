@@ -126,7 +126,7 @@ impl Sweep {
                 let group = MeasurementGroup {
                     array,
                     frames,
-                    condition,
+                    condition: condition.clone(),
                     test_sensor: test_sensor.unwrap_or_default(),
                     ensemble,
                     selection,
@@ -237,7 +237,7 @@ impl Sweep {
                 noise_std: group.condition.noise,
                 noise_unit: plan.noise_unit,
                 smoothing_mm: millimetres(group.condition.smoothing),
-                strengths: group.condition.strengths,
+                strengths: group.condition.strengths.clone(),
                 test_sensor: plan.spec.signal.test_sensor.as_ref().map(|_| group.test_sensor),
                 ensemble: group.ensemble,
                 selection: plan.spec.sensing.selection.as_ref().map(|_| group.selection),
