@@ -10,7 +10,7 @@ pub mod object_detail;
 pub mod prelude;
 pub mod recognition;
 pub mod reconstruction;
-mod shared_measurements;
+mod shared_steps;
 pub(crate) mod source;
 pub mod stability;
 pub(crate) mod study;

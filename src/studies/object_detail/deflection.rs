@@ -2,7 +2,7 @@
 
 use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
 use crate::studies::prelude::*;
-use crate::studies::shared_measurements::median_s;
+use crate::studies::shared_steps::median_s;
 
 /// Summary of |δ − δ\*| over taxels, where δ is the deflection by a model and δ\* the deflection by the exact object.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -8,7 +8,7 @@ use crate::studies::object_detail::plan::*;
 use crate::studies::object_detail::rows::*;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::pressed_objects::simulate_array;
-use crate::studies::shared_measurements::{accuracy, touches_of};
+use crate::studies::shared_steps::{accuracy, touches_of};
 use ndarray::Array2;
 use std::ops::Range;
 

@@ -8,7 +8,7 @@ use crate::studies::object_detail::plan::*;
 use crate::studies::object_detail::recognition::{Learned, Sensor};
 use crate::studies::object_detail::rows::*;
 use crate::studies::prelude::*;
-use crate::studies::shared_measurements::grouped;
+use crate::studies::shared_steps::grouped;
 use rayon::prelude::*;
 use std::path::PathBuf;
 

@@ -10,7 +10,7 @@ use crate::studies::reconstruction::measured::measure_cells;
 use crate::studies::reconstruction::plan::*;
 use crate::studies::reconstruction::rows::*;
 use crate::studies::reconstruction::touches::{Touches, pareto};
-use crate::studies::shared_measurements::found_and_cost;
+use crate::studies::shared_steps::found_and_cost;
 use std::path::Path;
 
 /// Reconstruction study: its plan, its objects and their touches.

@@ -8,7 +8,7 @@ use crate::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, Steps, System, run,
 };
 use crate::studies::prelude::*;
-use crate::studies::shared_measurements::median_s;
+use crate::studies::shared_steps::median_s;
 use crate::studies::stability::plan::*;
 use crate::studies::stability::rows::*;
 use crate::studies::stability::scene::{ConfigurationScene, GRAVITY};

@@ -2,7 +2,7 @@
 
 use crate::report::csv_tables::read_rows;
 use crate::studies::prelude::*;
-use crate::studies::shared_measurements::{found_and_cost, grouped};
+use crate::studies::shared_steps::{found_and_cost, grouped};
 use crate::studies::stability::charts::{answers, charts, with_common};
 use crate::studies::stability::configuration::measure;
 use crate::studies::stability::plan::*;

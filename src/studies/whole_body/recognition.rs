@@ -4,7 +4,7 @@ use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
 use crate::sensing::Columns;
 use crate::studies::prelude::*;
-use crate::studies::shared_measurements::{accuracy, touches_of};
+use crate::studies::shared_steps::{accuracy, touches_of};
 use crate::studies::whole_body::drive::{Drive, Posture, built_in};
 use crate::studies::whole_body::plan::*;
 use crate::studies::whole_body::rows::*;

@@ -1,5 +1,5 @@
-//! Measurements that several kinds of studies share: groups of rows, medians of computing times, and recognition with classifiers that are trained on touches of
-//! approximate object models.
+//! Steps that several kinds of studies share: the check of touches of one array, groups of rows, medians of computing times, and recognition with classifiers
+//! that are trained on touches of approximate object models.
 
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
 use crate::statistics::p_status::CONFIDENCE;
