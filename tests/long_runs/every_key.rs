@@ -3,6 +3,7 @@
 //! The values are made from the declarations, which the JSON Schema contains. A value that equals the default, and a key that needs another key beside it, count
 //! for nothing. `.ci/long engine` runs this law, which takes some minutes.
 
+use crate::hostile::replaced;
 use crate::kinds::Kind;
 use serde_json::Value as Json;
 use std::fs;
@@ -116,20 +117,8 @@ fn toml_of(json: &Json) -> Option<Value> {
 
 /// Returns the study with another value of a key; `None` if the study has no table for it or has the value.
 fn with(study: &Table, path: &[String], value: &Value) -> Option<String> {
-    let mut changed = Value::Table(study.clone());
-    let mut at = &mut changed;
-    let (last, tables) = path.split_last()?;
-    for name in tables {
-        at = match at {
-            Value::Array(tables) => tables.first_mut()?,
-            Value::Table(table) => table
-                .entry(name)
-                .or_insert_with(|| Value::Table(Table::new())),
-            _ => return None,
-        };
-    }
-    let before = at.as_table_mut()?.insert(last.clone(), value.clone());
-    (before.as_ref() != Some(value)).then(|| toml::to_string(&changed).unwrap())
+    let changed = replaced(study, path, value)?;
+    (changed != toml::to_string(study).unwrap()).then_some(changed)
 }
 
 /// Returns the keys of a kind of study that are accepted, but change no table.

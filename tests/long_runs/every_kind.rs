@@ -10,7 +10,6 @@ use bubbletouch::table::{Better, Role, Table};
 use serde_json::Value;
 use std::collections::HashMap;
 use std::fs;
-use std::path::Path;
 
 /// Checks all laws for a kind of study.
 fn obeys_all_laws(kind: &str) {
@@ -226,8 +225,7 @@ struct DifferenceRow {
 fn compared(case: &Case, [first, second]: [&str; 2]) -> (String, Vec<DifferenceRow>) {
     let files = ["--out", "moved.csv", "--html", "moved.html"];
     let (said, _) = case.succeeds(&[&["compare", first, second], &files[..]].concat());
-    let mut rows = csv::Reader::from_path(case.path("moved.csv")).unwrap();
-    (said, rows.deserialize().map(|row| row.unwrap()).collect())
+    (said, case.rows("moved.csv"))
 }
 
 /// Script that sorts a table by each of its columns, twice, and searches it for its first cell; returns the shown rows each time.
@@ -263,8 +261,8 @@ fn has_tables_that_sort_and_can_be_searched(case: &Case) {
     for table in tried.as_array().unwrap() {
         let file = table["file"].as_str().unwrap();
         // A table derived from others has no file.
-        let path = case.path(&format!("whole/{file}"));
-        let rows = path.exists().then(|| csv_rows(&path));
+        let path = format!("whole/{file}");
+        let rows = case.path(&path).exists().then(|| case.rows(&path));
         for sort in table["sorts"].as_array().unwrap() {
             check_sorted(file, sort, rows.as_deref());
             n_sorted += 1;
@@ -279,14 +277,11 @@ fn has_tables_that_sort_and_can_be_searched(case: &Case) {
     browser.check_quiet();
 }
 
-/// Returns the rows of a CSV file by column names.
-fn csv_rows(path: &Path) -> Vec<HashMap<String, String>> {
-    let rows = csv::Reader::from_path(path).unwrap().into_deserialize();
-    rows.map(Result::unwrap).collect()
-}
+/// Row of a CSV file by column names.
+type Row = HashMap<String, String>;
 
 /// Asserts that rows are sorted in ascending and in descending order, with rows without a number last in both cases.
-fn check_sorted(file: &str, sort: &Value, rows: Option<&[HashMap<String, String>]>) {
+fn check_sorted(file: &str, sort: &Value, rows: Option<&[Row]>) {
     let column = sort["column"].as_str().unwrap();
     let turns = sort["turns"].as_array().unwrap();
     let mut orders: Vec<&str> = turns.iter().map(|turn| turn[0].as_str().unwrap()).collect();
@@ -304,13 +299,14 @@ fn check_sorted(file: &str, sort: &Value, rows: Option<&[HashMap<String, String>
         let numbers: Vec<f64> = numbers.collect();
         let is_up = turn[0] == "ascending";
         for pair in numbers.windows(2) {
-            let (a, b) = if is_up {
-                (pair[0], pair[1])
-            } else {
-                (pair[1], pair[0])
+            let is_in_order = match is_up {
+                true => pair[0] <= pair[1],
+                false => pair[1] <= pair[0],
             };
-            let is_in_order = a <= b || pair[1].is_nan();
-            assert!(is_in_order, "{file}, {column}: {numbers:?}");
+            assert!(
+                is_in_order || pair[1].is_nan(),
+                "{file}, {column}: {numbers:?}"
+            );
         }
     }
 }

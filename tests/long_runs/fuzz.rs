@@ -27,13 +27,6 @@ use std::path::{Path, PathBuf};
 
 const PLACE: &str = "input";
 
-/// TOML and XML are read as trees. A node takes up to 1.1 kB, because a TOML table has space for eleven entries from its first one. In `a.a.a.a = 1`, a node
-/// takes two characters of text, which is 550 bytes per character.
-const TREE: usize = 600;
-
-/// The end of each field of a CSV row takes eight bytes, twice while the list grows, and one character of text: `,,,,,`.
-const FIELDS: usize = 64;
-
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
@@ -78,12 +71,7 @@ fn studies() {
     let seeds = files("experiments", "toml", 12_000).into_iter();
     let seeds: Vec<Vec<u8>> = seeds.filter(is_planned).map(with_frames).collect();
     assert!(seeds.len() > 10);
-    Target {
-        // A plan lists its values, such as { grid = [-10, 10, 1000] }, which is a short text.
-        most_bytes: (TREE, 8 << 20),
-        ..Target::new("study", seeds, &read_study)
-    }
-    .run();
+    Target::new("study", seeds, &read_study).run();
 }
 
 fn read_study(input: &[u8]) -> Result<()> {
@@ -117,14 +105,7 @@ fn scenes() {
         let spec = SceneSpec::parse(PLACE, text_of(input)?)?;
         ScenePlan::new(PLACE, &scenes, spec).map(drop)
     };
-    Target {
-        // Files named in a scene are also read: a robot, packed objects, and the taxels of its skin (at most four million of 200 bytes).
-        most_bytes: (TREE, 900 << 20),
-        // A patch may have four million taxels, which take about a microsecond each.
-        least_s: 10.0,
-        ..Target::new("scene", seeds, &read)
-    }
-    .run();
+    Target::new("scene", seeds, &read).run();
 }
 
 #[test]
@@ -134,11 +115,7 @@ fn objects() {
     let lollipops = std::iter::repeat_n(lollipop.as_bytes().to_vec(), seeds.len());
     seeds.extend(lollipops);
     let read = |input: &[u8]| Catalogue::parse("set", PLACE, text_of(input)?).map(drop);
-    Target {
-        most_bytes: (TREE, 1 << 18),
-        ..Target::new("object", seeds, &read)
-    }
-    .run();
+    Target::new("object", seeds, &read).run();
 }
 
 /// Tests the reader of a format of meshes; the stored samples together use all features of the format.
@@ -147,12 +124,7 @@ fn mesh(name: &'static str, format: MeshFormat) {
         let file = format.read(PLACE, Some(LengthUnit::Millimetre), &SizeLimits::ANY, input)?;
         file.into_mesh(PLACE).map(drop)
     };
-    Target {
-        // A PLY header may claim any number of elements; the reader allocates memory for the first 65,536.
-        most_bytes: (20, 4 << 20),
-        ..Target::new(name, Vec::new(), &read)
-    }
-    .run();
+    Target::new(name, Vec::new(), &read).run();
 }
 
 #[test]
@@ -188,11 +160,7 @@ fn models_of_mujoco() {
         let rest = robot.rest_positions();
         robot.forward(&Pose::IDENTITY, &rest).map(drop)
     };
-    Target {
-        most_bytes: (TREE, 1 << 28),
-        ..Target::new("mjcf", seeds, &read)
-    }
-    .run();
+    Target::new("mjcf", seeds, &read).run();
 }
 
 #[test]
@@ -204,21 +172,13 @@ fn robots() {
         let zero = vec![0.0; robot.n_positions()];
         robot.forward(&Pose::IDENTITY, &zero).map(drop)
     };
-    Target {
-        most_bytes: (TREE, 1 << 18),
-        ..Target::new("urdf", seeds, &read)
-    }
-    .run();
+    Target::new("urdf", seeds, &read).run();
 }
 
 #[test]
 fn spheres() {
     let read = |input: &[u8]| read_spheres(PLACE, None, &SizeLimits::ANY, input).map(drop);
-    Target {
-        most_bytes: (FIELDS, 1 << 18),
-        ..Target::new("spheres", Vec::new(), &read)
-    }
-    .run();
+    Target::new("spheres", Vec::new(), &read).run();
 }
 
 #[test]
@@ -229,11 +189,7 @@ fn way_points() {
         assert!(pose.translation.is_finite());
         Ok(())
     };
-    Target {
-        most_bytes: (FIELDS, 1 << 18),
-        ..Target::new("way_points", Vec::new(), &read)
-    }
-    .run();
+    Target::new("way_points", Vec::new(), &read).run();
 }
 
 /// Returns the tables of a study of two small configurations.
@@ -274,11 +230,7 @@ fn tables_of_results() {
         comparison.text(80);
         Ok(())
     };
-    Target {
-        most_bytes: (FIELDS, 1 << 20),
-        ..Target::new("table", seeds.collect(), &read)
-    }
-    .run();
+    Target::new("table", seeds.collect(), &read).run();
 }
 
 #[test]
@@ -306,12 +258,7 @@ fn journals() {
         let as_it_is = read(input);
         read(&with_checksums(input)).and(as_it_is)
     };
-    Target {
-        // The study inside a journal is TOML.
-        most_bytes: (TREE, 1 << 18),
-        ..Target::new("journal", vec![fs::read(&path).unwrap()], &read_both)
-    }
-    .run();
+    Target::new("journal", vec![fs::read(&path).unwrap()], &read_both).run();
 }
 
 /// Replaces the checksum of every line by the correct one; later lines continue the checksum of the first line.

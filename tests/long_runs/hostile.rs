@@ -100,17 +100,9 @@ fn case() -> Case {
 
 /// Returns values that are invalid for most keys.
 fn values() -> Vec<Value> {
-    let mut values = [f64::NAN, f64::INFINITY, -1.0, 1e308, 1e-308]
-        .map(Value::Float)
-        .to_vec();
-    values.extend([0, -1, 1_000_000_000_000_000_000].map(Value::Integer));
-    values.extend(["wrong", ""].map(|word| Value::String(word.to_owned())));
-    values.extend([
-        Value::Array(Vec::new()),
-        Value::Boolean(true),
-        Value::Table(Table::new()),
-    ]);
-    values
+    let text = "values = [nan, inf, -1.0, 1e308, 1e-308, 0, -1, 1000000000000000000, 'wrong', '', [], true, {}]";
+    let table: Table = text.parse().unwrap();
+    table["values"].as_array().unwrap().clone()
 }
 
 /// Returns copies of the text, each with another value of one key. The keys are the keys of the text and all other keys that the reader accepts.
@@ -121,42 +113,37 @@ fn mutations(file: &File) -> Vec<(String, String)> {
     found
 }
 
-/// Step of a path into a TOML file.
-#[derive(Clone)]
-enum Step {
-    Key(String),
-    Number(usize),
-}
-
-fn visit(file: &File, value: &Value, path: &mut Vec<Step>, found: &mut Vec<(String, String)>) {
+fn visit(file: &File, value: &Value, path: &mut Vec<String>, found: &mut Vec<(String, String)>) {
     let whole: Table = file.text.parse().unwrap();
-    let mut steps: Vec<Step> = Vec::new();
+    let mut steps: Vec<String> = Vec::new();
     match value {
         Value::Table(table) => {
-            let mut keys: Vec<String> = table.keys().cloned().collect();
-            path.push(Step::Key("no_such_key".to_owned()));
-            let probe = replaced(&whole, path, &Value::Integer(1));
+            steps.extend(table.keys().cloned());
+            path.push("no_such_key".to_owned());
+            let probe = replaced(&whole, path, &Value::Integer(1)).unwrap();
             path.pop();
             if let Err(error) = (file.read)(&probe) {
-                keys.extend(listed(error.message()));
+                steps.extend(listed(error.message()));
             }
-            keys.dedup();
-            steps.extend(keys.into_iter().map(Step::Key));
+            steps.dedup();
         }
         Value::Array(values) if values.iter().any(|one| one.is_table() || one.is_array()) => {
-            steps.extend((0..values.len()).map(Step::Number));
+            steps.extend((0..values.len()).map(|number| number.to_string()));
         }
         _ => return,
     }
     for step in steps {
-        let inner = match &step {
-            Step::Key(key) => value.get(key),
-            Step::Number(number) => value.get(*number),
+        let inner = match value {
+            Value::Array(values) => step
+                .parse()
+                .ok()
+                .and_then(|number: usize| values.get(number)),
+            value => value.get(&step),
         };
         path.push(step);
         for hostile in values() {
-            let text = replaced(&whole, path, &hostile);
-            found.push((format!("{} = {hostile}", shown(path)), text));
+            let text = replaced(&whole, path, &hostile).unwrap();
+            found.push((format!("{} = {hostile}", path.join(".")), text));
         }
         if let Some(inner) = inner {
             visit(file, inner, path, found);
@@ -165,35 +152,22 @@ fn visit(file: &File, value: &Value, path: &mut Vec<Step>, found: &mut Vec<(Stri
     }
 }
 
-fn shown(path: &[Step]) -> String {
-    let steps = path.iter().map(|step| match step {
-        Step::Key(key) => key.clone(),
-        Step::Number(number) => number.to_string(),
-    });
-    steps.collect::<Vec<_>>().join(".")
-}
-
-/// Returns a file with a value at a path.
-fn replaced(table: &Table, path: &[Step], value: &Value) -> String {
+/// Returns a file with a value at a path of keys and of indices of lists; absent tables are created. Returns `None` if the file has another value in the way.
+pub fn replaced(table: &Table, path: &[String], value: &Value) -> Option<String> {
     let mut whole = Value::Table(table.clone());
     let mut place = &mut whole;
-    for (number, step) in path.iter().enumerate() {
-        let is_last = number + 1 == path.len();
-        place = match (step, place) {
-            (Step::Key(key), Value::Table(table)) if is_last => {
-                table.insert(key.clone(), value.clone());
-                break;
+    for step in path {
+        place = match place {
+            Value::Table(table) => {
+                let inner = table.entry(step);
+                inner.or_insert_with(|| Table::new().into())
             }
-            (Step::Key(key), Value::Table(table)) => table.get_mut(key).unwrap(),
-            (Step::Number(number), Value::Array(values)) if is_last => {
-                values[*number] = value.clone();
-                break;
-            }
-            (Step::Number(number), Value::Array(values)) => &mut values[*number],
-            _ => unreachable!("a path is of its file"),
+            Value::Array(values) => values.get_mut(step.parse::<usize>().ok()?)?,
+            _ => return None,
         };
     }
-    toml::to_string(&whole).unwrap()
+    *place = value.clone();
+    Some(toml::to_string(&whole).unwrap())
 }
 
 /// Returns the keys that an error about an unknown key lists, in backticks after `expected`.
@@ -334,23 +308,20 @@ fn outside(range: Range) -> Vec<Value> {
 }
 
 /// Returns the path of a key in a file, through the first table of a list that has it; `None` if the file does not have the key.
-fn place(value: &Value, names: &[&str]) -> Option<Vec<Step>> {
+fn place(value: &Value, names: &[&str]) -> Option<Vec<String>> {
     let Some((name, rest)) = names.split_first() else {
         return Some(Vec::new());
     };
     let (step, inner) = match value {
-        Value::Table(table) => (
-            vec![Step::Key((*name).to_owned())],
-            place(table.get(*name)?, rest)?,
-        ),
+        Value::Table(table) => ((*name).to_owned(), place(table.get(*name)?, rest)?),
         Value::Array(entries) => {
             let mut found = entries.iter().enumerate();
             let (number, inner) = found.find_map(|(k, entry)| Some((k, place(entry, names)?)))?;
-            (vec![Step::Number(number)], inner)
+            (number.to_string(), inner)
         }
         _ => return None,
     };
-    Some([step, inner].concat())
+    Some([vec![step], inner].concat())
 }
 
 /// The declaration of a key states its range; no other number is read. The error names the key or its line.
@@ -370,7 +341,7 @@ fn every_number_outside_the_range_of_its_key_is_refused_with_the_key() {
                 continue;
             };
             for number in outside(key.range) {
-                let text = replaced(&table, &path, &number);
+                let text = replaced(&table, &path, &number).unwrap();
                 let given = text
                     .lines()
                     .position(|line| line == format!("{} = {number}", key.name()));

@@ -9,7 +9,6 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -56,12 +55,10 @@ impl Faults {
         let best = serde_json::to_value(Instructions::here().last()).unwrap();
         assert_eq!(manifest["instructions"], best);
         let hashes = manifest["tables_sha256"].as_object().unwrap();
-        let names = hashes.keys().map(String::as_str);
-        let names: Vec<&str> = names.collect();
-        let mut expected = faults.kind.repeatable.to_vec();
+        let mut expected = faults.kind.repeatable.clone();
         expected.push("failures.csv".to_owned());
         expected.sort_unstable();
-        assert_eq!(names, expected);
+        assert!(hashes.keys().eq(&expected), "{hashes:?}");
         faults
     }
 
@@ -226,34 +223,28 @@ impl Faults {
 
     /// Asserts that a run is refused below its memory requirement, with the required amount, and gives the same tables from there on.
     fn is_the_same_within_a_ceiling_of_memory(&self) {
-        let run = |gib: &str| {
-            let run = ["run", "study.toml", "--out", "below", "--memory-gib", gib];
-            self.case.run(&run)
-        };
-        let refused = run("0.001");
-        assert_eq!(refused.status.code(), Some(2));
-        let error = said(&refused);
+        let run = |gib: &str| format!("run study.toml --out below --memory-gib {gib}");
+        let error = self.case.refuses(&run("0.001"));
         let (_, after) = error.split_once("at least ").expect("how much it takes");
         let (least, _) = after.split_once(" GiB").expect("a unit");
         // The number is rounded to hundredths.
         let least = format!("{:.2}", least.parse::<f64>().unwrap() + 0.01);
-        let plan = ["plan", "study.toml", "--memory-gib", &least];
+        let plan = format!("plan study.toml --memory-gib {least}");
         assert!(!planned(&self.case.succeeds(&plan).0, "memory").is_empty());
-        let output = run(&least);
-        assert!(output.status.success(), "{}", said(&output));
+        self.case.succeeds(&run(&least));
         self.assert_same_tables("below");
     }
 
     /// Asserts that charts and page made from the files of a folder equal the charts and the page of the run.
     fn is_reported_again_from_its_tables(&self) {
         let drawn = || -> BTreeMap<String, Vec<u8>> {
-            let files = fs::read_dir(self.case.path("whole")).unwrap();
-            let files = files.map(|file| file.unwrap().path());
-            let charts = files.filter(|path| path.extension().is_some_and(|e| e == "svg"));
-            let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
-            charts
-                .map(|path| (name(&path), fs::read(&path).unwrap()))
-                .collect()
+            let names = self.case.names_in("whole").into_iter();
+            let charts = names.filter(|name| name.ends_with(".svg"));
+            let content = |name: String| {
+                let bytes = self.case.bytes(&format!("whole/{name}"));
+                (name, bytes)
+            };
+            charts.map(content).collect()
         };
         let before = drawn();
         for name in before.keys().map(String::as_str).chain(["report.html"]) {
@@ -318,21 +309,13 @@ fn what_a_whole_group_needs_and_cannot_be_had_fails_its_pieces_and_no_others() {
     let failures = case.read("open/failures.csv");
     // The object's models, their times, and all classifiers that need every object.
     assert_eq!(failures.lines().count(), 1 + 2 + 3, "{failures}");
-    assert!(
-        failures
-            .lines()
-            .skip(1)
-            .all(|line| line.contains("open.obj: a hole ")),
-        "{failures}"
-    );
+    for failure in failures.lines().skip(1) {
+        says(failure, &["open.obj: a hole "]);
+    }
     let detail = case.read("open/object_detail.csv");
     assert_eq!(detail.lines().count(), 1 + 2 * 3, "{detail}");
     // After the mesh is repaired, the study continues with the pending items.
     case.file("meshes/open.obj", plate.replace("0.02", "0.018"));
-    let output = case.run("run study.toml --out open");
-    assert_eq!(
-        output.status.code(),
-        Some(2),
-        "another object is another study"
-    );
+    // Another object is another study.
+    case.refuses("run study.toml --out open");
 }

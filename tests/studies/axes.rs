@@ -21,23 +21,19 @@ fn each_combination_scores_what_the_study_with_its_values_scores() {
                 recognition.classifier = [\"linear_svm\", \"k_nearest\"]\nrecognition.n_neighbours = [1, 3]\ntouches.yaw_deg = [0.0, 40.0]";
     let outcome = run(&with_axes(axes));
     let mut expected = Vec::new();
-    for depth in [1.0, 3.0] {
-        for stroke in [2.0, 5.0] {
-            for neighbours in [1, 3] {
-                for yaw in [0.0, 40.0] {
-                    let rest = REST
-                        .replace("taxels = 8", &format!("taxels = 8\nstroke_mm = {stroke:?}"))
-                        .replace(
-                            "per_object",
-                            &format!("depth_mm = {depth:?}\nyaw_deg = {yaw:?}\nper_object"),
-                        );
-                    let text = format!(
-                        "{HEAD}{rest}{LEARNING}classifier = [\"linear_svm\", \"k_nearest\"]\nn_neighbours = {neighbours}\n"
-                    );
-                    expected.extend(scores(&Study::new(&text).run()));
-                }
-            }
-        }
+    for number in 0..16 {
+        // The last axis changes fastest.
+        let [depth, stroke, neighbours, yaw] = [3, 2, 1, 0].map(|bit| number >> bit & 1);
+        let depth = format!("depth_mm = {:?}", [1.0, 3.0][depth]);
+        let stroke = format!("stroke_mm = {:?}", [2.0, 5.0][stroke]);
+        let yaw = format!("yaw_deg = {:?}", [0.0, 40.0][yaw]);
+        let neighbours = [1, 3][neighbours];
+        let rest = REST
+            .replace("taxels = 8", &format!("taxels = 8\n{stroke}"))
+            .replace("per_object", &format!("{depth}\n{yaw}\nper_object"));
+        let classifiers = "classifier = [\"linear_svm\", \"k_nearest\"]";
+        let text = format!("{HEAD}{rest}{LEARNING}{classifiers}\nn_neighbours = {neighbours}\n");
+        expected.extend(scores(&Study::new(&text).run()));
     }
     assert_eq!(scores(&outcome), expected);
     let places = outcome.summary.iter().enumerate();

@@ -1,8 +1,7 @@
 //! Tests of features, frames per touch, decisions on several touches, and the choice of C and γ. The results are compared with laws and with a slow pipeline
 //! that processes one touch after the other.
 
-use crate::study::{Study, trials_of};
-use bubbletouch::contact::{Workspace, press_to_depth};
+use crate::study::{Study, accuracies, pressed, trials_of};
 use bubbletouch::kinds::recognition::recognition_scale;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
@@ -18,7 +17,7 @@ use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use bubbletouch::study::table::{Configuration, Tables, TrialScore};
 use ndarray::{Array1, Array2, ArrayView2, Axis};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 const STUDY: &str = include_str!("../fixtures/texts/families.toml");
@@ -51,46 +50,34 @@ fn slow_rows(study: &Study, configuration: &Configuration, trial: u64) -> Array2
     let matrix = projection.matrix();
     let (m, depths) = (configuration.measurements, configuration.frames);
     let mut rows = Array2::zeros((study.sweep.labels.len(), depths * m));
-    let mut row = 0;
-    for touched in &study.touched {
-        let object = [touched.object.model.clone()];
-        for (number, touch) in touched.touches.iter().enumerate() {
-            let name = seed.named("signal").numbered(trial);
-            let name = name.named(&touched.object.name).numbered(number as u64);
-            for frame in 1..=depths {
-                let pose = touch.patch_from_object(&touched.rests[touch.rest]);
-                let depth = touch.depth * (frame as f64 / depths as f64);
-                let mut workspace = Workspace::new();
-                press_to_depth(array.patch(), &object, &[pose], depth, &mut workspace).unwrap();
-                let kept = workspace.deflections().iter().map(|&d| f64::from(d as f32));
-                let mut values: Vec<f64> = kept.collect();
-                let noise = match frame == depths {
-                    true => name,
-                    false => name.named("frame").numbered(frame as u64),
-                };
-                chain.apply(&mut values, None, &noise, &mut SignalWorkspace::default());
-                for k in 0..m {
-                    rows[(row, (frame - 1) * m + k)] =
-                        matrix.row(k).dot(&Array1::from(values.clone()));
-                }
-                let u = matrix.sum_axis(Axis(1));
-                let mut part = rows.slice_mut(ndarray::s![row, (frame - 1) * m..frame * m]);
-                if matches!(
-                    configuration.features,
-                    Features::Centred | Features::CentredUnitNorm
-                ) {
-                    let share = u.dot(&part) / u.dot(&u);
-                    part.zip_mut_with(&u, |y, u| *y -= share * u);
-                }
+    let features = configuration.features;
+    let u = matrix.sum_axis(Axis(1));
+    for (row, (object, touch)) in study.touches().into_iter().enumerate() {
+        let number = row % object.touches.len();
+        let name = seed.named("signal").numbered(trial);
+        let name = name.named(&object.object.name).numbered(number as u64);
+        for frame in 1..=depths {
+            let depth = touch.depth * (frame as f64 / depths as f64);
+            let (_, mut values) = pressed(array, (object, touch), depth);
+            let noise = match frame == depths {
+                true => name,
+                false => name.named("frame").numbered(frame as u64),
+            };
+            chain.apply(&mut values, None, &noise, &mut SignalWorkspace::default());
+            let values = Array1::from(values);
+            let columns = (frame - 1) * m..frame * m;
+            let mut part = rows.slice_mut(ndarray::s![row, columns]);
+            for k in 0..m {
+                part[k] = matrix.row(k).dot(&values);
             }
-            if matches!(
-                configuration.features,
-                Features::UnitNorm | Features::CentredUnitNorm
-            ) {
-                let norm = rows.row(row).iter().map(|v| v * v).sum::<f64>().sqrt();
-                rows.row_mut(row).mapv_inplace(|v| v / norm);
+            if matches!(features, Features::Centred | Features::CentredUnitNorm) {
+                let share = u.dot(&part) / u.dot(&u);
+                part.zip_mut_with(&u, |y, u| *y -= share * u);
             }
-            row += 1;
+        }
+        if matches!(features, Features::UnitNorm | Features::CentredUnitNorm) {
+            let norm = rows.row(row).iter().map(|v| v * v).sum::<f64>().sqrt();
+            rows.row_mut(row).mapv_inplace(|v| v / norm);
         }
     }
     rows
@@ -128,11 +115,8 @@ fn frames_and_features_are_what_a_slow_pipeline_makes_of_each_touch() {
         let (trained, test, truth) = slow_fit(&study, configuration, score.trial);
         let n_correct = n_equal(&trained.labels(test.view()).unwrap(), &truth);
         // Sums in another order can change the label of a row that is close to two objects.
-        assert!(
-            n_correct.abs_diff(score.n_correct) <= 1,
-            "{configuration:?}: {n_correct}, not {}",
-            score.n_correct
-        );
+        let n_other = n_correct.abs_diff(score.n_correct);
+        assert!(n_other <= 1, "{configuration:?}: {n_correct} for {score:?}");
         assert_eq!((score.n_test, score.n_left_out), (truth.len(), 0));
     }
 }
@@ -158,15 +142,11 @@ fn fused_touches_are_decided_on_by_the_sum_of_their_scores() {
             let label = trained.labels_of_scores(sum.insert_axis(Axis(0)).view())[0];
             n_correct += usize::from(label == truth[group[0]]);
         }
-        assert!(
-            n_correct.abs_diff(score.n_correct) <= 1,
-            "{configuration:?}"
-        );
+        let n_other = n_correct.abs_diff(score.n_correct);
+        assert!(n_other <= 1, "{configuration:?}");
         // Twelve test touches for each of six objects.
-        let (n_groups, n_left) = [(72, 0), (36, 0), (12, 12)][[1, 2, 5]
-            .iter()
-            .position(|&k| k == configuration.touches_per_decision)
-            .unwrap()];
+        let k = configuration.touches_per_decision;
+        let (n_groups, n_left) = (6 * (12 / k), 6 * (12 % k));
         assert_eq!((score.n_test, score.n_left_out), (n_groups, n_left));
     }
 }
@@ -188,18 +168,13 @@ fn cells_that_differ_in_fused_touches_share_one_fit_and_all_c_are_trained_togeth
     }
     assert_eq!(fits.len(), 4);
     // Two separate measurements would not give the same nanosecond.
-    let mut distinct = Vec::new();
+    let mut distinct = BTreeSet::new();
     for times in fits.values() {
         assert!(times.len() == 3 && times.iter().all(|t| *t == times[0]));
-        distinct.push(times[0]);
+        distinct.insert(times[0]);
     }
-    distinct.sort_unstable();
-    distinct.dedup();
-    assert_eq!(
-        distinct.len(),
-        2,
-        "each trial's C share one training, in equal parts"
-    );
+    // The C of each trial share one training, in equal parts.
+    assert_eq!(distinct.len(), 2);
 }
 
 #[test]
@@ -210,24 +185,11 @@ fn a_cell_does_not_depend_on_the_other_values_of_these_axes() {
         "features = [\"unit_norm\", \"raw\"]\ntouches_per_decision = [3, 1]\nc = [0.1, 1.0]",
     );
     let among = Study::new(&wide).run();
-    let configuration = &alone.accuracy[0].0;
+    let own = &alone.accuracy[0].0;
     let expected: Vec<&TrialScore> = alone.accuracy.iter().map(|(_, s)| s).collect();
     assert_eq!(expected.len(), 2);
-    assert_eq!(trials_of(&among, configuration), expected);
-    assert_eq!(
-        (configuration.frames, configuration.touches_per_decision),
-        (1, 1)
-    );
-}
-
-fn accuracy(outcome: &Tables, is_wanted: impl Fn(&Configuration) -> bool) -> f64 {
-    let mut rows = outcome.summary.iter().filter(|(c, _)| is_wanted(c));
-    let (_, score) = rows.next().expect("a configuration with these settings");
-    assert!(
-        rows.next().is_none(),
-        "one configuration with these settings"
-    );
-    score.accuracy
+    assert_eq!(trials_of(&among, own), expected);
+    assert_eq!((own.frames, own.touches_per_decision), (1, 1));
 }
 
 #[test]
@@ -235,13 +197,14 @@ fn touching_again_recognises_more_in_noise() {
     let text = with("", "touches_per_decision = [1, 2, 6]")
         .replace("trials = 2", "trials = 4")
         .replace("full_scale = 0.2", "full_scale = 0.1");
-    let outcome = Study::new(&text).run();
-    let by_k = [1, 2, 6].map(|k| accuracy(&outcome, |c| c.touches_per_decision == k));
-    println!("{by_k:.3?}");
-    assert!(
-        by_k[1] > by_k[0] && by_k[2] > by_k[0] + 0.1,
-        "1, 2 and 6 touches: {by_k:?}"
-    );
+    let summary = Study::new(&text).run().summary;
+    let decided_on: Vec<usize> = summary
+        .iter()
+        .map(|(of, _)| of.touches_per_decision)
+        .collect();
+    assert_eq!(decided_on, [1, 2, 6]);
+    let [one, two, six] = [0, 1, 2].map(|row| summary[row].1.accuracy);
+    assert!(two > one && six > one + 0.1, "{one} {two} {six}");
 }
 
 #[test]
@@ -318,9 +281,8 @@ fn keys_of_trees_and_neighbours_reach_them() {
         let new = format!("classifier = \"{classifier}\"\n{keys}");
         let quiet = STUDY.replace("noise_std_full_scale = 0.2", "noise_std_full_scale = 0.0");
         let study = Study::new(&quiet.replace("classifier = \"linear_svm\"", &new));
-        let rows = study.run().accuracy;
-        let shares = rows.iter().map(|(_, score)| score.accuracy);
-        shares.sum::<f64>() / rows.len() as f64
+        let shares = accuracies(&study.run());
+        shares.iter().sum::<f64>() / shares.len() as f64
     };
     // One split divides the six objects into two groups, so at most two objects are ever predicted.
     assert!(accuracy("random_forest", "n_trees = 1\nmax_depth = 1") <= 2.0 / 6.0);
@@ -364,9 +326,8 @@ fn one_touch_is_always_predict() {
         let text = text.replace("classifier = \"linear_svm\"", classifiers);
         let rows = Study::new(&text).run().accuracy;
         let of_one = rows.iter().filter(|(of, _)| of.touches_per_decision == 1);
-        of_one
-            .map(|(_, score)| score.accuracy)
-            .collect::<Vec<f64>>()
+        let accuracies: Vec<f64> = of_one.map(|(_, score)| score.accuracy).collect();
+        accuracies
     };
     let alone = accuracies("1");
     assert_eq!(alone[..2], alone[2..], "the labels of the nearest mean");

@@ -1,7 +1,6 @@
 //! Frames and splits of a study, compared with touches that are pressed one by one and rows that are counted individually.
 
-use crate::study::Study;
-use bubbletouch::contact::{Workspace, press_to_depth};
+use crate::study::{Study, changed, pressed};
 use bubbletouch::recognition::data::split::Split;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::taxel_array::TaxelArray;
@@ -18,25 +17,15 @@ fn every_frame_is_its_touch_pressed_alone() {
     let array = &study.plan.arrays[0];
     let frames = simulate_array(&study.touched, array, 1, &Silent);
     let deflection = frames.to_array();
-    let mut row = 0;
+    let touches = study.touches();
     let (mut n_missed, mut n_saturated) = (0, 0);
-    for object in &study.touched {
-        for touch in &object.touches {
-            let mut workspace = Workspace::new();
-            let model = [object.object.model.clone()];
-            let pose = touch.patch_from_object(&object.rests[touch.rest]);
-            let contact =
-                press_to_depth(array.patch(), &model, &[pose], touch.depth, &mut workspace)
-                    .unwrap();
-            let alone = workspace.deflections().iter();
-            let alone: Vec<f64> = alone.map(|&d| f64::from(d as f32)).collect();
-            assert_eq!(deflection.row(row).to_vec(), alone, "row {row}");
-            n_missed += usize::from(contact.is_none());
-            n_saturated += usize::from(contact.is_some_and(|c| c.n_saturated > 0));
-            row += 1;
-        }
+    for (row, &touch) in touches.iter().enumerate() {
+        let (contact, alone) = pressed(array, touch, touch.1.depth);
+        assert_eq!(deflection.row(row).to_vec(), alone, "row {row}");
+        n_missed += usize::from(contact.is_none());
+        n_saturated += usize::from(contact.is_some_and(|c| c.n_saturated > 0));
     }
-    assert_eq!(row, deflection.nrows());
+    assert_eq!(touches.len(), deflection.nrows());
     assert_eq!(frames.facts.n_missed, n_missed);
     assert_eq!(frames.facts.n_saturated, n_saturated);
 }
@@ -102,12 +91,8 @@ fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
     let stroke = array.taxel().stroke;
     let frames = simulate_array(&study.touched, array, 1, &Silent);
     let deflection = frames.to_array();
-    let touches = study
-        .touched
-        .iter()
-        .flat_map(|object| object.touches.iter().map(move |touch| (object, touch)));
     let (mut n_missed, mut n_saturated) = (0, 0);
-    for (row, (object, touch)) in deflection.outer_iter().zip(touches) {
+    for (row, (object, touch)) in deflection.outer_iter().zip(study.touches()) {
         let expected = by_the_equations(array, object, touch);
         n_missed += usize::from(expected.is_none());
         let expected = expected.unwrap_or_else(|| vec![0.0; array.n_taxels()]);
@@ -141,34 +126,37 @@ fn assert_is_a_division(split: &Split, n_rows: usize) {
     assert!(!split.test.is_empty() && !split.train.is_empty());
 }
 
+/// Returns the values of these axes in rows.
+fn groups(
+    touches: &[(&TouchedObject, &Touch)],
+    axes: &[TouchAxis],
+    rows: &[usize],
+) -> BTreeSet<Vec<usize>> {
+    let group = |row: &usize| touches[*row].1.group(axes).unwrap();
+    rows.iter().map(group).collect()
+}
+
 #[test]
 fn what_is_kept_together_is_never_on_both_sides() {
     use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
+    let pose = [Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY];
     let kinds: [(&str, &[TouchAxis], &str); 7] = [
         ("offset", &[OffsetX, OffsetY], ""),
         ("offset", &[OffsetX, OffsetY], "folds = 3"),
         ("yaw", &[Yaw], "test_fraction = 0.5"),
         ("tilt", &[TiltX, TiltY], "test_fraction = 0.5"),
         ("depth", &[Depth], "folds = 2"),
-        ("pose", &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY], ""),
-        (
-            "pose",
-            &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY],
-            "folds = 6",
-        ),
+        ("pose", &pose, ""),
+        ("pose", &pose, "folds = 6"),
     ];
     for (kind, axes, keys) in kinds {
         let study = with_recognition(&format!("group_by = \"{kind}\"\n{keys}"));
-        let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
+        let touches = study.touches();
         assert_eq!(study.sweep.splits.len(), 6);
         for split in &study.sweep.splits {
             assert_is_a_division(split, touches.len());
-            let groups = |rows: &[usize]| -> BTreeSet<Vec<usize>> {
-                rows.iter()
-                    .map(|&row| touches[row].group(axes).unwrap())
-                    .collect()
-            };
-            let (train, test) = (groups(&split.train), groups(&split.test));
+            let [train, test] =
+                [&split.train, &split.test].map(|rows| groups(&touches, axes, rows));
             assert!(train.is_disjoint(&test), "{kind}: {train:?} and {test:?}");
         }
     }
@@ -176,90 +164,76 @@ fn what_is_kept_together_is_never_on_both_sides() {
 
 /// Returns a study with drawn poses, except for two listed values of a tilt.
 fn with_drawn_poses(keys: &str) -> String {
-    let study = STUDY
-        .replace(
+    let offsets = "{ uniform = [-20.0, 20.0] }";
+    let changes = [
+        (
             "[-6.0, 0.0, 6.0, 400.0]",
-            "{ uniform = [-20.0, 20.0] }\nper_object = 120",
-        )
-        .replace(
+            &format!("{offsets}\nper_object = 120")[..],
+        ),
+        (
             "offset_y_mm = [0.0, 10.0]",
-            "offset_y_mm = { uniform = [-20.0, 20.0] }",
-        )
-        .replace(
+            &format!("offset_y_mm = {offsets}"),
+        ),
+        (
             "yaw_deg = [0.0, 30.0]",
             "yaw_deg = { uniform = [0.0, 360.0] }",
-        );
-    study + keys
+        ),
+    ];
+    changed(STUDY, &changes) + keys
 }
 
 #[test]
 fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together() {
-    let (near_mm, near_deg) = (6.0, 40.0);
-    for (kind, keys) in [
-        ("pose", "group_by_mm = 6.0\ngroup_by_deg = 40.0"),
-        ("offset", "group_by_mm = 1.5"),
-        ("yaw", "group_by_deg = 1.0\nfolds = 3"),
-    ] {
+    let turned = |a: f64, b: f64| {
+        let apart = (a - b).to_degrees().rem_euclid(360.0);
+        apart.min(360.0 - apart)
+    };
+    let are_offsets_near = |a: &Touch, b: &Touch, near_mm: f64| {
+        let apart_mm = |k: usize| 1e3 * (a.offset[k] - b.offset[k]).abs();
+        apart_mm(0) < near_mm && apart_mm(1) < near_mm
+    };
+    for kind in ["pose", "offset", "yaw"] {
+        let keys = match kind {
+            "pose" => "group_by_mm = 6.0\ngroup_by_deg = 40.0",
+            "offset" => "group_by_mm = 1.5",
+            _ => "group_by_deg = 1.0\nfolds = 3",
+        };
+        let is_near = |a: &Touch, b: &Touch| match kind {
+            "pose" => {
+                are_offsets_near(a, b, 6.0) && turned(a.yaw, b.yaw) < 40.0 && a.tilt == b.tilt
+            }
+            "offset" => are_offsets_near(a, b, 1.5),
+            _ => turned(a.yaw, b.yaw) < 1.0,
+        };
         let keys = format!("group_by = \"{kind}\"\n{keys}\n");
         let study = Study::new(&with_drawn_poses(&keys));
-        let (near_mm, near_deg) = match kind {
-            "pose" => (near_mm, near_deg),
-            "offset" => (1.5, 0.0),
-            _ => (0.0, 1.0),
-        };
-        let touches: Vec<(usize, &Touch)> = study
-            .touched
-            .iter()
-            .enumerate()
-            .flat_map(|(object, t)| t.touches.iter().map(move |touch| (object, touch)))
-            .collect();
-        let turned = |a: f64, b: f64| {
-            let apart = (a - b).to_degrees().rem_euclid(360.0);
-            apart.min(360.0 - apart)
-        };
-        let is_near = |a: &Touch, b: &Touch| {
-            let apart_mm = |k: usize| 1e3 * (a.offset[k] - b.offset[k]).abs();
-            let offsets = apart_mm(0) < near_mm && apart_mm(1) < near_mm;
-            let yaws = turned(a.yaw, b.yaw) < near_deg;
-            match kind {
-                "pose" => offsets && yaws && a.tilt == b.tilt,
-                "offset" => offsets,
-                _ => yaws,
-            }
-        };
+        let touches = study.touches();
         for split in &study.sweep.splits {
             assert_is_a_division(split, touches.len());
             for &test in &split.test {
                 let (object, touch) = touches[test];
                 let near = split.train.iter().find(|&&row| {
                     let (other, trained) = touches[row];
-                    other == object && is_near(touch, trained)
+                    std::ptr::eq(other, object) && is_near(touch, trained)
                 });
                 assert_eq!(near, None, "{kind}: touch {test}");
             }
         }
         // Some groups contain several touches, so neighbours exist.
         let keys = study.sweep.group_keys.as_ref().unwrap();
-        let groups: BTreeSet<usize> = keys.iter().copied().collect();
+        let n_groups = keys.iter().collect::<BTreeSet<_>>().len();
         assert!(
-            groups.len() > 6 && groups.len() < touches.len(),
-            "{kind}: {}",
-            groups.len()
+            n_groups > 6 && n_groups < touches.len(),
+            "{kind}: {n_groups}"
         );
     }
     // A random split separates neighbours, so the law is not trivial.
     let study = Study::new(&with_drawn_poses(""));
-    let offsets: Vec<[f64; 2]> = study
-        .touched
-        .iter()
-        .flat_map(|t| &t.touches)
-        .map(|touch| touch.offset)
-        .collect();
+    let touches = study.touches();
     let split = &study.sweep.splits[0];
     let has_neighbour = split.test.iter().any(|&test| {
         split.train.iter().any(|&row| {
-            let apart = |k: usize| 1e3 * (offsets[test][k] - offsets[row][k]).abs();
-            test / 120 == row / 120 && apart(0) < 1.5 && apart(1) < 1.5
+            test / 120 == row / 120 && are_offsets_near(touches[test].1, touches[row].1, 1.5)
         })
     });
     assert!(has_neighbour);
@@ -268,15 +242,11 @@ fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together
 #[test]
 fn without_keeping_together_offsets_are_on_both_sides() {
     let study = with_recognition("");
-    let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
     let split = &study.sweep.splits[0];
-    let offsets = |rows: &[usize]| -> BTreeSet<Vec<usize>> {
-        let axes = [TouchAxis::OffsetX, TouchAxis::OffsetY];
-        rows.iter()
-            .map(|&row| touches[row].group(&axes).unwrap())
-            .collect()
-    };
-    assert!(!offsets(&split.train).is_disjoint(&offsets(&split.test)));
+    let axes = [TouchAxis::OffsetX, TouchAxis::OffsetY];
+    let [train, test] =
+        [&split.train, &split.test].map(|rows| groups(&study.touches(), &axes, rows));
+    assert!(!train.is_disjoint(&test));
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! Studies of sensor errors: one error at a time, compared with all errors together and with touches that are read individually.
 
 use crate::command::Case;
-use crate::study::{Study, features, trials_of};
-use bubbletouch::contact::{Workspace, press_to_depth};
+use crate::study::{Study, features, pressed, trials_of};
 use bubbletouch::random::Seed;
 use bubbletouch::report::chart::{draw, places};
 use bubbletouch::signal::{Chain, Recording, SensorError, SignalWorkspace};
@@ -116,21 +115,10 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
     let study = Study::new(&with_signal(signal));
     let array = &study.plan.arrays[0];
     let n = array.n_taxels();
-    let touches: Vec<_> = study
-        .touched
-        .iter()
-        .flat_map(|object| object.touches.iter().enumerate().map(move |t| (object, t)))
-        .collect();
-    let press = |number: usize, depth: f64| -> Vec<f64> {
-        let (object, (_, touch)) = touches[number];
-        let mut workspace = Workspace::new();
-        let model = [object.object.model.clone()];
-        let pose = touch.patch_from_object(&object.rests[touch.rest]);
-        let depth = touch.depth * depth;
-        press_to_depth(array.patch(), &model, &[pose], depth, &mut workspace).unwrap();
-        let pressed = workspace.deflections();
-        // Frames are stored in f32.
-        pressed.iter().map(|&d| f64::from(d as f32)).collect()
+    let touches = study.touches();
+    let press = |row: usize, share: f64| {
+        let depth = touches[row].1.depth * share;
+        pressed(array, touches[row], depth).1
     };
     let steps = [
         SensorError::Hysteresis.step(&[0.2], Seed::new(1)).unwrap(),
@@ -140,7 +128,8 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
     let trial = 1;
     let rows = features(&with_signal(signal), (0, trial)).data.records;
     let names = Seed::new(2018).named("signal").numbered(trial as u64);
-    for (row, &(object, (number, touch))) in touches.iter().enumerate() {
+    for (row, &(object, touch)) in touches.iter().enumerate() {
+        let number = row % object.touches.len();
         let name = names.named(&object.object.name).numbered(number as u64);
         let before = name.named("before").rng().gen_range(0..touches.len());
         let mut frames = press(before, 1.0);

@@ -14,10 +14,8 @@ fn run(keys: &str) -> Tables {
 /// Returns the summary of each configuration, with the numbers of test rows and of correct rows over all trials.
 fn configurations(tables: &Tables) -> Vec<(ConfigurationScore, usize, usize)> {
     let found = tables.summary.iter().map(|(configuration, score)| {
-        let trials = tables
-            .accuracy
-            .iter()
-            .filter(|(of, _)| of.configuration == configuration.configuration);
+        let trials = tables.accuracy.iter();
+        let trials = trials.filter(|(of, _)| of.configuration == configuration.configuration);
         let (n_test, n_correct) = trials.fold((0, 0), |sums, (_, trial)| {
             (sums.0 + trial.n_test, sums.1 + trial.n_correct)
         });
@@ -32,10 +30,8 @@ fn five_folds_have_the_interval_of_all_rows_that_they_test() {
     for (score, n_test, n_correct) in configurations(&once) {
         assert_eq!((score.n_test, n_test), (24, 120));
         let all = Interval::wilson(n_correct, n_test, 0.95).unwrap();
-        assert_eq!(
-            (score.accuracy_low, score.accuracy_high),
-            (all.low, all.high)
-        );
+        let interval = (score.accuracy_low, score.accuracy_high);
+        assert_eq!(interval, (all.low, all.high));
     }
     // The second round of folds tests the same touches again.
     for (score, _, n_correct) in configurations(&run("trials = 10|folds = 5")) {

@@ -38,7 +38,6 @@ mod refusals;
 mod repeatability;
 mod sensor_error_names;
 mod shear;
-mod statistics_examples;
 mod taxels;
 mod test_touches;
 mod unused_keys;

@@ -48,9 +48,9 @@ fn n_correct_by_hand(
             told.push((set.split.train[row], training.targets[row], answer));
         }
     }
-    let touches: Vec<_> = study.touched.iter().flat_map(|t| &t.touches).collect();
+    let touches = study.touches();
     let coordinates = Array2::from_shape_fn((touches.len(), 3), |(touch, axis)| {
-        let touch = touches[touch];
+        let touch = touches[touch].1;
         [touch.offset[0] / 20e-3, touch.yaw / TAU, touch.depth / 3e-3][axis]
     });
     let poses = Poses {

@@ -1,11 +1,12 @@
 //! Splits by pose: no test touch has a neighbour of the held-out kind among the training touches.
 
-use crate::study::Study;
+use crate::study::{Study, run};
 use bubbletouch::recognition::data::split::Split;
 use bubbletouch::recognition::statistics::grouped::{GroupCount, GroupedTest, interval_of_groups};
 use bubbletouch::recognition::statistics::interval::Interval;
 use bubbletouch::study::table::Tables;
 use bubbletouch::world::Touch;
+use std::collections::BTreeSet;
 
 /// Study with unordered values, so that halves depend on the sizes of values and not on their positions.
 const STUDY: &str = include_str!("../fixtures/texts/pose_splits.toml");
@@ -29,24 +30,20 @@ fn tenths_of_mm(metres: f64) -> usize {
 /// Checks the touches of both sides in each trial; every object has equally many of each.
 fn sides(split: &str, check: impl Fn(usize, &[&Touch], &[&Touch])) {
     let study = Study::new(&with_split(split));
-    let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
+    let touches = study.touches();
     for (trial, split) in study.sweep.splits.iter().enumerate() {
         let Split { train, test } = &**split;
-        let mut all = [train.clone(), test.clone()].concat();
-        all.sort_unstable();
-        all.dedup();
+        let all: BTreeSet<_> = train.iter().chain(test).collect();
         assert_eq!(all.len(), train.len() + test.len(), "each touch once");
-        let of = |rows: &[usize]| rows.iter().map(|&row| touches[row]).collect::<Vec<_>>();
+        let of = |rows: &[usize]| rows.iter().map(|&row| touches[row].1).collect::<Vec<_>>();
         check(trial, &of(train), &of(test));
     }
 }
 
 /// Returns the distinct values of one side, ascending.
 fn values<T: Ord>(side: &[&Touch], value: impl Fn(&Touch) -> T) -> Vec<T> {
-    let mut all: Vec<T> = side.iter().map(|touch| value(touch)).collect();
-    all.sort_unstable();
-    all.dedup();
-    all
+    let all: BTreeSet<T> = side.iter().map(|touch| value(touch)).collect();
+    all.into_iter().collect()
 }
 
 const N_TOUCHES: usize = 2 * 2 * 3 * 5 * 4 * 3;
@@ -97,11 +94,9 @@ fn opposite_blocks_share_no_offset_and_no_yaw_and_each_is_tested_in_turn() {
         }
         blocks.borrow_mut().push(block);
     });
-    let mut blocks = blocks.into_inner();
+    let blocks = blocks.into_inner();
     assert_eq!(blocks[0], [true; 3]);
-    blocks.sort_unstable();
-    blocks.dedup();
-    assert_eq!(blocks.len(), 8);
+    assert_eq!(blocks.iter().collect::<BTreeSet<_>>().len(), 8);
 }
 
 #[test]
@@ -133,8 +128,7 @@ fn a_random_split_has_neighbours_of_every_kind_on_both_sides_and_is_what_no_key_
 fn a_split_is_an_axis_beside_which_the_random_one_has_its_fraction() {
     let axes = "trials = 2\n[axes]\n\"recognition.split\" = [\"random\", \"unseen_tilt\"]\n";
     let text = STUDY.replace("trials = 8\n", axes) + "test_fraction = 0.5\n";
-    let tables = crate::study::laid_out(&text).unwrap();
-    let tables = tables.run(&bubbletouch::study::progress::Silent).unwrap();
+    let tables = run(&text);
     let rows = tables.accuracy.iter();
     let rows: Vec<_> = rows
         .map(|(_, score)| (score.n_test, score.n_groups))
@@ -146,14 +140,8 @@ fn a_split_is_an_axis_beside_which_the_random_one_has_its_fraction() {
     assert_eq!((random.n_groups, tilted.n_groups), (Some(360), Some(2)));
     let wilson = |n_correct| Interval::wilson(n_correct, 360, 0.95).unwrap();
     let by_rows = wilson((random.accuracy * 360.0).round() as usize);
-    assert_eq!(
-        (random.accuracy_low, random.accuracy_high),
-        (by_rows.low, by_rows.high)
-    );
-}
-
-fn run(text: &str) -> Tables {
-    Study::new(text).run()
+    let interval = (random.accuracy_low, random.accuracy_high);
+    assert_eq!(interval, (by_rows.low, by_rows.high));
 }
 
 /// Returns the groups of trials that each test one whole group, by its number.
@@ -192,10 +180,8 @@ fn the_interval_of_poses_held_out_comes_from_them_and_not_from_touches() {
         let (expected, n) = interval_of_groups(&tests.collect::<Vec<_>>(), 0.95).unwrap();
         let found = &tables.summary[0].1;
         assert_eq!((found.n_groups, n), (Some(n_groups), n_groups), "{split}");
-        assert_eq!(
-            (found.accuracy_low, found.accuracy_high),
-            (expected.low, expected.high)
-        );
+        let interval = (found.accuracy_low, found.accuracy_high);
+        assert_eq!(interval, (expected.low, expected.high));
         // All tested touches, each as a group of its own.
         let tested = &counts[..n_groups];
         let sum = |of: fn(&GroupCount) -> usize| tested.iter().map(|[group]| of(group)).sum();

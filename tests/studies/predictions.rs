@@ -17,11 +17,8 @@ metrics = ["balanced_accuracy", "log_loss", "recall"]
 "#;
 
 fn tables(text: &str) -> BTreeMap<&'static str, Table> {
-    let tables = tables_of(&Study::new(text).run()).unwrap();
-    tables
-        .into_iter()
-        .map(|table| (table.file, table))
-        .collect()
+    let tables = tables_of(&Study::new(text).run()).unwrap().into_iter();
+    tables.map(|table| (table.file, table)).collect()
 }
 
 #[test]
@@ -29,22 +26,17 @@ fn predictions_give_the_counts_and_measures_of_the_other_tables() {
     let found = tables(&format!("{STUDY}{REPORT}"));
     let (accuracy, predictions) = (&found["accuracy.csv"], &found["predictions.csv"]);
     let recall = &found["recall.csv"];
-    let classes: Vec<&str> = predictions
-        .columns
-        .iter()
-        .filter_map(|column| column.name.strip_prefix("score_"))
-        .collect();
+    let columns = predictions.columns.iter();
+    let classes = columns.filter_map(|column| column.name.strip_prefix("score_"));
+    let classes: Vec<&str> = classes.collect();
     assert_eq!(classes.len(), 4);
     let mut n_probabilistic = 0;
     for row in 0..accuracy.n_rows {
-        let at = |table: &Table, other: usize| {
-            ["configuration", "trial"]
-                .iter()
-                .all(|name| table.number(name, other) == accuracy.number(name, row))
+        let is_own = |other: &usize| {
+            let mut columns = ["configuration", "trial"].iter();
+            columns.all(|name| predictions.number(name, *other) == accuracy.number(name, row))
         };
-        let own: Vec<usize> = (0..predictions.n_rows)
-            .filter(|&r| at(predictions, r))
-            .collect();
+        let own: Vec<usize> = (0..predictions.n_rows).filter(is_own).collect();
         assert_eq!(own.len() as f64, accuracy.number("n_test", row));
         let k = accuracy.number("touches_per_decision", row) as usize;
         let mut touches = BTreeSet::new();
@@ -54,15 +46,10 @@ fn predictions_give_the_counts_and_measures_of_the_other_tables() {
             let named: Vec<&str> = predictions.word("touch", one).split(' ').collect();
             assert_eq!(named.len(), k);
             assert!(named.into_iter().all(|touch| touches.insert(touch)));
-            let (truth, answer) = (
-                predictions.word("truth", one),
-                predictions.word("answer", one),
-            );
+            let [truth, answer] = ["truth", "answer"].map(|name| predictions.word(name, one));
             let score = |class: &str| predictions.number(&format!("score_{class}"), one);
-            let most = classes
-                .iter()
-                .map(|class| score(class))
-                .fold(f64::MIN, f64::max);
+            let scores = classes.iter().map(|class| score(class));
+            let most = scores.fold(f64::MIN, f64::max);
             let is_one_vs_one = accuracy.word("classifier", row).ends_with("_svm");
             // Classes of equal votes differ by less than 2 / 3.
             assert!(score(answer) >= most - if is_one_vs_one { 0.7 } else { 0.0 });
@@ -83,10 +70,8 @@ fn predictions_give_the_counts_and_measures_of_the_other_tables() {
         assert!(difference.abs() < 1e-12, "{difference}");
         let log_loss = accuracy.number("log_loss", row);
         let classifier = accuracy.word("classifier", row);
-        assert_eq!(
-            log_loss.is_nan(),
-            classifier.ends_with("_svm") || classifier == "nearest_centroid"
-        );
+        let has_none = classifier.ends_with("_svm") || classifier == "nearest_centroid";
+        assert_eq!(log_loss.is_nan(), has_none);
         if !log_loss.is_nan() {
             n_probabilistic += 1;
             let mean = losses.iter().map(|loss: &f64| loss.min(-f64::EPSILON.ln()));
@@ -137,11 +122,9 @@ fn a_folder_gives_the_predictions_that_were_written() {
     let read = read_tables(folder.path()).unwrap();
     for file in ["predictions.csv", "recall.csv", "summary.csv"] {
         let read = read.iter().find(|table| table.file == file).unwrap();
-        assert_eq!(
-            (&read.csv, read.n_rows),
-            (&made[file].csv, made[file].n_rows)
-        );
-        assert_eq!(read.columns, made[file].columns);
+        let made = &made[file];
+        assert_eq!((&read.csv, read.n_rows), (&made.csv, made.n_rows));
+        assert_eq!(read.columns, made.columns);
     }
 }
 

@@ -47,9 +47,7 @@ fn simulated(
 }
 
 fn texts(path: &Path, of: impl Fn(&Sequence) -> String, sequences: &[Sequence], n_frames: usize) {
-    let texts = sequences
-        .iter()
-        .flat_map(|sequence| vec![of(sequence); n_frames]);
+    let texts = sequences.iter().flat_map(|one| vec![of(one); n_frames]);
     write_texts(path, &texts.collect::<Vec<_>>()).unwrap();
 }
 
@@ -69,16 +67,12 @@ fn postures(folder: &Path) {
         3 | 6 | 7 | 14 => "left".to_owned(),
         _ => "supine".to_owned(),
     };
-    texts(
-        &folder.join("categories.npy"),
-        category,
-        &sequences,
-        N_FRAMES,
-    );
-    let posture = |one: &Sequence| format!("p{:02}", one.class);
-    texts(&folder.join("postures.npy"), posture, &sequences, N_FRAMES);
-    let subject = |one: &Sequence| format!("S{}", one.group);
-    texts(&folder.join("subjects.npy"), subject, &sequences, N_FRAMES);
+    let write = |name: &str, of: &dyn Fn(&Sequence) -> String| {
+        texts(&folder.join(name), of, &sequences, N_FRAMES);
+    };
+    write("categories.npy", &category);
+    write("postures.npy", &|one| format!("p{:02}", one.class));
+    write("subjects.npy", &|one| format!("S{}", one.group));
     write_integers(&folder.join("touches.npy"), 0..n).unwrap();
 }
 
@@ -137,28 +131,23 @@ pub fn write_recording(name: &str, folder: &Path) {
     }
 }
 
+/// Row of a table: the text of each column.
+type Row = BTreeMap<String, String>;
+
 /// Runs a committed study on a simulated recording, and returns the rows of its table `accuracy.csv`.
-fn rows(name: &str) -> Vec<BTreeMap<String, String>> {
+fn rows(name: &str) -> Vec<Row> {
     let case = Case::new();
-    std::fs::create_dir(case.path("set")).unwrap();
-    write_recording(name, &case.path("set"));
-    let study = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("experiments/{name}.toml"));
-    let study = study.display().to_string();
+    write_recording(name, &case.create_folder("set"));
+    let study = format!("{}/experiments/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     case.succeeds(&["run", &study, "--objects", "set", "--out", "out"]);
-    let mut reader = csv::Reader::from_path(case.path("out/accuracy.csv")).unwrap();
-    let rows = reader.deserialize().map(Result::unwrap);
-    rows.collect()
+    case.rows("out/accuracy.csv")
 }
 
 /// Returns the mean accuracy of the rows with these values.
-fn accuracy(rows: &[BTreeMap<String, String>], wanted: &[(&str, &str)]) -> f64 {
-    let is_wanted =
-        |row: &&BTreeMap<String, String>| wanted.iter().all(|(key, value)| row[*key] == *value);
-    let found: Vec<f64> = rows
-        .iter()
-        .filter(is_wanted)
-        .map(|row| row["accuracy"].parse().unwrap())
-        .collect();
+fn accuracy(rows: &[Row], wanted: &[(&str, &str)]) -> f64 {
+    let is_wanted = |row: &&Row| wanted.iter().all(|(key, value)| row[*key] == *value);
+    let found = rows.iter().filter(is_wanted);
+    let found: Vec<f64> = found.map(|row| row["accuracy"].parse().unwrap()).collect();
     assert!(!found.is_empty(), "{wanted:?}");
     found.iter().sum::<f64>() / found.len() as f64
 }
@@ -168,29 +157,23 @@ fn postures_are_tested_with_frames_at_random_and_with_new_people() {
     let rows = rows("real_postures");
     // 2 groups × 2 labels × 3 features × 4 classifiers × 5 folds.
     assert_eq!(rows.len(), 240);
-    let of = |groups, classifier| {
+    let of = |groups| {
         let wanted = [
             ("groups", groups),
             ("labels", "postures.npy"),
-            ("classifier", classifier),
+            ("classifier", "k_nearest"),
             ("features", "raw"),
         ];
         accuracy(&rows, &wanted)
     };
     // The frames of a sequence share a pattern, which only a split by people keeps apart.
-    assert_eq!(of("touches.npy", "k_nearest"), 1.0);
-    assert!(
-        of("subjects.npy", "k_nearest") < 0.7,
-        "{}",
-        of("subjects.npy", "k_nearest")
-    );
-    assert!(of("subjects.npy", "k_nearest") > 0.1);
-    let tested = rows
-        .iter()
-        .filter(|row| row["groups"] == "subjects.npy" && row["labels"] == "categories.npy");
-    let n: usize = tested
-        .map(|row| row["n_test"].parse::<usize>().unwrap())
-        .sum();
+    assert_eq!(of("touches.npy"), 1.0);
+    let by_people = of("subjects.npy");
+    assert!(0.1 < by_people && by_people < 0.7, "{by_people}");
+    let is_tested =
+        |row: &&Row| row["groups"] == "subjects.npy" && row["labels"] == "categories.npy";
+    let n_test = |row: &Row| row["n_test"].parse::<usize>().unwrap();
+    let n: usize = rows.iter().filter(is_tested).map(n_test).sum();
     assert_eq!(n, 12 * 510);
 }
 
@@ -207,20 +190,13 @@ fn grasps_are_tested_at_random_by_object_and_on_the_given_objects() {
         ];
         accuracy(&split, &wanted)
     };
-    assert!(
-        of("grasps.npy") > of("objects.npy") + 0.1,
-        "{} {}",
-        of("grasps.npy"),
-        of("objects.npy")
-    );
+    let [at_random, by_object] = ["grasps.npy", "objects.npy"].map(of);
+    assert!(at_random > by_object + 0.1, "{at_random} {by_object}");
     let given = rows("real_grasps_new_objects");
     assert_eq!(given.len(), 4);
-    assert!(
-        given
-            .iter()
-            .all(|row| row["n_test"] == "32" && row["n_groups"] == "4"),
-        "{given:?}"
-    );
+    for row in given {
+        assert_eq!((&row["n_test"][..], &row["n_groups"][..]), ("32", "4"));
+    }
 }
 
 #[test]
@@ -228,14 +204,10 @@ fn events_are_counted_in_windows_and_tested_on_the_given_set() {
     let rows = rows("real_events");
     assert_eq!(rows.len(), 16);
     assert!(rows.iter().all(|row| row["n_test"] == "36"));
-    let of = |features| {
-        accuracy(
-            &rows,
-            &[
-                ("temporal_features", features),
-                ("classifier", "linear_svm"),
-            ],
-        )
-    };
-    assert!(of("stacked_25") > 0.9, "{}", of("stacked_25"));
+    let stacked = [
+        ("temporal_features", "stacked_25"),
+        ("classifier", "linear_svm"),
+    ];
+    let stacked = accuracy(&rows, &stacked);
+    assert!(stacked > 0.9, "{stacked}");
 }

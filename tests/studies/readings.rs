@@ -85,10 +85,8 @@ fn without_noise_a_touch_is_learned_once() {
 #[test]
 fn tilted_copies_come_after_all_readings_and_are_of_the_first() {
     let tilted = "features = \"descriptors\"\ntilt_augmentation = 2";
-    let (once, twice) = (
-        features(&with(tilted), (0, 0)),
-        features(&with(&format!("{tilted}\nreadings_per_touch = 2")), (0, 0)),
-    );
+    let two = format!("{tilted}\nreadings_per_touch = 2");
+    let [once, twice] = [tilted, &two].map(|keys| features(&with(keys), (0, 0)));
     let (n, n_train) = (120, 90);
     assert_eq!(once.data.targets.len(), n + 2 * n_train);
     assert_eq!(twice.data.targets.len(), 2 * n + 2 * n_train);

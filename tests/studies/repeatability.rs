@@ -2,7 +2,8 @@
 
 use crate::command::Case;
 use crate::kinds::Kind;
-use crate::study::{Study, trials_of};
+use crate::study::{Study, changed, trials_of};
+use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{sample_frames, simulate_array};
 
 /// Tables without times, and the resolved study.
@@ -34,24 +35,21 @@ const NARROW: &str = include_str!("../fixtures/texts/repeatability.toml");
 fn a_cell_does_not_depend_on_the_other_cells_of_its_study() {
     for ensemble in ["gaussian", "sbhe", "block_average", "subsample", "identity"] {
         let narrow = NARROW.replace("ENSEMBLE", ensemble);
-        let wide = [
-            ("pitch_mm = 4.0", "pitch_mm = [8.0, 4.0]"),
-            ("full_scale = 0.2", "full_scale = [0.0, 0.2]"),
-            ("smoothing_mm = 4.0", "smoothing_mm = [8.0, 4.0]"),
-            ("ratio = 16", "ratio = [2, 64, 16]"),
-            ("\"linear_svm\"", "[\"rbf_svm\", \"linear_svm\"]"),
-            ("c = 1.0", "c = [0.1, 1.0]"),
-            ("train_touches = 12", "train_touches = [4, 12]"),
-            (
-                &format!("\"{ensemble}\""),
-                &format!("[\"{ensemble}\", \"{}\"]", other_than(ensemble)),
-            ),
-        ]
-        .into_iter()
-        .fold(narrow.clone(), |text, (old, new)| {
-            assert!(text.contains(old), "{old}");
-            text.replace(old, new)
-        });
+        let own = format!("\"{ensemble}\"");
+        let two = format!("[{own}, \"{}\"]", other_than(ensemble));
+        let wide = changed(
+            &narrow,
+            &[
+                ("pitch_mm = 4.0", "pitch_mm = [8.0, 4.0]"),
+                ("full_scale = 0.2", "full_scale = [0.0, 0.2]"),
+                ("smoothing_mm = 4.0", "smoothing_mm = [8.0, 4.0]"),
+                ("ratio = 16", "ratio = [2, 64, 16]"),
+                ("\"linear_svm\"", "[\"rbf_svm\", \"linear_svm\"]"),
+                ("c = 1.0", "c = [0.1, 1.0]"),
+                ("train_touches = 12", "train_touches = [4, 12]"),
+                (&own, &two),
+            ],
+        );
         // The identity has one number of measurements; a ratio is refused.
         let alone = match ensemble {
             "identity" => narrow.replace("ratio = 16\n", ""),
@@ -96,11 +94,7 @@ fn an_object_is_touched_the_same_whatever_else_is_in_the_set() {
             let many = Study::new(&text);
             assert_eq!((few.touched.len(), many.touched.len()), (2, 4));
             let patch = &few.plan.arrays[0];
-            let silent = &bubbletouch::study::progress::Silent;
-            let frames = |touched| {
-                let frames = simulate_array(touched, patch, 1, silent);
-                frames.to_array()
-            };
+            let frames = |touched| simulate_array(touched, patch, 1, &Silent).to_array();
             let (few_frames, many_frames) = (frames(&few.touched), frames(&many.touched));
             for (label, object) in few.touched.iter().enumerate() {
                 let name = &object.object.name;
@@ -108,10 +102,8 @@ fn an_object_is_touched_the_same_whatever_else_is_in_the_set() {
                 let other = other.unwrap();
                 assert_eq!(object.touches, many.touched[other].touches, "{name}");
                 for touch in 0..24 {
-                    assert_eq!(
-                        few_frames.row(24 * label + touch),
-                        many_frames.row(24 * other + touch)
-                    );
+                    let many = many_frames.row(24 * other + touch);
+                    assert_eq!(few_frames.row(24 * label + touch), many);
                 }
             }
         }

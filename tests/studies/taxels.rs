@@ -1,22 +1,16 @@
 //! Taxels that a study reads: selected taxels, adaptive blocks, and arrays whose pitch varies.
 
-use crate::study::{Study, laid_out};
+use crate::study::{Study, changed, features, laid_out};
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{Projection, Selection, TrainingFrames};
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
-use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
+use bubbletouch::table::ChartSpec;
 use bubbletouch::world::ImageShape;
 use ndarray::Axis;
 use std::collections::BTreeSet;
 
 const STUDY: &str = include_str!("../fixtures/texts/taxels.toml");
-
-fn features(text: &str, configuration: usize, trial: usize) -> FeatureSet {
-    let study = laid_out(text).unwrap();
-    let part = study.first();
-    part.features((configuration, trial), &Silent).unwrap()
-}
 
 #[test]
 fn every_method_selects_m_different_taxels_and_the_table_tells_where() {
@@ -43,24 +37,19 @@ fn every_method_selects_m_different_taxels_and_the_table_tells_where() {
             assert_eq!([row.x_mm, row.y_mm], place);
         }
     }
-    let names: Vec<String> = charts(&tables_of(&tables).unwrap(), None)
-        .into_iter()
-        .map(|chart| chart.name)
-        .collect();
-    let of_taxels = names
-        .iter()
-        .filter(|name| name.starts_with("selected_taxels"));
-    assert_eq!(of_taxels.count(), 2, "{names:?}");
+    let charts = charts(&tables_of(&tables).unwrap(), None);
+    let is_of_taxels = |chart: &&ChartSpec| chart.name.starts_with("selected_taxels");
+    assert_eq!(charts.iter().filter(is_of_taxels).count(), 2);
 }
 
 #[test]
 fn taxels_are_selected_on_training_touches_of_the_trial() {
-    let [set, other] = [0, 1].map(|trial| features(STUDY, 0, trial));
+    let [set, other] = [0, 1].map(|trial| features(STUDY, (0, trial)));
     assert_ne!(set.split.test, other.split.test);
     assert_ne!(set.data.records.row(0), other.data.records.row(0));
     // The deflections of the test touches do not change the features of the training touches.
     let deeper = format!("{STUDY}\n[test.touches]\ndepth_mm = 2.0\n");
-    let changed = features(&deeper, 0, 0);
+    let changed = features(&deeper, (0, 0));
     assert_eq!(changed.split.train, set.split.train);
     for &touch in &set.split.train {
         assert_eq!(set.data.records.row(touch), changed.data.records.row(touch));
@@ -78,13 +67,17 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
         "mislabelled_fraction = [0.0, 0.4]",
     ];
     let learned = "ensemble = [\"identity\", \"selected\", \"principal_components\", \"adaptive_learned\"]\nselection = \"greedy\"";
+    let small = changed(
+        STUDY,
+        &[
+            ("ensemble = \"selected\"", learned),
+            ("measurements = [8, 24]", "measurements = 5"),
+            ("size_mm = 96.0", "size_mm = 40.0"),
+            ("per_object = 30", "per_object = 18"),
+        ],
+    );
     for reduced in reduced {
-        let text = STUDY
-            .replace("ensemble = \"selected\"", learned)
-            .replace("measurements = [8, 24]", "measurements = 5")
-            .replace("size_mm = 96.0", "size_mm = 40.0")
-            .replace("per_object = 30", "per_object = 18")
-            .replace("classifier =", &format!("{reduced}\nclassifier ="));
+        let text = small.replace("classifier =", &format!("{reduced}\nclassifier ="));
         let study = laid_out(&text).unwrap();
         let configurations: Vec<_> = study.all_cells().cloned().collect();
         let n = configurations.len() / 4;
@@ -103,12 +96,8 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
             };
             let ensemble = configuration.ensemble;
             let seed = Seed::new(2018).named("projection").numbered(1);
-            let projection = Projection::learned(
-                ensemble,
-                ImageShape { ny: 10, nx: 10 },
-                5,
-                (training, &seed),
-            );
+            let shape = ImageShape { ny: 10, nx: 10 };
+            let projection = Projection::learned(ensemble, shape, 5, (training, &seed));
             let expected = projection.unwrap().measure(frames.data.records.view());
             assert_eq!(
                 found.data.records, expected,
@@ -117,10 +106,9 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
             fits.insert(format!("{:?}", expected.row(0)));
         }
         // Only greedy selection uses labels.
-        let n_fits = if reduced.starts_with("mislabelled") {
-            4
-        } else {
-            3 * n
+        let n_fits = match reduced.starts_with("mislabelled") {
+            true => 4,
+            false => 3 * n,
         };
         assert_eq!(fits.len(), n_fits);
     }
@@ -145,8 +133,8 @@ fn taxels_selected_on_one_touch_of_each_object_are_those_of_a_study_of_one_touch
 #[test]
 fn a_selection_at_random_gives_the_rows_of_a_subsample() {
     let random = "ensemble = \"selected\"\nselection = \"random\"";
-    let random = features(&STUDY.replace("ensemble = \"selected\"", random), 1, 0);
-    let drawn = features(&STUDY.replace("\"selected\"", "\"subsample\""), 1, 0);
+    let random = features(&STUDY.replace("ensemble = \"selected\"", random), (1, 0));
+    let drawn = features(&STUDY.replace("\"selected\"", "\"subsample\""), (1, 0));
     assert_eq!(random.data.records, drawn.data.records);
 }
 
@@ -157,15 +145,14 @@ fn adaptive_blocks_give_a_frame_per_touch_at_any_budget() {
     let images = "features = [\"raw\", \"descriptors\"]\nclassifier =";
     let text = text.replace("classifier =", images);
     let tables = Study::new(&text).run();
-    let costs = tables
-        .summary
-        .iter()
-        .map(|(c, _)| (c.measurements, c.readout_ms));
-    let costs: Vec<_> = costs.collect();
+    let summary = tables.summary.iter();
+    let costs: Vec<_> = summary
+        .map(|(c, _)| (c.measurements, c.readout_ms))
+        .collect();
     let expected = [(8, 0.5), (8, 0.5), (24, 1.5), (24, 1.5)].map(|(m, ms)| (m, Some(ms)));
     assert_eq!(costs, expected);
-    let coarse = features(&text, 0, 0).data.records;
-    let fine = features(&text, 2, 0).data.records;
+    let coarse = features(&text, (0, 0)).data.records;
+    let fine = features(&text, (2, 0)).data.records;
     assert_eq!((coarse.ncols(), fine.ncols()), (576, 576));
     let n_different = |row: ndarray::ArrayView1<f64>| {
         let values: BTreeSet<u64> = row.iter().map(|value| value.to_bits()).collect();
@@ -191,7 +178,7 @@ fn a_learned_estimate_of_adaptive_blocks_is_a_frame_of_equal_readings() {
         "{accuracies:?}"
     );
     let text = STUDY.replace("\"selected\"", "\"adaptive_learned\"");
-    assert_eq!(features(&text, 0, 0).data.records.ncols(), 576);
+    assert_eq!(features(&text, (0, 0)).data.records.ncols(), 576);
 }
 
 #[test]
@@ -201,7 +188,7 @@ fn with_all_readings_adaptive_blocks_are_the_identity() {
     let text = text.replace("classifier =", images);
     for configuration in [0, 1] {
         let of =
-            |ensemble: &str| features(&text.replace("\"selected\"", ensemble), configuration, 0);
+            |ensemble: &str| features(&text.replace("\"selected\"", ensemble), (configuration, 0));
         assert_eq!(
             of("\"adaptive\"").data.records,
             of("\"identity\"").data.records

@@ -1,59 +1,32 @@
 //! Variance of the accuracy due to splits, separated from the variance due to projections.
 
-use crate::study::Study;
+use crate::study::{Study, changed};
 use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
-use bubbletouch::study::table::{Configuration, PStatus, Source, Tables, TrialScore, Variance};
+use bubbletouch::study::table::{Comparison, PStatus, Source, Tables, TrialScore, Variance};
 use std::path::Path;
 
-/// Returns a study of three objects that are hard to distinguish, with few measurements.
+/// Returns a study of four objects that are hard to distinguish, with few measurements.
 fn text(repeats: &str, ensemble: &str, noise: f64) -> String {
-    format!(
-        r#"
-question = "Which chance is it?"
-{repeats}
-
-[objects]
-sets = ["household"]
-names = ["mug", "apple", "orange", "pear"]
-surface_error_mm = 1.0
-
-[skin]
-pitch_mm = 4.0
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 16
-offset_x_mm = {{ uniform = [-12.0, 12.0] }}
-offset_y_mm = {{ uniform = [-12.0, 12.0] }}
-depth_mm = 3.0
-
-[signal]
-steps = ["noise"]
-noise_std_full_scale = {noise:?}
-
-[sensing]
-ensemble = {ensemble}
-measurements = 8
-
-[recognition]
-classifier = "linear_svm"
-"#
-    )
+    let changes = [
+        ("trials = 18\nprojections_per_split = 3", repeats),
+        ("full_scale = 0.0", &format!("full_scale = {noise:?}")),
+        ("ensemble = \"gaussian\"", &format!("ensemble = {ensemble}")),
+        ("folds = 3", ""),
+    ];
+    changed(include_str!("../fixtures/texts/variance.toml"), &changes)
 }
 
 fn row(outcome: &Tables, configuration: usize, source: Source) -> &Variance {
     let mut rows = outcome.variance.iter();
-    rows.find(|row| row.configuration == configuration && row.source == source)
-        .unwrap()
+    let row = rows.find(|row| row.configuration == configuration && row.source == source);
+    row.unwrap()
 }
 
 fn trials(outcome: &Tables, configuration: usize) -> Vec<&TrialScore> {
     let rows = outcome.accuracy.iter();
-    let of_cell =
-        rows.filter(|(row, _): &&(Configuration, TrialScore)| row.configuration == configuration);
-    of_cell.map(|(_, score)| score).collect()
+    let own = rows.filter(|(row, _)| row.configuration == configuration);
+    own.map(|(_, score)| score).collect()
 }
 
 #[test]
@@ -70,38 +43,26 @@ fn without_noise_all_that_varies_is_the_split_unless_a_projection_is_drawn() {
         assert_eq!(row(&outcome, 0, source).n_levels, n_levels);
     }
     // Every taxel is measured, so the four projections are equivalent.
-    let (split, rest) = (
-        row(&outcome, 0, Source::Split),
-        row(&outcome, 0, Source::Rest),
-    );
-    assert!(
-        split.accuracy_std > 0.0 && split.fraction.unwrap() > 1.0 - 1e-9,
-        "{split:?}"
-    );
-    assert!(rest.accuracy_std < 1e-9, "{rest:?}");
-    assert!(row(&outcome, 0, Source::Projection).accuracy_std < 1e-9);
+    let split = row(&outcome, 0, Source::Split);
+    assert!(split.accuracy_std > 0.0, "{split:?}");
+    assert!(split.fraction.unwrap() > 1.0 - 1e-9, "{split:?}");
+    for source in [Source::Rest, Source::Projection] {
+        assert!(row(&outcome, 0, source).accuracy_std < 1e-9, "{source:?}");
+    }
     // With eight random measurements, their choice matters.
-    let shares: f64 = [Source::Split, Source::Projection, Source::Rest]
-        .map(|source| row(&outcome, 1, source).fraction.unwrap())
-        .iter()
-        .sum();
-    assert!((shares - 1.0).abs() < 1e-12);
-    let of_gaussian = row(&outcome, 1, Source::Projection);
-    let rest = row(&outcome, 1, Source::Rest);
-    assert!(
-        of_gaussian.accuracy_std + rest.accuracy_std > 0.01,
-        "{of_gaussian:?}"
-    );
+    let [split, projection, rest] =
+        [Source::Split, Source::Projection, Source::Rest].map(|source| row(&outcome, 1, source));
+    let shares = [split, projection, rest].map(|row| row.fraction.unwrap());
+    assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    let std = projection.accuracy_std + rest.accuracy_std;
+    assert!(std > 0.01, "{projection:?}");
 }
 
 #[test]
 fn crossed_trials_share_splits_and_projections_and_the_first_is_that_of_trials_of_their_own() {
     let ensemble = r#"["gaussian", "sbhe"]"#;
-    let crossed = Study::new(&text(
-        "trials = 6\nprojections_per_split = 3",
-        ensemble,
-        0.05,
-    ));
+    let crossed = "trials = 6\nprojections_per_split = 3";
+    let crossed = Study::new(&text(crossed, ensemble, 0.05));
     let own = Study::new(&text("trials = 2", ensemble, 0.05));
     for trial in 0..6 {
         assert_eq!(crossed.sweep.splits[trial], own.sweep.splits[trial / 3]);
@@ -113,20 +74,18 @@ fn crossed_trials_share_splits_and_projections_and_the_first_is_that_of_trials_o
         let met: Vec<_> = trials.iter().map(|trial| numbers(trial)).collect();
         assert_eq!(met, [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)]);
         assert_eq!((own[0].split, own[0].projection), (None, None));
-        assert_eq!(
-            trials[0].n_correct, own[0].n_correct,
-            "split, projection and noise 0"
-        );
+        // Split, projection and noise 0.
+        assert_eq!(trials[0].n_correct, own[0].n_correct);
     }
     // Two splits and three projections are few: there is an interval, but no p-value below four splits.
-    let compared = crossed.comparison.iter();
-    let compared: Vec<_> = compared
-        .filter(|row| row.configuration != row.best_configuration)
-        .collect();
-    assert_eq!(compared.len(), 1);
-    assert!(compared[0].difference_low.is_some() && compared[0].p_value.is_none());
-    assert_eq!(compared[0].p_status, PStatus::TooFewTrials);
-    assert_eq!(compared[0].n_trials_needed, Some(12));
+    let is_other = |row: &&Comparison| row.configuration != row.best_configuration;
+    let compared: Vec<_> = crossed.comparison.iter().filter(is_other).collect();
+    let [other] = compared[..] else {
+        panic!("one comparison: {compared:?}");
+    };
+    assert!(other.difference_low.is_some() && other.p_value.is_none());
+    assert_eq!(other.p_status, PStatus::TooFewTrials);
+    assert_eq!(other.n_trials_needed, Some(12));
     assert!(own.variance.is_empty());
 }
 
@@ -146,16 +105,12 @@ fn the_table_is_written_only_where_it_has_rows_and_is_read_again() {
     written(folder.path(), &crossed);
     let other = tempfile::tempdir().unwrap();
     let own = study("trials = 4");
-    assert_eq!(
-        own.summary[0].1.bootstrap_low, None,
-        "four trials are too few"
-    );
+    // Four trials are too few.
+    assert_eq!(own.summary[0].1.bootstrap_low, None);
     written(other.path(), &own);
     assert!(folder.path().join("variance.csv").exists());
     assert!(!other.path().join("variance.csv").exists());
     let header = std::fs::read_to_string(other.path().join("accuracy.csv")).unwrap();
-    assert!(
-        !header.lines().next().unwrap().contains("split"),
-        "{header}"
-    );
+    let header = header.lines().next().unwrap();
+    assert!(!header.contains("split"), "{header}");
 }

@@ -1,6 +1,7 @@
 //! Law: every point of a chart is a row of its table at the correct position. Every other row is counted on the chart.
 
 use super::generator::{Generator, is_sample, n_studies};
+use crate::study::table;
 use bubbletouch::report::chart::{Place, draw, omitted, places};
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::progress::Silent;
@@ -54,12 +55,8 @@ fn seen(spec: &ChartSpec, table: &Table, places: &[Place]) -> usize {
         .iter()
         .filter(|place| data.value(place.row).is_some());
     let at = |place: &Place| {
-        (
-            place.panel,
-            place.line,
-            place.x.to_bits(),
-            place.y.to_bits(),
-        )
+        let [x, y] = [place.x, place.y].map(f64::to_bits);
+        (place.panel, place.line, x, y)
     };
     filled.map(at).collect::<BTreeSet<_>>().len()
 }
@@ -67,11 +64,8 @@ fn seen(spec: &ChartSpec, table: &Table, places: &[Place]) -> usize {
 /// Returns the numbers of rows in a sentence about omitted rows: drawn, all, and omitted for each reason.
 fn counted(said: &str) -> (usize, usize, usize) {
     let number = |text: &str| {
-        text.split_whitespace()
-            .next()
-            .unwrap()
-            .parse::<usize>()
-            .unwrap()
+        let mut words = text.split_whitespace();
+        words.next().unwrap().parse::<usize>().unwrap()
     };
     let (drawn, reasons) = said.split_once("; ").expect(said);
     let (n, of) = drawn.split_once(" of ").expect(said);
@@ -82,6 +76,7 @@ fn counted(said: &str) -> (usize, usize, usize) {
 /// Checks that positions along an axis have the order of the rows' entries or the reverse order, and that equal entries have equal positions. Lines that are
 /// side by side at a word are compared one by one.
 fn check_axis(table: &Table, column: &str, places: &[&Place], at: fn(&Place) -> f64, what: &str) {
+    let what = format!("{column} of {what}");
     let (_, data) = table.column(column).unwrap();
     let mut orders = BTreeSet::new();
     for (number, first) in places.iter().enumerate() {
@@ -105,36 +100,21 @@ fn check_axis(table: &Table, column: &str, places: &[&Place], at: fn(&Place) -> 
 
 fn check(spec: &ChartSpec, tables: &[Table], text: &str) {
     let what = format!("chart {} of\n{text}", spec.name);
-    let table = tables
-        .iter()
-        .find(|table| table.file == spec.table)
-        .unwrap();
+    let table = table(tables, spec.table);
     let places = places(spec, tables).unwrap();
     let rows: BTreeSet<usize> = places.iter().map(|place| place.row).collect();
     assert_eq!(rows.len(), places.len(), "{what}");
     assert!(rows.iter().all(|row| *row < table.n_rows), "{what}");
     let groups: BTreeSet<(usize, usize)> = places.iter().map(|p| (p.panel, p.line)).collect();
     for group in groups {
-        let here = places
-            .iter()
-            .filter(|place| (place.panel, place.line) == group);
-        let here: Vec<&Place> = here.collect();
-        check_axis(
-            table,
-            &spec.x,
-            &here,
-            |place| place.x,
-            &format!("x of {what}"),
-        );
+        let here = places.iter();
+        let here: Vec<_> = here
+            .filter(|place| (place.panel, place.line) == group)
+            .collect();
+        check_axis(table, &spec.x, &here, |place| place.x, &what);
     }
     let all: Vec<&Place> = places.iter().collect();
-    check_axis(
-        table,
-        &spec.y,
-        &all,
-        |place| place.y,
-        &format!("y of {what}"),
-    );
+    check_axis(table, &spec.y, &all, |place| place.y, &what);
     // The line and the panel of a point correspond to the values of their columns.
     for place in &places {
         for other in &places {
@@ -145,11 +125,8 @@ fn check(spec: &ChartSpec, tables: &[Table], text: &str) {
                 })
             };
             assert_eq!(same(&spec.lines), place.line == other.line, "{what}");
-            assert_eq!(
-                same(spec.panels.as_slice()),
-                place.panel == other.panel,
-                "{what}"
-            );
+            let are_in_one = place.panel == other.panel;
+            assert_eq!(same(spec.panels.as_slice()), are_in_one, "{what}");
         }
     }
     let (n, n_seen) = (table.n_rows, seen(spec, table, &places));

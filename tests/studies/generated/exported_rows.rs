@@ -65,19 +65,16 @@ fn exported_rows_give_the_answers_of_the_run() {
         };
         n_checked += 1;
         for row in rows(&tables["accuracy.csv"]) {
-            let (configuration, trial) = (
-                row["configuration"].parse().unwrap(),
-                row["trial"].parse().unwrap(),
-            );
+            let [configuration, trial] =
+                ["configuration", "trial"].map(|column| row[column].parse().unwrap());
             let part = loaded.part_of(configuration);
             let set = part.features((configuration, trial), &Silent).unwrap();
             let n_correct = n_correct_of_nearest_centroid(&set).to_string();
-            assert_eq!(
-                n_correct,
-                row["n_correct"],
+            let what = format!(
                 "configuration {configuration}, trial {trial} of\n{}",
                 study.text()
             );
+            assert_eq!(n_correct, row["n_correct"], "{what}");
         }
     }
     assert!(n_checked >= n_studies() / 2, "{n_checked} studies");

@@ -26,8 +26,11 @@ pub fn tables(case: &Case, folder: &str) -> Tables {
     without_times(tables.map(read).collect())
 }
 
+/// Study, a key that is an axis, and the values of the axis.
+type Swept = (GeneratedStudy, &'static str, Vec<Value>);
+
 /// Returns a study with an axis of three values, which the command runs into the folder `fresh`.
-pub fn swept(case: &Case, generator: &mut Generator) -> (GeneratedStudy, &'static str, Vec<Value>) {
+pub fn swept(case: &Case, generator: &mut Generator) -> Swept {
     let axes = [
         "signal.noise_std_full_scale",
         "recognition.classifier",
@@ -50,57 +53,57 @@ pub fn swept(case: &Case, generator: &mut Generator) -> (GeneratedStudy, &'stati
     }
 }
 
-#[test]
-fn an_extended_run_gives_the_tables_of_a_fresh_one() {
+/// Checks studies whose runs into the folder `fresh` are compared with other runs into the folder `other`; `run` returns whether there is one.
+fn equals_a_fresh_run(law: &str, run: fn(&Case, &mut Generator, &Swept) -> bool) {
     for number in 0..n_folders() {
         let case = Case::new();
-        let mut generator = Generator::new("extended runs", number);
-        let (study, axis, values) = swept(&case, &mut generator);
+        let mut generator = Generator::new(law, number);
+        let swept = swept(&case, &mut generator);
+        if run(&case, &mut generator, &swept) {
+            let is_same = tables(&case, "fresh") == tables(&case, "other");
+            assert!(is_same, "{} of\n{}", swept.1, swept.0.text());
+        }
+    }
+}
+
+#[test]
+fn an_extended_run_gives_the_tables_of_a_fresh_one() {
+    equals_a_fresh_run("extended runs", |case, generator, (study, axis, values)| {
         let n_first = generator.rng.gen_range(1..values.len());
-        let first = values[values.len() - n_first..].to_vec();
-        if study.swept(axis, first.clone()).load().is_err() {
+        let first = &values[values.len() - n_first..];
+        if study.swept(axis, first.to_vec()).load().is_err() {
             // Without the other values, a key of the study would have no effect.
-            continue;
+            return false;
         }
         for values in [first, values] {
-            case.file("study.toml", study.swept(axis, values).text());
-            case.succeeds("run study.toml --out extended");
+            case.file("study.toml", study.swept(axis, values.to_vec()).text());
+            case.succeeds("run study.toml --out other");
         }
-        let (fresh, extended) = (tables(&case, "fresh"), tables(&case, "extended"));
-        assert!(fresh == extended, "{axis} of\n{}", study.text());
-    }
+        true
+    });
 }
 
 #[test]
 fn merged_shards_give_the_tables_of_a_fresh_run() {
-    for number in 0..n_folders() {
-        let case = Case::new();
-        let mut generator = Generator::new("merged shards", number);
-        let (study, axis, _) = swept(&case, &mut generator);
+    equals_a_fresh_run("merged shards", |case, _, _| {
         for shard in ["1/2", "2/2"] {
-            case.succeeds(&["run", "study.toml", "--out", "merged", "--shard", shard]);
+            case.succeeds(&["run", "study.toml", "--out", "other", "--shard", shard]);
         }
-        case.succeeds("merge study.toml --out merged");
-        let (fresh, merged) = (tables(&case, "fresh"), tables(&case, "merged"));
-        assert!(fresh == merged, "{axis} of\n{}", study.text());
-    }
+        case.succeeds("merge study.toml --out other");
+        true
+    });
 }
 
 #[test]
 fn a_run_that_lost_the_end_of_its_journal_gives_the_tables_of_a_fresh_one() {
-    for number in 0..n_folders() {
-        let case = Case::new();
-        let mut generator = Generator::new("resumed runs", number);
-        let (study, axis, _) = swept(&case, &mut generator);
-        case.succeeds("run study.toml --out resumed");
-        let journal = case.path("resumed/journal.jsonl");
-        let bytes = fs::read(&journal).unwrap();
+    equals_a_fresh_run("resumed runs", |case, generator, _| {
+        case.succeeds("run study.toml --out other");
+        let bytes = case.bytes("other/journal.jsonl");
         let kept = generator.rng.gen_range(0..bytes.len());
-        fs::write(&journal, &bytes[..kept]).unwrap();
-        case.succeeds("run study.toml --out resumed");
-        let (fresh, resumed) = (tables(&case, "fresh"), tables(&case, "resumed"));
-        assert!(fresh == resumed, "{axis} of\n{}", study.text());
-    }
+        case.file("other/journal.jsonl", &bytes[..kept]);
+        case.succeeds("run study.toml --out other");
+        true
+    });
 }
 
 /// Returns the study with another value of a key, or with another signal; it may be the same study, or be refused.
@@ -159,8 +162,11 @@ fn a_changed_study_is_refused_by_the_folder_or_gives_the_tables_of_a_fresh_run()
                 continue;
             }
             case.file("study.toml", other.text());
-            let fresh = case.run("run study.toml --fresh --out alone");
-            if !fresh.status.success() {
+            if !case
+                .run("run study.toml --fresh --out alone")
+                .status
+                .success()
+            {
                 continue;
             }
             let output = case.run("run study.toml --out fresh");
@@ -168,13 +174,8 @@ fn a_changed_study_is_refused_by_the_folder_or_gives_the_tables_of_a_fresh_run()
                 assert_eq!(output.status.code(), Some(2), "{}", other.text());
                 continue;
             }
-            let (alone, extended) = (tables(&case, "alone"), tables(&case, "fresh"));
-            assert!(
-                alone == extended,
-                "{}\nthen\n{}",
-                study.text(),
-                other.text()
-            );
+            let is_same = tables(&case, "alone") == tables(&case, "fresh");
+            assert!(is_same, "{}\nthen\n{}", study.text(), other.text());
             n_accepted += 1;
             study = other;
         }

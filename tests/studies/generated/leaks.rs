@@ -8,7 +8,6 @@ use bubbletouch::study::{write_integers, write_npy};
 use ndarray::{Array3, s};
 use rand::Rng;
 use std::path::Path;
-use toml::{Table, Value};
 
 const N_CLASSES: usize = 3;
 const N_TOUCHES: usize = 48;
@@ -32,25 +31,21 @@ fn recording(generator: &mut Generator) -> (Array3<f64>, Vec<usize>) {
     (frames, labels)
 }
 
-/// Returns the study on the recording in `folder`, which replaces objects and touches.
+/// Returns the study on the recording in `folder`, which replaces objects and touches. One trial has one set of test rows.
 fn recorded(study: &GeneratedStudy, folder: &Path) -> GeneratedStudy {
-    let path = |name: &str| Value::from(folder.join(name).display().to_string());
+    let path = |name: &str| folder.join(name).display().to_string();
     let mut study = study.clone();
     for table in ["objects", "touches", "skin"] {
         study.table.remove(table);
     }
-    let study = study
+    study
         .with("skin.pitch_mm", 4.0)
         .with("skin.stroke_mm", 5.0)
         .with("recorded.frames", path("frames.npy"))
         .with("recorded.labels", path("labels.npy"))
-        .with("recorded.full_scale", 1.0);
-    let mut recorded = Table::new();
-    if let Some(table) = study.table.get("recorded").and_then(Value::as_table) {
-        recorded.clone_from(table);
-    }
-    recorded.insert("zero".to_owned(), 0.0.into());
-    study.with("recorded", recorded)
+        .with("recorded.full_scale", 1.0)
+        .with("recorded.zero", 0.0)
+        .with("trials", 1)
 }
 
 /// Returns the rows of `confusion.csv` for all objects except `changed`.
@@ -72,44 +67,33 @@ fn changed_test_rows_change_no_answer_to_other_rows() {
             write_integers(&folder.path().join("labels.npy"), labels.clone()).unwrap();
         };
         write(&frames);
-        // One trial has one set of test rows.
-        let mut drawn = generator.study(|study| {
-            let study = recorded(study, folder.path()).with("trials", 1);
+        let drawn = generator.study(|study| {
+            let study = recorded(study, folder.path());
             // A touch that follows another contains a trace of it, whichever of the two is a training touch.
             let remembers = study.get("signal.hysteresis_full_scale").is_some();
             let is_fused = study.get("recognition.touches_per_decision").is_some();
             !remembers && !is_fused && study.load().is_ok()
         });
-        drawn = recorded(&drawn, folder.path()).with("trials", 1);
+        let drawn = recorded(&drawn, folder.path());
         let before_study = drawn.load().unwrap();
         let Ok(before) = run(&before_study) else {
             continue;
         };
         let before = before["confusion.csv"].clone();
         let configuration = before_study.all_cells().next().unwrap().configuration;
-        let set = before_study
-            .part_of(configuration)
-            .features((configuration, 0), &Silent)
-            .unwrap();
+        let part = before_study.part_of(configuration);
+        let set = part.features((configuration, 0), &Silent).unwrap();
         let mut other = frames.clone();
-        for &row in set
-            .split
-            .test
-            .iter()
-            .filter(|&&row| row < N_TOUCHES && labels[row] == 0)
-        {
+        let tested = set.split.test.iter();
+        for &row in tested.filter(|&&row| row < N_TOUCHES && labels[row] == 0) {
             let mut frame = other.slice_mut(s![row, .., ..]);
             frame.mapv_inplace(|_| generator.rng.gen_range(0.0..1.0));
         }
         write(&other);
         let after = run(&drawn.load().unwrap()).unwrap()["confusion.csv"].clone();
         let changed = before_study.first().touched.class_names()[0].to_owned();
-        assert_eq!(
-            answers_to_others(&before, &changed),
-            answers_to_others(&after, &changed),
-            "{}",
-            drawn.text()
-        );
+        let [own, others] = [&before, &after].map(|csv| answers_to_others(csv, &changed));
+        assert_eq!(own, others, "{}", drawn.text());
         n_changed += u64::from(before != after);
         n_checked += 1;
     }

@@ -34,6 +34,11 @@ fn clusters(counts: &[usize], apart: f64, seed: u64) -> Dataset {
     dataset(features, Array1::from(labels)).unwrap()
 }
 
+fn accuracy(labels: &Array1<usize>, data: &Dataset) -> f64 {
+    let n_correct = labels.iter().zip(&data.targets).filter(|(a, b)| a == b);
+    n_correct.count() as f64 / labels.len() as f64
+}
+
 #[test]
 fn primal_linear_svms_close_their_gap_or_are_counted_as_capped_at_any_c() {
     let (overlapping, apart) = (clusters(&[30, 20, 10], 1.0, 8), clusters(&[20; 3], 6.0, 9));
@@ -77,9 +82,7 @@ fn every_classifier_learns_from_two_rows_a_class_and_from_a_hundred_to_one() {
             let model = classifier.train(&train, &Seed::new(1));
             let model = model.unwrap_or_else(|error| panic!("{name}, {kind:?}: {error}"));
             let labels = model.labels(test.records.view()).unwrap();
-            let right = labels.iter().zip(&test.targets).filter(|(a, b)| a == b);
-            let share = right.count() as f64 / labels.len() as f64;
-            println!("{name}, {kind:?}: {share}");
+            let share = accuracy(&labels, &test);
             // A tree has to place one split, and Gaussians of one row have no width of their own.
             let least = match kind {
                 ClassifierKind::NaiveBayes | ClassifierKind::RandomForest => 0.4,
@@ -108,12 +111,8 @@ fn wrong_labels_cost_a_wide_margin_nothing_until_they_are_the_majority() {
             classifier.c = Cost::Fixed(0.01);
             let model = classifier.train(&data, &Seed::new(1)).unwrap();
             let labels = model.labels(test.records.view()).unwrap();
-            let n_correct = labels.iter().zip(&test.targets).filter(|(a, b)| a == b);
-            let accuracy = n_correct.count() as f64 / labels.len() as f64;
-            assert!(
-                range.contains(&accuracy),
-                "{kind:?}, {share} wrong: {accuracy}"
-            );
+            let accuracy = accuracy(&labels, &test);
+            assert!(range.contains(&accuracy), "{kind:?}, {share}: {accuracy}");
         }
     }
 }
