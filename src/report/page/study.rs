@@ -216,17 +216,10 @@ fn front_html(offers: &Candidates) -> String {
         ["condition".to_owned(), value, cost, "choice".to_owned()],
     );
     let rows = fronts.map(|offer| {
+        let [condition, setting] = [offers.condition(&offer), offers.setting(&offer)];
         let value = offers.table.bounded(offers.value, offer.row);
         let cost = offers.cost.number_words(offer.cost);
-        line(
-            "td",
-            [
-                offers.condition(&offer),
-                value,
-                cost,
-                offers.setting(&offer),
-            ],
-        )
+        line("td", [condition, value, cost, setting])
     });
     format!(
         "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{label}\"><table><thead>{head}</thead><tbody>\n{}</tbody></table></div>",
