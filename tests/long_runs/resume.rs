@@ -280,7 +280,7 @@ fn two_runs_side_by_side_say_what_moved() {
     let (output, _) = case.succeeds("compare whole noisy --out moved.csv");
     let line = output.lines().find(|line| line.starts_with("accuracy.csv"));
     let counts: Vec<&str> = line.unwrap().split_whitespace().skip(1).collect();
-    assert_eq!(counts, ["16", "16", "16"], "{output}");
+    assert_eq!(counts, ["32", "32", "32"], "{output}");
     let moved = case.read("moved.csv");
     let of_accuracy = |line: &&str| line.starts_with("accuracy.csv,accuracy,");
     assert_eq!(moved.lines().filter(of_accuracy).count(), 16);

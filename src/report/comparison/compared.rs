@@ -101,12 +101,15 @@ impl Comparison {
     }
 
     fn answers(&self) -> Vec<String> {
-        let changed = match self.tables[1].n_rows {
+        let mut answers = vec![match self.tables[1].n_rows {
             0 => "All entries of the common rows are equal.".to_owned(),
             n => format!("{} differ.", counted(n, "column")),
-        };
-        let ranks = self.ranks.iter().flat_map(RankAgreement::words);
-        std::iter::once(changed).chain(ranks).collect()
+        }];
+        if self.differences.is_empty() {
+            answers.push("No row of the one has all settings of a row of the other.".to_owned());
+        }
+        answers.extend(self.ranks.iter().flat_map(RankAgreement::words));
+        answers
     }
 }
 
