@@ -40,10 +40,7 @@ pub use crate::studies::recognition::plan::signal::Condition;
 pub use crate::studies::recognition::plan::study_plan::MeasurementGroup;
 pub use crate::studies::recognition::plan::study_plan::Plan;
 pub use crate::studies::recognition::plan::taxel_array;
-pub use crate::studies::recognition::spec::pose_split::PoseSplit;
-pub use crate::studies::recognition::spec::recorded::RecordedSpec;
-pub use crate::studies::recognition::spec::signal::*;
-pub use crate::studies::recognition::spec::study::*;
+pub use crate::studies::recognition::spec::*;
 pub use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
 pub use crate::studies::recognition::touches::{TouchedObject, draw_touches};
 

@@ -11,6 +11,6 @@ pub mod signal;
 pub mod study;
 
 pub use self::{
-    classifier_parameters::*, foreign::*, keys::*, pose_split::*, recorded_sensor::*, scene::*,
-    signal::*, study::*,
+    classifier_parameters::*, foreign::*, keys::*, pose_split::*, recorded::*, recorded_sensor::*,
+    scene::*, signal::*, study::*,
 };

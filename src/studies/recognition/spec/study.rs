@@ -15,16 +15,7 @@ use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::studies::prelude::*;
 use crate::studies::recognition::rows::TrialScore;
-pub use crate::studies::recognition::spec::foreign::*;
-pub use crate::studies::recognition::spec::pose_split::PoseSplit;
-pub use crate::studies::recognition::spec::recorded::*;
-pub use crate::studies::recognition::spec::recorded_sensor::{RecordedSensorSpec, ZeroSpec};
-pub use crate::studies::recognition::spec::scene::*;
-pub use crate::studies::recognition::spec::signal::*;
-use crate::studies::recognition::spec::{
-    CHOSEN, ClassifierParameters, GAMMA, GroupSpec, MAX_COPIES, MAX_READINGS, MAX_TRIALS,
-    OVER_TIME, PENALTY, TILT, recognition_keys,
-};
+use crate::studies::recognition::spec::*;
 use crate::table::Scale::{Linear, Log, Share, Words};
 use crate::table::{Column, Columns};
 use bubbletouch_sim::features::Features;
