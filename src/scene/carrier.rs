@@ -1,6 +1,6 @@
 //! Bodies that carry patches and objects: the world, links of robots, and objects.
 
-use super::plan_robot::{PlannedRobot, RobotState};
+use super::plan_robot::RobotState;
 use super::reader::Reader;
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -45,14 +45,13 @@ impl Reader<'_> {
         &self,
         key: &str,
         (robot, link): (Option<&str>, Option<&str>),
-        robots: &[PlannedRobot],
     ) -> Result<Carrier> {
         let Some(robot) = robot else {
             return Ok(Carrier::World);
         };
-        let names = robots.iter().map(|robot| robot.name.as_str());
+        let names = self.robots.iter().map(|robot| robot.name.as_str());
         let robot = self.known(&format!("{key}.robot"), robot, names)?;
-        let carrier = &robots[robot].robot;
+        let carrier = &self.robots[robot].robot;
         let link = match link {
             Some(link) => self.under(&format!("{key}.link"), carrier.link(link))?,
             None => carrier.base(),

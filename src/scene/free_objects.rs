@@ -3,7 +3,6 @@
 use super::frame::{ObjectReading, PoseControl};
 use super::plan::ScenePlan;
 use super::plan_object::Movement;
-use super::plan_patch::PlannedPatch;
 use super::skin_state::{OUT_OF_REACH, PlacedObjects, SkinState};
 use crate::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, Obstacle, Outcome, PlacedSkin,
@@ -15,7 +14,8 @@ use crate::geometry::Pose;
 
 /// Free objects of a scene, which move under gravity and contact forces until a common equilibrium.
 #[derive(Clone, Debug)]
-pub(super) struct FreeObjects {
+pub(super) struct FreeObjects<'p> {
+    plan: &'p ScenePlan,
     all: Vec<Free>,
     /// Numbers (indices in the scene) of the free objects that took part in the last equilibrium.
     there: Vec<usize>,
@@ -38,9 +38,9 @@ struct Free {
     is_put: bool,
 }
 
-impl FreeObjects {
+impl<'p> FreeObjects<'p> {
     /// Creates the free objects of a scene at their initial poses.
-    pub fn new(plan: &ScenePlan) -> Self {
+    pub fn new(plan: &'p ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
         let is_free =
             |object: usize| matches!(plan.objects[object].movement, Movement::Free { .. });
@@ -59,6 +59,7 @@ impl FreeObjects {
             }),
         });
         Self {
+            plan,
             all: all.collect(),
             there: Vec::new(),
             obstacles: (0..plan.objects.len())
@@ -82,7 +83,6 @@ impl FreeObjects {
     /// infinite at the start.
     pub fn solve_equilibrium(
         &mut self,
-        plan: &ScenePlan,
         skins: &mut [SkinState],
         objects: &mut PlacedObjects,
         [time, dt]: [f64; 2],
@@ -93,8 +93,8 @@ impl FreeObjects {
         for free in &self.all {
             objects.poses[free.object] = OUT_OF_REACH;
         }
-        self.push_by_others(plan, skins, objects)?;
-        self.attach_tangential_springs(plan, skins, objects)?;
+        self.push_by_others(skins, objects)?;
+        self.attach_tangential_springs(skins, objects)?;
         let is_there = |free: &&mut Free| !matches!(free.reading.held, PoseControl::Escaped { .. });
         let mut there: Vec<&mut Free> = self.all.iter_mut().filter(is_there).collect();
         let own = |tip: TangentialSpring| {
@@ -105,33 +105,32 @@ impl FreeObjects {
             .iter()
             .map(|skin| skin.tangential_springs().filter_map(own).collect())
             .collect();
-        let skins = skins.iter().zip(&plan.patches).zip(&self.pushed).zip(&tips);
-        let skins: Vec<PlacedSkin> = skins
-            .map(|(((skin, patch), pushed), tips)| PlacedSkin {
-                patch: &patch.skin,
-                world_from_patch: skin.pose,
-                pushed,
-                before: (patch.remembers() && dt.is_finite()).then(|| (skin.deflection(), dt)),
-                tangential_springs: tips,
-            })
-            .collect();
+        let skins = skins.iter().zip(&self.pushed).zip(&tips);
+        let skins = skins.map(|((skin, pushed), tips)| PlacedSkin {
+            patch: &skin.patch.skin,
+            world_from_patch: skin.pose,
+            pushed,
+            before: (skin.patch.remembers() && dt.is_finite()).then(|| (skin.deflection(), dt)),
+            tangential_springs: tips,
+        });
+        let models = objects.models;
         let bodies = there
             .iter()
-            .map(|free| FreeObject::new(&plan.models[free.object], free.mass, free.center_of_mass));
+            .map(|free| FreeObject::new(&models[free.object], free.mass, free.center_of_mass));
         let bodies = bodies.collect::<Result<Vec<_>>>()?;
         let starts: Vec<Pose> = there.iter().map(|free| free.reading.pose).collect();
         let obstacles = self.obstacles.iter().map(|&object| Obstacle {
-            shape: (&plan.models[object]).into(),
+            shape: (&models[object]).into(),
             pose: objects.poses[object],
         });
         let ground = Ground {
-            skins,
-            planes: plan.planes.clone(),
+            skins: skins.collect(),
+            planes: self.plan.planes.clone(),
             obstacles: obstacles.collect(),
         };
         let balances = self
             .balancer
-            .solve_all(&bodies, &ground, plan.gravity, &starts)?;
+            .solve_all(&bodies, &ground, self.plan.gravity, &starts)?;
         self.there = there.iter().map(|free| free.object).collect();
         for (free, balance) in there.iter_mut().zip(balances) {
             free.reading = reading(balance, time);
@@ -181,11 +180,10 @@ impl FreeObjects {
     /// Friction therefore also acts in the step in which a contact begins.
     fn attach_tangential_springs(
         &mut self,
-        plan: &ScenePlan,
         skins: &mut [SkinState],
         objects: &PlacedObjects,
     ) -> Result<()> {
-        let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
+        let has_friction = skins.iter().any(|skin| skin.patch.has_friction());
         for free in &mut self.all {
             let is_put = std::mem::take(&mut free.is_put);
             if !has_friction || matches!(free.reading.held, PoseControl::Escaped { .. }) {
@@ -194,13 +192,12 @@ impl FreeObjects {
             let mut only = objects.clone();
             only.poses.fill(OUT_OF_REACH);
             only.poses[free.object] = free.reading.pose;
-            for (skin, patch) in skins.iter_mut().zip(&plan.patches) {
-                let is_held = skin
-                    .tangential_springs()
-                    .any(|spring| spring.object == free.object);
+            for skin in skins.iter_mut() {
+                let mut springs = skin.tangential_springs();
+                let is_held = springs.any(|spring| spring.object == free.object);
+                drop(springs);
                 if is_put || !is_held {
-                    let one = (free.object, &only);
-                    skin.put(patch, &plan.models, one, &mut self.workspace)?;
+                    skin.put((free.object, &only), &mut self.workspace)?;
                 }
             }
         }
@@ -208,18 +205,13 @@ impl FreeObjects {
     }
 
     /// Computes the deflections of each patch that are caused by imposed and pressed objects.
-    fn push_by_others(
-        &mut self,
-        plan: &ScenePlan,
-        skins: &[SkinState],
-        objects: &PlacedObjects,
-    ) -> Result<()> {
-        let patches = plan.patches.iter().zip(skins).zip(&mut self.pushed);
-        for ((patch, skin), pushed) in patches {
+    fn push_by_others(&mut self, skins: &[SkinState], objects: &PlacedObjects) -> Result<()> {
+        for (skin, pushed) in skins.iter().zip(&mut self.pushed) {
             pushed.clear();
-            if objects.can_reach(patch, &skin.pose) {
-                let poses: Vec<Pose> = objects.seen_by(patch, &skin.pose).collect();
-                press_with_contacts(&patch.skin, &plan.models, &poses, &mut self.workspace)?;
+            if objects.can_reach(skin) {
+                let poses: Vec<Pose> = objects.seen_by(skin).collect();
+                let patch = &skin.patch.skin;
+                press_with_contacts(patch, objects.models, &poses, &mut self.workspace)?;
                 pushed.extend_from_slice(self.workspace.deflections());
             }
         }

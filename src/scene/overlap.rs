@@ -50,8 +50,8 @@ pub(super) fn check_starts(
         }
     }
     let mut states: Vec<RobotState> = robots.iter().map(RobotState::new).collect();
-    for (state, robot) in states.iter_mut().zip(robots) {
-        state.place(robot, 0.0)?;
+    for state in &mut states {
+        state.place(0.0)?;
     }
     let starts = objects.iter().zip(models).map(|(object, model)| {
         let pose = match &object.movement {

@@ -87,23 +87,23 @@ impl ScenePlan {
         mut spec: SceneSpec,
         models: &BTreeMap<String, Model>,
     ) -> Result<Self> {
-        let reader = Reader {
-            check: Check { place },
-            folder,
+        let check = &Check { place };
+        spec.check(check, "", None)?;
+        check_names(check, &spec)?;
+        let mut reader = Reader {
             models,
+            objects: &spec.objects,
+            ..Reader::new(place, folder)
         };
-        spec.check(&reader.check, "", None)?;
-        check_names(&reader.check, &spec)?;
-        reader.check_models(&spec.objects)?;
+        reader.check_models()?;
         let robots = spec.robots.iter().map(|robot| reader.robot(robot));
-        let robots = robots.collect::<Result<Vec<_>>>()?;
+        reader.robots = robots.collect::<Result<_>>()?;
         let seed = Seed::new(spec.seed);
-        let patches = spec
-            .patches
-            .iter_mut()
-            .map(|patch| reader.patch(patch, (&robots, &spec.objects), &seed));
-        let patches = patches.collect::<Result<Vec<_>>>()?;
-        let pitches = spec.patches.iter().zip(&patches).map(|(spec, patch)| {
+        let patches = spec.patches.iter_mut();
+        let patches = patches.map(|patch| reader.patch(patch, &seed));
+        reader.patches = patches.collect::<Result<_>>()?;
+        let pitches = spec.patches.iter().zip(&reader.patches);
+        let pitches = pitches.map(|(spec, patch)| {
             let radii = patch.skin.taxels().all().iter().map(|taxel| taxel.radius);
             let listed = 2.0 * radii.fold(f64::INFINITY, f64::min) / MM;
             spec.layout.pitch_mm().unwrap_or(listed)
@@ -114,13 +114,11 @@ impl ScenePlan {
             true => ModelSpec::Packed,
             false => ModelSpec::Mesh,
         };
-        let objects = spec
-            .objects
-            .iter()
-            .map(|object| reader.object(object, (&robots, &patches), (finest_mm, default_model)));
+        let objects = spec.objects.iter();
+        let objects = objects.map(|object| reader.object(object, (finest_mm, default_model)));
         let (objects, models): (Vec<_>, Vec<_>) =
             objects.collect::<Result<Vec<_>>>()?.into_iter().unzip();
-        check_presses(&reader.check, &spec)?;
+        check_presses(check, &spec)?;
         let gravity = DVec3::from_array(spec.gravity_m_per_s2);
         let is_free = |object: &&PlannedObject| matches!(object.movement, Movement::Free { .. });
         let free = objects.iter().find(is_free);
@@ -128,14 +126,17 @@ impl ScenePlan {
             let allowed = "not zero in a scene with a free object";
             return reader.refuse("gravity_m_per_s2", gravity, allowed);
         }
-        check_planes(&reader.check, &spec, free.is_some())?;
-        check_starts(&reader.check, &objects, &models, &robots)?;
+        check_planes(check, &spec, free.is_some())?;
+        check_starts(check, &objects, &models, &reader.robots)?;
         let planes = spec.planes.iter().map(|plane| half_space(&reader, plane));
         let planes = planes.collect::<Result<Vec<_>>>()?;
+        let Reader {
+            robots, patches, ..
+        } = reader;
         let duration = *spec
             .duration_s
             .get_or_insert_with(|| end(&robots, &objects));
-        let clock = Clock::new(&reader.check, &spec, duration)?;
+        let clock = Clock::new(check, &spec, duration)?;
         let spec = with_absolute_paths(place, &spec, folder)?;
         Ok(Self {
             place: place.to_owned(),

@@ -1,8 +1,6 @@
 //! Objects of an executable scene: contact models, motions and target forces.
 
 use super::carrier::Carrier;
-use super::plan_patch::PlannedPatch;
-use super::plan_robot::PlannedRobot;
 use super::reader::Reader;
 use super::spec::{MOVEMENT_RULES, Numbers, ObjectSpec, PressSpec, SHAPE_KEYS, SHAPE_RULES};
 use super::spec_motion::metres;
@@ -107,7 +105,6 @@ impl Reader<'_> {
     pub fn object(
         &self,
         spec: &ObjectSpec,
-        (robots, patches): (&[PlannedRobot], &[PlannedPatch]),
         (finest_mm, default): (f64, ModelSpec),
     ) -> Result<(PlannedObject, Model)> {
         let key = &format!("objects.{}", spec.name);
@@ -115,7 +112,7 @@ impl Reader<'_> {
         let model = self.model(key, spec, finest_mm, for_mesh)?;
         self.check.rules(key, spec, MOVEMENT_RULES)?;
         let movement = match &spec.free {
-            None => self.imposed(key, spec, robots)?,
+            None => self.imposed(key, spec)?,
             Some(free) => {
                 let Some(mass) = free.mass_kg else {
                     let key = format!("{key}.free.mass_kg");
@@ -130,7 +127,7 @@ impl Reader<'_> {
             }
         };
         let press = spec.press.as_ref();
-        let press = press.map(|press| self.press(&format!("{key}.press"), press, patches));
+        let press = press.map(|press| self.press(&format!("{key}.press"), press));
         let object = PlannedObject {
             name: spec.name.clone(),
             movement,
@@ -142,22 +139,17 @@ impl Reader<'_> {
     }
 
     /// Returns the imposed movement of an object, in the world or on a robot's link.
-    pub fn imposed(
-        &self,
-        key: &str,
-        spec: &ObjectSpec,
-        robots: &[PlannedRobot],
-    ) -> Result<Movement> {
+    pub fn imposed(&self, key: &str, spec: &ObjectSpec) -> Result<Movement> {
         let on = (spec.robot.as_deref(), spec.link.as_deref());
         Ok(Movement::Imposed {
-            carrier: self.carrier(key, on, robots)?,
+            carrier: self.carrier(key, on)?,
             motion: self.motion(key, &spec.at, spec.motion.as_ref())?,
         })
     }
 
     /// Checks that each model given in memory belongs to an object of the scene.
-    pub fn check_models(&self, objects: &[ObjectSpec]) -> Result<()> {
-        let names = objects.iter().map(|object| object.name.as_str());
+    pub fn check_models(&self) -> Result<()> {
+        let names = self.objects.iter().map(|object| object.name.as_str());
         for name in self.models.keys() {
             if names.clone().all(|known| known != name) {
                 let given = format!("a model for `{name}`");
@@ -236,8 +228,8 @@ impl Reader<'_> {
     }
 
     /// Checks the keys of a pressed object and returns the control of its force.
-    fn press(&self, key: &str, spec: &PressSpec, patches: &[PlannedPatch]) -> Result<PlannedPress> {
-        let names = patches.iter().map(|patch| patch.skin.name());
+    fn press(&self, key: &str, spec: &PressSpec) -> Result<PlannedPress> {
+        let names = self.patches.iter().map(|patch| patch.skin.name());
         let patch = self.known(&format!("{key}.patch"), &spec.patch, names)?;
         let direction = DVec3::from_array(spec.direction);
         if direction == DVec3::ZERO {

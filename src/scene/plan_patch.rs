@@ -5,9 +5,9 @@ use super::link_surface::{LinkSurface, link_surface};
 use super::plan_robot::PlannedRobot;
 use super::plan_signal::PlannedSignal;
 use super::reader::Reader;
-use super::spec::{DrapedSpec, FileLayoutSpec, LayoutSpec, ObjectSpec, PatchSpec, RegionSpec};
+use super::spec::{DrapedSpec, FileLayoutSpec, LayoutSpec, PatchSpec, RegionSpec};
 use super::spec_motion::metres;
-use super::spec_patch::{PATCH_RULES, REGION_RULES};
+use super::spec_patch::{DRAPED_RULES, PATCH_RULES, REGION_RULES};
 use crate::error::Result;
 use crate::geometry::{Aabb, Pose};
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
@@ -93,17 +93,11 @@ impl PlacedTaxels {
 
 impl Reader<'_> {
     /// Checks a patch of a scene file and returns its taxels, carrier, friction and signal chain. Writes default values into the specification of the patch.
-    pub fn patch(
-        &self,
-        spec: &mut PatchSpec,
-        (robots, objects): (&[PlannedRobot], &[ObjectSpec]),
-        seed: &Seed,
-    ) -> Result<PlannedPatch> {
+    pub fn patch(&self, spec: &mut PatchSpec, seed: &Seed) -> Result<PlannedPatch> {
         let key = &format!("patches.{}", spec.name);
         self.check.rules(key, spec, PATCH_RULES)?;
         let layout_key = &format!("{key}.layout");
-        self.drape_on_own_link(layout_key, spec, robots)?;
-        let placed = self.place_taxels(layout_key, spec, robots, &seed.named(&spec.name))?;
+        let placed = self.place_taxels(layout_key, spec, &seed.named(&spec.name))?;
         if let Some(link) = placed.link {
             let given = spec.link.get_or_insert_with(|| link.clone());
             if *given != link {
@@ -121,7 +115,7 @@ impl Reader<'_> {
         Ok(PlannedPatch {
             signal: self.signal(key, &spec.signal, &skin, seed)?,
             skin,
-            carrier: self.carrier_of_patch(key, spec, robots, objects)?,
+            carrier: self.carrier_of_patch(key, spec)?,
             at: spec.at.pose(),
             shears,
             notes: placed.notes,
@@ -129,21 +123,15 @@ impl Reader<'_> {
     }
 
     /// Returns the body that carries a patch: an object, a robot link, or the world.
-    fn carrier_of_patch(
-        &self,
-        key: &str,
-        spec: &PatchSpec,
-        robots: &[PlannedRobot],
-        objects: &[ObjectSpec],
-    ) -> Result<Carrier> {
+    fn carrier_of_patch(&self, key: &str, spec: &PatchSpec) -> Result<Carrier> {
         let Some(name) = &spec.object else {
             let on = (spec.robot.as_deref(), spec.link.as_deref());
-            return self.carrier(key, on, robots);
+            return self.carrier(key, on);
         };
         let key = &format!("{key}.object");
-        let names = objects.iter().map(|object| object.name.as_str());
+        let names = self.objects.iter().map(|object| object.name.as_str());
         let object = self.known(key, name, names)?;
-        if objects[object].free.is_some() || objects[object].press.is_some() {
+        if self.objects[object].free.is_some() || self.objects[object].press.is_some() {
             let given = format!("`{name}`, which does not go where it is told");
             return self.refuse(key, given, "an object that is neither free nor pushed");
         }
@@ -151,29 +139,18 @@ impl Reader<'_> {
     }
 
     /// Returns the robot that a patch names; its surface or sensor is used by the key `key`.
-    fn robot_of_patch<'r>(
-        &self,
-        key: &str,
-        spec: &PatchSpec,
-        robots: &'r [PlannedRobot],
-    ) -> Result<&'r PlannedRobot> {
+    fn robot_of_patch(&self, key: &str, spec: &PatchSpec) -> Result<&PlannedRobot> {
         let Some(name) = &spec.robot else {
             let allowed = "robot = \"NAME\" of the patch";
             return self.refuse(key, "a patch without a robot", allowed);
         };
-        let names = robots.iter().map(|robot| robot.name.as_str());
+        let names = self.robots.iter().map(|robot| robot.name.as_str());
         let key = format!("patches.{}.robot", spec.name);
-        Ok(&robots[self.known(&key, name, names)?])
+        Ok(&self.robots[self.known(&key, name, names)?])
     }
 
     /// Returns the layout of a patch, and the properties of its taxels that the layout determines.
-    fn place_taxels(
-        &self,
-        key: &str,
-        spec: &PatchSpec,
-        robots: &[PlannedRobot],
-        seed: &Seed,
-    ) -> Result<PlacedTaxels> {
+    fn place_taxels(&self, key: &str, spec: &PatchSpec, seed: &Seed) -> Result<PlacedTaxels> {
         let pitch_mm = spec.layout.pitch_mm().unwrap_or_default();
         let pitch = pitch_mm * MM;
         let mut link = None;
@@ -184,7 +161,7 @@ impl Reader<'_> {
             }
             LayoutSpec::Sensor(sensor) => {
                 let key = &format!("{key}.sensor");
-                let sensors = self.robot_of_patch(key, spec, robots)?;
+                let sensors = self.robot_of_patch(key, spec)?;
                 let sensors = sensors.robot.tactile_sensors();
                 let names = sensors.iter().map(|sensor| sensor.name.as_str());
                 let sensor = &sensors[self.known(key, sensor, names)?];
@@ -213,9 +190,9 @@ impl Reader<'_> {
                 Layout::sphere_cap(cap.radius_mm * MM, half_angle, pitch)
             }
             LayoutSpec::Draped(draped) => {
-                let region = draped.region.as_ref();
-                link = region.and_then(|region| region.link.clone());
-                Ok(self.draped(key, (spec, draped), robots, seed)?)
+                let (layout, own) = self.draped(key, (spec, draped), seed)?;
+                link = own;
+                Ok(layout)
             }
         };
         Ok(PlacedTaxels {
@@ -226,53 +203,64 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns taxels on the surface of a mesh or of a robot's link.
+    /// Returns taxels on the surface of a mesh or of a robot's link, and the name of this link.
     fn draped(
         &self,
         key: &str,
         (spec, draped): (&PatchSpec, &DrapedSpec),
-        robots: &[PlannedRobot],
         seed: &Seed,
-    ) -> Result<Layout> {
+    ) -> Result<(Layout, Option<String>)> {
+        self.check.rules(key, draped, DRAPED_RULES)?;
         let pitch = draped.pitch_mm * MM;
         let region_key = &format!("{key}.region");
         let region = draped.region.as_deref().cloned().unwrap_or_default();
-        let mesh = match (&draped.mesh, &region.link) {
-            (Some(path), None) => self.surface(&format!("{key}.mesh"), path, draped.unit)?,
-            (None, Some(link)) => {
-                let key = &format!("{region_key}.link");
-                if draped.unit.is_some() {
-                    let allowed = "no unit: the robot's file has metres and scales";
-                    return self.refuse(key, "a link beside unit", allowed);
-                }
-                let PlannedRobot { robot, meshes, .. } = self.robot_of_patch(key, spec, robots)?;
-                let role = region.shapes;
-                let surface = LinkSurface { link, role };
-                self.under(key, link_surface(robot, meshes, &surface, pitch))?
+        self.check.rules(region_key, &region, REGION_RULES)?;
+        let link_key = &match draped.on {
+            Some(_) => format!("{key}.on"),
+            None => format!("{region_key}.link"),
+        };
+        let (mesh, link) = match (&draped.mesh, draped.on, &region.link) {
+            (Some(path), None, None) => {
+                let key = format!("{key}.mesh");
+                (self.surface(&key, path, draped.unit)?, None)
             }
-            (mesh, _) => {
-                let given = match mesh {
-                    Some(_) => "mesh and region.link",
-                    None => "neither mesh nor a link",
+            (None, Some(_), None) | (None, None, Some(_)) => {
+                let PlannedRobot { robot, meshes, .. } = self.robot_of_patch(link_key, spec)?;
+                let own = || spec.link.as_deref();
+                let link = region.link.as_deref().or_else(own);
+                let link = link.unwrap_or(&robot.links()[robot.base()].name);
+                let role = draped.on.or(region.shapes);
+                let surface = LinkSurface { link, role };
+                let mesh = self.under(link_key, link_surface(robot, meshes, &surface, pitch))?;
+                (mesh, Some(link.to_owned()))
+            }
+            (mesh, ..) => {
+                let given = match (mesh, &region.link) {
+                    (None, None) => "neither mesh nor a link",
+                    (Some(_), _) => "mesh and region.link",
+                    (None, Some(_)) => "on and region.link",
                 };
                 let allowed = "mesh = \"FILE\", on = \"collision\" for the patch's own link, or region = { link = \"NAME\" }, a link of the patch's robot";
                 return self.refuse(key, given, allowed);
             }
         };
         let region = self.region(region_key, &region, draped.mesh.as_deref())?;
-        let Some(grid) = &draped.grid else {
-            let layout = Layout::draped_on(&mesh, pitch, &region, seed);
-            return self.under(key, layout);
+        let layout = match &draped.grid {
+            None => Layout::draped_on(&mesh, pitch, &region, seed),
+            Some(_) if region != DrapeRegion::default() => {
+                let allowed = "a grid alone: its taxels cover the surface below it";
+                let given = "a part of the surface beside a grid";
+                return self.refuse(region_key, given, allowed);
+            }
+            Some(grid) => {
+                let (nx, ny) = (grid.nx, grid.ny);
+                let flat = Grid { nx, ny, pitch };
+                let missing = grid.missing.into();
+                let projected = Layout::projected(&mesh, &grid.at.pose(), &flat, missing);
+                projected.map(|projected| projected.layout)
+            }
         };
-        if region != DrapeRegion::default() {
-            let allowed = "a grid alone: its taxels cover the surface below it";
-            let given = "a part of the surface beside a grid";
-            return self.refuse(region_key, given, allowed);
-        }
-        let (nx, ny) = (grid.nx, grid.ny);
-        let flat = Grid { nx, ny, pitch };
-        let projected = Layout::projected(&mesh, &grid.at.pose(), &flat, grid.missing.into());
-        Ok(self.under(key, projected)?.layout)
+        Ok((self.under(key, layout)?, link))
     }
 
     /// Reads a mesh over which taxels are draped, or whose normals are their axes.
@@ -296,40 +284,8 @@ impl Reader<'_> {
         self.read(key, path, |path| LayoutFile::read(path, options))
     }
 
-    /// Replaces `on`, the shapes of the patch's own link, by the region of this link.
-    fn drape_on_own_link(
-        &self,
-        key: &str,
-        spec: &mut PatchSpec,
-        robots: &[PlannedRobot],
-    ) -> Result<()> {
-        let LayoutSpec::Draped(draped) = &spec.layout else {
-            return Ok(());
-        };
-        let Some(role) = draped.on else {
-            return Ok(());
-        };
-        let key = &format!("{key}.on");
-        let mut region = draped.region.clone().unwrap_or_default();
-        if draped.mesh.is_some() || region.link.is_some() || region.shapes.is_some() {
-            let given = "beside mesh, region.link or region.shapes";
-            return self.refuse(key, given, "one surface: on = \"collision\" alone");
-        }
-        let robot = &self.robot_of_patch(key, spec, robots)?.robot;
-        let base = || robot.links()[robot.base()].name.clone();
-        region.link = Some(spec.link.clone().unwrap_or_else(base));
-        region.shapes = Some(role);
-        spec.layout = LayoutSpec::Draped(DrapedSpec {
-            on: None,
-            region: Some(region),
-            ..draped.clone()
-        });
-        Ok(())
-    }
-
     /// Returns the part of a surface on which taxels are placed. The surface is a mesh file, or a robot link if `mesh` is `None`.
     fn region(&self, key: &str, spec: &RegionSpec, mesh: Option<&Path>) -> Result<DrapeRegion> {
-        self.check.rules(key, spec, REGION_RULES)?;
         let bounds = spec.box_min_mm.zip(spec.box_max_mm);
         let triangles = match (&spec.group, spec.triangles, mesh) {
             (Some(group), _, Some(mesh)) => {

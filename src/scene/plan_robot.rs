@@ -177,7 +177,8 @@ fn stays(joint: &Joint, robot: &Robot) -> String {
 
 /// Joint positions and link poses of a robot at one time.
 #[derive(Clone, Debug)]
-pub(super) struct RobotState {
+pub(super) struct RobotState<'p> {
+    robot: &'p PlannedRobot,
     positions: Vec<f64>,
     /// Whether a program has set the joint positions, which then no longer follow the scene file.
     are_set: bool,
@@ -187,10 +188,11 @@ pub(super) struct RobotState {
     pub world_from_link: Vec<Pose>,
 }
 
-impl RobotState {
+impl<'p> RobotState<'p> {
     /// Creates the state of a robot with its joints at their rest positions.
-    pub fn new(robot: &PlannedRobot) -> Self {
+    pub fn new(robot: &'p PlannedRobot) -> Self {
         Self {
+            robot,
             positions: robot.robot.rest_positions(),
             are_set: false,
             base: None,
@@ -205,7 +207,8 @@ impl RobotState {
     }
 
     /// Computes the pose of each link at a time (seconds).
-    pub fn place(&mut self, robot: &PlannedRobot, time: f64) -> Result<()> {
+    pub fn place(&mut self, time: f64) -> Result<()> {
+        let robot = self.robot;
         if let (Some(joints), false) = (&robot.joints, self.are_set) {
             joints.positions_into(time, &mut self.positions);
         }

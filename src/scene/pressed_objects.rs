@@ -7,7 +7,6 @@ use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
-use glam::DVec3;
 
 /// Maximum number of turns in which each of several pressed objects moves to its target force. Two fingertips on neighbouring patches need 5 to 20. If larger,
 /// targets that cannot be reached together take longer; if smaller, some forces differ from their targets.
@@ -15,8 +14,8 @@ const MAX_ROUNDS: usize = 100;
 
 /// All pressed objects of a scene, whose motion is controlled by the force on a patch.
 #[derive(Clone, Debug)]
-pub(super) struct PressedObjects {
-    all: Vec<Pressed>,
+pub(super) struct PressedObjects<'p> {
+    all: Vec<Pressed<'p>>,
     /// Pose of each object relative to a patch, `patch_from_object`.
     poses: Vec<Pose>,
     workspace: Workspace,
@@ -24,8 +23,14 @@ pub(super) struct PressedObjects {
 
 /// Pressed object, with its displacement, contact force and contacts.
 #[derive(Clone, Debug)]
-struct Pressed {
+struct Pressed<'p> {
     object: usize,
+    /// Control of the force.
+    press: &'p PlannedPress,
+    /// Pose of the imposed motion, `world_from_object`.
+    imposed: Pose,
+    /// Distance from the imposed pose before the present step, metres.
+    before: f64,
     now: HeldForce,
     /// Target of the patch's total spring force, N.
     wanted: f64,
@@ -33,19 +38,23 @@ struct Pressed {
     contacts: Vec<TaxelContact>,
 }
 
-impl PressedObjects {
+impl<'p> PressedObjects<'p> {
     /// Creates the pressed objects of a scene at zero displacement.
-    pub fn new(plan: &ScenePlan) -> Self {
+    pub fn new(plan: &'p ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
-        let pressed = objects.filter(|(_, planned)| planned.press.is_some());
-        let at_start = |(object, _)| Pressed {
-            object,
-            now: HeldForce::default(),
-            wanted: 0.0,
-            contacts: Vec::new(),
-        };
+        let pressed = objects.filter_map(|(object, planned)| {
+            Some(Pressed {
+                object,
+                press: planned.press.as_ref()?,
+                imposed: Pose::IDENTITY,
+                before: 0.0,
+                now: HeldForce::default(),
+                wanted: 0.0,
+                contacts: Vec::new(),
+            })
+        });
         Self {
-            all: pressed.map(at_start).collect(),
+            all: pressed.collect(),
             poses: Vec::new(),
             workspace: Workspace::new(),
         }
@@ -58,7 +67,6 @@ impl PressedObjects {
     /// others.
     pub fn push(
         &mut self,
-        plan: &ScenePlan,
         skins: &[SkinState],
         objects: &mut PlacedObjects,
         [time, dt]: [f64; 2],
@@ -68,28 +76,23 @@ impl PressedObjects {
             poses,
             workspace,
         } = self;
-        let imposed: Vec<Pose> = all
-            .iter()
-            .map(|pressed| objects.poses[pressed.object])
-            .collect();
-        let before: Vec<f64> = all.iter().map(|pressed| pressed.now.travel).collect();
-        let directions = all.iter().map(|pressed| pressed.plan(plan).direction);
-        let directions: Vec<DVec3> = directions.collect();
-        for (number, pressed) in all.iter().enumerate() {
-            objects.poses[pressed.object].translation += before[number] * directions[number];
+        let n_pressed = all.len();
+        for pressed in all.iter_mut() {
+            let pose = &mut objects.poses[pressed.object];
+            (pressed.imposed, pressed.before) = (*pose, pressed.now.travel);
+            pose.translation += pressed.before * pressed.press.direction;
         }
         for round in 0..=MAX_ROUNDS {
             let mut is_moving = false;
-            for (number, pressed) in all.iter_mut().enumerate() {
-                let press = pressed.plan(plan);
-                let patch = &plan.patches[press.patch];
+            for pressed in all.iter_mut() {
+                let press = pressed.press;
                 let skin = &skins[press.patch];
-                objects.poses[pressed.object] = imposed[number];
+                objects.poses[pressed.object] = pressed.imposed;
                 poses.clear();
-                poses.extend(objects.seen_by(patch, &skin.pose));
+                poses.extend(objects.seen_by(skin));
                 let moved = MovedObject {
-                    patch: &patch.skin,
-                    objects: &plan.models,
+                    patch: &skin.patch.skin,
+                    objects: objects.models,
                     moving: Some(pressed.object),
                     direction: skin.pose.rotation.conjugate() * press.direction,
                 };
@@ -100,8 +103,8 @@ impl PressedObjects {
                     // Only the force is computed.
                     MAX_ROUNDS => [here; 2],
                     _ => [
-                        (before[number] - way).max(0.0),
-                        (before[number] + way).min(press.travel),
+                        (pressed.before - way).max(0.0),
+                        (pressed.before + way).min(press.travel),
                     ],
                 };
                 pressed.go(&moved, poses, (way, limits), workspace)?;
@@ -109,7 +112,7 @@ impl PressedObjects {
                 let pose = &mut objects.poses[pressed.object];
                 pose.translation += pressed.now.travel * press.direction;
             }
-            if !is_moving || directions.len() == 1 {
+            if !is_moving || n_pressed == 1 {
                 break;
             }
         }
@@ -117,19 +120,10 @@ impl PressedObjects {
     }
 
     /// Returns the contacts of a patch, given by its index, with the objects that are pressed onto the patch.
-    pub fn contacts_on<'a>(
-        &'a self,
-        plan: &'a ScenePlan,
-        patch: usize,
-    ) -> impl Iterator<Item = &'a TaxelContact> {
-        let is_on = move |pressed: &&Pressed| {
-            let press = plan.objects[pressed.object].press.as_ref();
-            press.is_some_and(|press| press.patch == patch)
-        };
-        self.all
-            .iter()
-            .filter(is_on)
-            .flat_map(|pressed| &pressed.contacts)
+    pub fn contacts_on(&self, patch: usize) -> impl Iterator<Item = &TaxelContact> {
+        let on_patch = self.all.iter();
+        let on_patch = on_patch.filter(move |pressed| pressed.press.patch == patch);
+        on_patch.flat_map(|pressed| &pressed.contacts)
     }
 
     /// Writes the travel, force and target of each pressed object into `readings`, at the object's number in the scene.
@@ -144,13 +138,7 @@ impl PressedObjects {
     }
 }
 
-impl Pressed {
-    /// Returns the plan of the object's press.
-    fn plan<'a>(&self, plan: &'a ScenePlan) -> &'a PlannedPress {
-        let press = plan.objects[self.object].press.as_ref();
-        press.expect("only pressed objects are in this list")
-    }
-
+impl Pressed<'_> {
     /// Moves the object towards its target force by at most `way` metres, in small steps. The distance from the pose of its imposed motion stays between the
     /// limits `low` and `high`, metres.
     ///

@@ -1,6 +1,8 @@
 //! Reading of a scene file for all parts of the plan: errors with file and key, names, motions, and files.
 
-use super::spec::{MotionSpec, PoseSpec};
+use super::plan_patch::PlannedPatch;
+use super::plan_robot::PlannedRobot;
+use super::spec::{MotionSpec, ObjectSpec, PoseSpec};
 use super::spec_motion::MOTION_RULES;
 use crate::error::Result;
 use crate::inputs::check::Check;
@@ -19,9 +21,29 @@ pub(crate) struct Reader<'a> {
     pub folder: &'a Path,
     /// Objects given in memory, by their names in the scene.
     pub models: &'a BTreeMap<String, Model>,
+    /// Objects of the scene.
+    pub objects: &'a [ObjectSpec],
+    /// Robots that have been read.
+    pub robots: Vec<PlannedRobot>,
+    /// Patches that have been read.
+    pub patches: Vec<PlannedPatch>,
 }
 
-impl Reader<'_> {
+static NO_MODELS: BTreeMap<String, Model> = BTreeMap::new();
+
+impl<'a> Reader<'a> {
+    /// Creates a reader of a file without robots, patches and objects in memory.
+    pub fn new(place: &'a str, folder: &'a Path) -> Self {
+        Self {
+            check: Check { place },
+            folder,
+            models: &NO_MODELS,
+            objects: &[],
+            robots: Vec::new(),
+            patches: Vec::new(),
+        }
+    }
+
     /// Returns the error of a key, with the name of the file.
     pub fn refuse<T>(&self, key: &str, given: impl ToString, allowed: impl ToString) -> Result<T> {
         Err(self.check.error(key, given, allowed))

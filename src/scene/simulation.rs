@@ -28,13 +28,13 @@ pub enum Stepping {
 pub struct Simulation<'p> {
     pub(super) plan: &'p ScenePlan,
     pub(super) stepping: Stepping,
-    pub(super) robots: Vec<RobotState>,
-    skins: Vec<SkinState>,
-    objects: PlacedObjects,
+    pub(super) robots: Vec<RobotState<'p>>,
+    skins: Vec<SkinState<'p>>,
+    objects: PlacedObjects<'p>,
     /// Pose `world_from_object` of each imposed object that a program set; `None` for objects that follow their motions.
     pub(super) put: Vec<Option<Pose>>,
-    pressed: PressedObjects,
-    pub(super) free: FreeObjects,
+    pressed: PressedObjects<'p>,
+    pub(super) free: FreeObjects<'p>,
     /// Seed of the sensor noise of each patch.
     noise: Vec<Seed>,
     frame: Frame,
@@ -82,6 +82,7 @@ impl<'p> Simulation<'p> {
             skins: skins.map(SkinState::new).collect(),
             put: vec![None; plan.objects.len()],
             objects: PlacedObjects {
+                models: &plan.models,
                 poses: vec![Pose::IDENTITY; plan.objects.len()],
                 balls: plan.objects.iter().map(|object| object.ball).collect(),
             },
@@ -192,8 +193,8 @@ impl<'p> Simulation<'p> {
     fn move_to_time(&mut self, time: f64, dt: f64) -> Result<()> {
         let plan = self.plan;
         self.n_steps += 1;
-        for (state, robot) in self.robots.iter_mut().zip(&plan.robots) {
-            state.place(robot, time)?;
+        for robot in &mut self.robots {
+            robot.place(time)?;
         }
         let objects = self.objects.poses.iter_mut().zip(&plan.objects);
         for ((pose, object), put) in objects.zip(&self.put) {
@@ -202,35 +203,30 @@ impl<'p> Simulation<'p> {
                 *pose = put.unwrap_or_else(at);
             }
         }
-        for (skin, patch) in self.skins.iter_mut().zip(&plan.patches) {
+        for skin in &mut self.skins {
             let objects = &self.objects.poses;
-            skin.pose = patch.carrier.place(&patch.at, &self.robots, objects);
+            skin.pose = skin
+                .patch
+                .carrier
+                .place(&skin.patch.at, &self.robots, objects);
         }
         let objects = &mut self.objects;
-        self.pressed.push(plan, &self.skins, objects, [time, dt])?;
+        self.pressed.push(&self.skins, objects, [time, dt])?;
         for (number, skin) in self.skins.iter_mut().enumerate() {
-            skin.hold(self.pressed.contacts_on(plan, number));
+            skin.hold(self.pressed.contacts_on(number));
         }
-        let is_settled =
-            self.free
-                .solve_equilibrium(plan, &mut self.skins, &mut self.objects, [time, dt])?;
+        let skins = &mut self.skins;
+        let is_settled = self.free.solve_equilibrium(skins, objects, [time, dt])?;
         self.n_unsettled += usize::from(!is_settled);
         Ok(())
     }
 
     /// Updates the deflections of the patches after a time step at which no frame is written.
     fn update_deflections(&mut self, dt: f64) -> Result<()> {
-        let plan = self.plan;
-        for (number, (skin, patch)) in self.skins.iter_mut().zip(&plan.patches).enumerate() {
-            if patch.remembers() || self.stepping == Stepping::Always {
+        for (number, skin) in self.skins.iter_mut().enumerate() {
+            if skin.patch.remembers() || self.stepping == Stepping::Always {
                 let tips = self.free.tips_on(number);
-                skin.update_deflections(
-                    patch,
-                    &plan.models,
-                    &self.objects,
-                    (dt, &tips),
-                    Detail::Deflections,
-                )?;
+                skin.update_deflections(&self.objects, (dt, &tips), Detail::Deflections)?;
             }
         }
         Ok(())
@@ -249,17 +245,16 @@ impl<'p> Simulation<'p> {
     fn read(&mut self, dt: f64) -> Result<()> {
         let plan = self.plan;
         let share = self.share();
-        let patches = self.skins.iter_mut().zip(&plan.patches);
-        let patches = patches.zip(&mut self.frame.patches).enumerate();
-        for (number, ((skin, patch), reading)) in patches {
+        let patches = self.skins.iter_mut().zip(&mut self.frame.patches);
+        for (number, (skin, reading)) in patches.enumerate() {
             let loads: Vec<_> = self.free.on_patch(number).collect();
             let carried = (&loads[..], &self.free.tips_on(number)[..]);
-            skin.step_and_read(patch, &plan.models, &self.objects, dt, carried, reading)?;
-            skin.keep_stopped(patch, |object| {
+            skin.step_and_read(&self.objects, dt, carried, reading)?;
+            skin.keep_stopped(|object| {
                 let object = &plan.objects[object];
                 object.press.is_none() && !matches!(object.movement, Movement::Free { .. })
             });
-            if let Some(signal) = &patch.signal {
+            if let Some(signal) = &skin.patch.signal {
                 let name = self.noise[number].numbered(self.n_read as u64);
                 signal.read(reading, &name, share, &mut self.scratch);
             }

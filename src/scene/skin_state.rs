@@ -13,9 +13,11 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use glam::DVec3;
 
-/// Poses and bounding balls of all objects of a scene.
+/// Poses, models and bounding balls of all objects of a scene.
 #[derive(Clone, Debug)]
-pub(super) struct PlacedObjects {
+pub(super) struct PlacedObjects<'p> {
+    /// Contact model of each object.
+    pub models: &'p [Model],
     /// Pose of each object, `world_from_object`; escaped objects are placed far from all patches.
     pub poses: Vec<Pose>,
     /// Bounding ball of each object (centre, radius), object frame, metres.
@@ -28,44 +30,41 @@ pub(super) const OUT_OF_REACH: Pose = Pose {
     translation: DVec3::new(0.0, 0.0, 1e100),
 };
 
-impl PlacedObjects {
+impl PlacedObjects<'_> {
     /// Returns the pose of each object in the patch frame, `patch_from_object`. An object that carries the patch does not touch it and gets a pose out of
     /// reach.
-    pub fn seen_by<'a>(
-        &'a self,
-        patch: &PlannedPatch,
-        world_from_patch: &'a Pose,
-    ) -> impl Iterator<Item = Pose> + 'a {
-        let carrier = patch.carrier;
+    pub fn seen_by<'a>(&'a self, skin: &SkinState) -> impl Iterator<Item = Pose> + use<'a> {
+        let (carrier, world_from_patch) = (skin.patch.carrier, skin.pose);
         let poses = self.poses.iter().enumerate();
         poses.map(
             move |(number, pose)| match carrier == Carrier::Object(number) {
                 true => OUT_OF_REACH,
-                false => pose.seen_from(world_from_patch),
+                false => pose.seen_from(&world_from_patch),
             },
         )
     }
 
     /// Returns whether any object may touch the patch: the bounding box of the taxels intersects the bounding ball of an object.
-    pub fn can_reach(&self, patch: &PlannedPatch, world_from_patch: &Pose) -> bool {
-        let skin = &patch.skin;
-        let Some(bounds) = skin.tree().bounds() else {
+    pub fn can_reach(&self, skin: &SkinState) -> bool {
+        let tree = skin.patch.skin.tree();
+        let Some(bounds) = tree.bounds() else {
             return false;
         };
-        self.seen_by(patch, world_from_patch)
-            .zip(&self.balls)
-            .any(|(pose, &(center, radius))| {
-                let center = pose.transform_point(center);
-                let reach = radius + skin.tree().largest_radius();
-                // Margin for rounding errors: far above 1e-16 and far below a measurable distance.
-                bounds.distance_squared(center) <= reach * reach * (1.0 + 1e-9)
-            })
+        let mut objects = self.seen_by(skin).zip(&self.balls);
+        objects.any(|(pose, &(center, radius))| {
+            let center = pose.transform_point(center);
+            let reach = radius + tree.largest_radius();
+            // Margin for rounding errors: far above 1e-16 and far below a measurable distance.
+            bounds.distance_squared(center) <= reach * reach * (1.0 + 1e-9)
+        })
     }
 }
 
 /// State of a patch of skin at one time.
 #[derive(Clone, Debug)]
-pub(super) struct SkinState {
+pub(super) struct SkinState<'p> {
+    /// Plan of the patch.
+    pub patch: &'p PlannedPatch,
     /// Current pose of the patch, `world_from_patch`.
     pub pose: Pose,
     damper: DamperState,
@@ -82,9 +81,9 @@ pub(super) struct SkinState {
     stopped: Vec<TaxelContact>,
 }
 
-impl SkinState {
+impl<'p> SkinState<'p> {
     /// Creates the state of a patch with zero deflections.
-    pub fn new(patch: &PlannedPatch) -> Self {
+    pub fn new(patch: &'p PlannedPatch) -> Self {
         let n_taxels = patch.skin.n_taxels();
         let friction = patch.shears.clone();
         let at_rest = |shears| {
@@ -92,6 +91,7 @@ impl SkinState {
             state.expect("the plan has checked that they fit")
         };
         Self {
+            patch,
             pose: Pose::IDENTITY,
             damper: DamperState::at_rest(n_taxels),
             is_idle: true,
@@ -112,8 +112,8 @@ impl SkinState {
 
     /// Keeps the contacts of imposed objects with taxels at their stroke, so that an object that moves through the skin stays sensed behind it. `is_imposed`
     /// returns whether an object of the scene is imposed.
-    pub fn keep_stopped(&mut self, patch: &PlannedPatch, is_imposed: impl Fn(usize) -> bool) {
-        let taxels = patch.skin.taxels();
+    pub fn keep_stopped(&mut self, is_imposed: impl Fn(usize) -> bool) {
+        let taxels = self.patch.skin.taxels();
         let contacts = self.workspace.contacts().iter();
         let stopped = contacts.filter(|contact| {
             is_imposed(contact.object) && contact.is_saturated(taxels.at(contact.taxel))
@@ -133,21 +133,21 @@ impl SkinState {
     /// to touch the patch.
     pub fn put(
         &mut self,
-        patch: &PlannedPatch,
-        models: &[Model],
         (object, only): (usize, &PlacedObjects),
         workspace: &mut Workspace,
     ) -> Result<()> {
+        let poses: Vec<Pose> = only.seen_by(self).collect();
+        let is_reached = only.can_reach(self);
         if let Some(friction) = &mut self.friction {
-            let poses: Vec<Pose> = only.seen_by(patch, &self.pose).collect();
-            let contacts = match only.can_reach(patch, &self.pose) {
+            let skin = &self.patch.skin;
+            let contacts = match is_reached {
                 true => {
-                    press_with_contacts(&patch.skin, models, &poses, workspace)?;
+                    press_with_contacts(skin, only.models, &poses, workspace)?;
                     workspace.contacts()
                 }
                 false => &[],
             };
-            friction.put(&patch.skin, contacts, (object, &poses[object]));
+            friction.put(skin, contacts, (object, &poses[object]));
         }
         Ok(())
     }
@@ -161,14 +161,13 @@ impl SkinState {
     /// in taxel order.
     pub fn step_and_read(
         &mut self,
-        patch: &PlannedPatch,
-        models: &[Model],
         objects: &PlacedObjects,
         dt: f64,
         (loads, tips): (&[&TaxelLoad], &[TangentialSpringState]),
         reading: &mut PatchReading,
     ) -> Result<()> {
-        self.update_deflections(patch, models, objects, (dt, tips), Detail::Contacts)?;
+        self.update_deflections(objects, (dt, tips), Detail::Contacts)?;
+        let patch = self.patch;
         let contacts = self.workspace.contacts();
         reading.pose = self.pose;
         reading.deflection.clone_from(&self.damper.deflection);
@@ -204,22 +203,21 @@ impl SkinState {
     /// are in `tips`.
     pub fn update_deflections(
         &mut self,
-        patch: &PlannedPatch,
-        models: &[Model],
         objects: &PlacedObjects,
         (dt, tips): (f64, &[TangentialSpringState]),
         detail: Detail,
     ) -> Result<()> {
-        let is_reached = self.workspace.holds_any() || objects.can_reach(patch, &self.pose);
+        let is_reached = self.workspace.holds_any() || objects.can_reach(self);
         if !is_reached && self.is_idle {
             return Ok(());
         }
+        let patch = self.patch;
         self.poses.clear();
         let models = match is_reached {
-            true => models,
+            true => objects.models,
             false => &[],
         };
-        let seen = objects.seen_by(patch, &self.pose);
+        let seen = objects.seen_by(self);
         self.poses.extend(seen.take(models.len()));
         let workspace = &mut self.workspace;
         let press = match self.friction.is_some() || detail == Detail::Contacts {

@@ -64,6 +64,12 @@ pub(super) const PATCH_RULES: &[Rule] = &[
     Rule::Beside("link", &["robot"]),
 ];
 
+/// Keys of a draped layout that exclude each other or act together.
+pub(super) const DRAPED_RULES: &[Rule] = &[
+    Rule::Excludes("on", &["mesh"]),
+    Rule::Beside("unit", &["mesh"]),
+];
+
 /// Keys of the part of a surface that exclude each other or act together.
 pub(super) const REGION_RULES: &[Rule] = &[
     Rule::Beside("shapes", &["link"]),

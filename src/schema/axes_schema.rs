@@ -56,8 +56,8 @@ fn axes_table(schema: &Value) -> Value {
         let mut keys = recognition_keys().iter();
         if keys.any(|key| is_at(key.path, name) && key.axis != AxisPlace::Never) {
             let key = Key::new(format!("#/properties/{name}"), of_key, schema);
-            key.add_paths(name, &mut axes);
-            axes.insert(name.clone(), key.lists());
+            let lists = key.add_lists(name, &mut axes);
+            axes.insert(name.clone(), lists);
         }
     }
     let several = json!({ "type": "array", "minItems": 1, "uniqueItems": true });
@@ -110,21 +110,19 @@ impl<'s> Key<'s> {
         }
     }
 
-    /// Adds the paths of a key and of all its subkeys; the schema of each path is a list of its values.
-    fn add_paths(&self, path: &str, axes: &mut Map<String, Value>) {
-        axes.extend(self.list().map(|list| (path.to_owned(), list)));
-        for (name, inner) in self.inner() {
-            inner.add_paths(&format!("{path}.{name}"), axes);
-        }
-    }
-
-    /// Returns the schema of a list of values of the key, or of a table with such lists.
-    fn lists(&self) -> Value {
-        let inner = self.inner().into_iter();
-        let inner: Map<String, Value> = inner.map(|(name, key)| (name, key.lists())).collect();
+    /// Adds the paths of a key and of all its subkeys; the schema of each path is a list of its values. Returns the schema of such a list, or of a table with
+    /// such lists.
+    fn add_lists(&self, path: &str, axes: &mut Map<String, Value>) -> Value {
+        let list = self.list();
+        axes.extend(list.clone().map(|list| (path.to_owned(), list)));
+        let inner = self.inner().into_iter().map(|(name, key)| {
+            let lists = key.add_lists(&format!("{path}.{name}"), axes);
+            (name, lists)
+        });
+        let inner: Map<String, Value> = inner.collect();
         let is_value = inner.is_empty();
         let table = json!({ "type": "object", "properties": inner, "additionalProperties": false });
-        match self.list() {
+        match list {
             None => table,
             Some(list) if is_value => list,
             Some(list) => json!({ "anyOf": [list, table] }),

@@ -44,20 +44,12 @@ pub struct WhichObject {
 impl WhichObject {
     /// Loads the object; a file has priority over a built-in object with the same name.
     pub fn load(&self) -> Result<Original> {
-        if self.objects.is_some() {
-            self.check_used()?;
-            let catalogue = catalogue(self.objects.as_deref())?;
-            return Ok(Original::Solid(
-                catalogue.object(&self.object)?.solid.clone(),
-            ));
-        }
         let path = Path::new(&self.object);
-        let catalogue = catalogue(None)?;
-        if let Ok(entry) = catalogue.object(&self.object)
-            && !path.exists()
-        {
+        let catalogue = catalogue(self.objects.as_deref())?;
+        let entry = catalogue.object(&self.object);
+        if self.objects.is_some() || (entry.is_ok() && !path.exists()) {
             self.check_used()?;
-            return Ok(Original::Solid(entry.solid.clone()));
+            return Ok(Original::Solid(entry?.solid.clone()));
         }
         let body = if self.as_sheet {
             Body::Sheet

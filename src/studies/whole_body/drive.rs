@@ -11,7 +11,6 @@ use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
 use crate::world::Oscillation;
 use glam::DVec3;
 use ndarray::ArrayView2;
-use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Duration of a time step that is long enough for a damped taxel without contact to return to its rest position, seconds. The value is longer than any
@@ -132,11 +131,7 @@ impl<'a> Drive<'a> {
 
 /// Returns the object of a scene as a union of spheres, metres, in the frame of the object.
 pub(super) fn of_scene(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SphereUnion> {
-    let reader = Reader {
-        check: Check { place: &plan.place },
-        folder: &plan.folder,
-        models: &BTreeMap::new(),
-    };
+    let reader = Reader::new(&plan.place, &plan.folder);
     let mut spec = scene.spec.object.clone();
     let model = spec.model.unwrap_or(ModelSpec::Packed);
     let is_packed = spec.spheres.is_none() && (spec.mesh.is_none() || model == ModelSpec::Packed);

@@ -9,7 +9,6 @@ use crate::studies::prelude::*;
 use crate::studies::whole_body::ladders::{ScalingPoint, rungs};
 use crate::world::{MeshFolders, Motion, Oscillation, Robot};
 use glam::DVec3;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 study_file! {
@@ -237,15 +236,14 @@ impl WholeBodyPlan {
         };
         check.keys("whole_body", wanted, keys_of::<WholeBodyStudySpec>())?;
         let reader = Reader {
-            check: Check { place },
-            folder,
-            models: &BTreeMap::new(),
+            robots: vec![covered],
+            ..Reader::new(place, folder)
         };
         let scenes = wanted.scenes.iter().enumerate();
         let scenes = scenes
-            .map(|(number, scene)| scene_plan(&reader, number, scene, &covered))
+            .map(|(number, scene)| scene_plan(&reader, number, scene))
             .collect::<Result<Vec<_>>>()?;
-        let robot = covered.robot;
+        let robot = reader.robots[0].robot.clone();
         let names = scenes.iter().map(|scene| scene.spec.name.as_str());
         check.list("whole_body.scenes", names.collect())?;
         let compressions = check.compressions(&wanted.sensing)?;
@@ -285,12 +283,8 @@ impl WholeBodyPlan {
 /// Value of the key `robot` of an object, which refers to the robot that is covered with skin.
 const ROBOT: &str = "robot";
 
-fn scene_plan(
-    reader: &Reader,
-    number: usize,
-    scene: &BodySceneSpec,
-    robot: &PlannedRobot,
-) -> Result<ScenePlan> {
+fn scene_plan(reader: &Reader, number: usize, scene: &BodySceneSpec) -> Result<ScenePlan> {
+    let robot = &reader.robots[0].robot;
     let prefix = format!("whole_body.scenes[{number}]");
     let key = |name: &str| format!("{prefix}.{name}");
     let check = &reader.check;
@@ -314,11 +308,10 @@ fn scene_plan(
         robot: Some(object.robot.clone().unwrap_or(ROBOT.to_owned())),
         ..object.clone()
     };
-    let robots = std::slice::from_ref(robot);
     let Movement::Imposed {
         carrier: Carrier::Link { link, .. },
         motion,
-    } = reader.imposed(&key("object"), &on_robot, robots)?
+    } = reader.imposed(&key("object"), &on_robot)?
     else {
         unreachable!("a link carries the object")
     };
@@ -330,8 +323,8 @@ fn scene_plan(
             return Err(check.error(&key("object.motion"), given, "an oscillation"));
         }
     };
-    let positions = match reader.joints(&key("joints"), scene.joints.as_ref(), &robot.robot)? {
-        None => robot.robot.rest_positions(),
+    let positions = match reader.joints(&key("joints"), scene.joints.as_ref(), robot)? {
+        None => robot.rest_positions(),
         Some(joints) if joints.times().len() > 1 => {
             let given = format!("{} times", joints.times().len());
             return Err(check.error(&key("joints"), given, "one time: the robot stands still"));
