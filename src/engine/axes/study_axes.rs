@@ -161,8 +161,8 @@ impl StudyAxes {
                     continue;
                 };
                 for key in axis.keys() {
-                    let with = with_value(&table, &key, value.clone());
-                    table = with.map_err(|error| axis.error(place, &*value, error))?;
+                    let set = set_value(&mut table, &key, value.clone());
+                    set.map_err(|error| axis.error(place, &*value, error))?;
                 }
             }
             let study = table.try_into();
@@ -198,20 +198,15 @@ impl StudyAxes {
     }
 }
 
-/// Returns a copy of `table` in which the dotted path `key` has the given value. Missing tables along the path are created, and an existing value is replaced.
+/// Sets the value at the dotted path `key` of a table. Missing tables along the path are created, and an existing value is replaced.
 ///
 /// # Errors
 /// If the path is empty, or if a part of it is not a table.
-pub(super) fn with_value(
-    table: &toml::Table,
-    key: &str,
-    value: toml::Value,
-) -> Result<toml::Table> {
-    let mut changed = table.clone();
-    match table_at(&mut changed, key) {
+fn set_value(table: &mut toml::Table, key: &str, value: toml::Value) -> Result<()> {
+    match table_at(table, key) {
         Some((inner, last)) if !key.split('.').any(str::is_empty) => {
             inner.insert(last.to_owned(), value);
-            Ok(changed)
+            Ok(())
         }
         _ => {
             let allowed = "names of tables and of a key, with a point between them: skin.stroke_mm";
@@ -267,13 +262,17 @@ mod tests {
     #[test]
     fn a_value_at_a_path_takes_the_place_of_what_was_there() {
         let table: toml::Table = "a = 1\n[b]\nc = 2".parse().unwrap();
-        let changed = with_value(&table, "b.c", 3.into()).unwrap();
+        let with = |key: &str, value: toml::Value| {
+            let mut changed = table.clone();
+            set_value(&mut changed, key, value).map(|()| changed)
+        };
+        let changed = with("b.c", 3.into()).unwrap();
         let expected = "a = 1\n[b]\nc = 3".parse().unwrap();
         assert_eq!(changed, expected);
-        let made = with_value(&table, "d.e.f", true.into()).unwrap();
+        let made = with("d.e.f", true.into()).unwrap();
         assert_eq!(made["d"]["e"]["f"].as_bool(), Some(true));
         for key in ["a.b", "", "a..b", ".a", "b."] {
-            let error = with_value(&table, key, 3.into()).unwrap_err();
+            let error = with(key, 3.into()).unwrap_err();
             assert_eq!(error.exit_code(), 2, "{key}");
         }
     }

@@ -281,13 +281,10 @@ pub(super) fn costs(
             .iter()
             .filter(|(configuration, _)| level(configuration) == of_level);
         let mut times: Vec<f64> = times.map(|(_, time)| time.us_per_touch).collect();
-        let us_per_touch_median = quantile(&mut times, 0.5);
-        (
-            row.clone(),
-            LevelTime {
-                us_per_touch_median,
-            },
-        )
+        let time = LevelTime {
+            us_per_touch_median: quantile(&mut times, 0.5),
+        };
+        (row.clone(), time)
     };
     summary.iter().map(cost).collect()
 }
