@@ -4,6 +4,7 @@ use crate::command::options::unused::check_used;
 use crate::command::options::which_object::{WhichObject, catalogue};
 use crate::command::terminal::output::check_ending;
 use crate::command::terminal::streams::say;
+use crate::inputs::units::MM;
 use bubbletouch::Result;
 use bubbletouch::files::{write_bytes, write_whole};
 use bubbletouch::mesh::{LengthUnit, MeshReport, SizeLimits};
@@ -18,7 +19,6 @@ use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh, load_spheres, read_m
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-const MM: f64 = 1e-3;
 /// Number of points on a mesh at which the surface error is measured.
 const N_POINTS: usize = 100_000;
 /// Approximate maximum number of points of the box around a solid at which the distance to its surface is measured. Larger: gigabytes at tolerances of a

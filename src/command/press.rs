@@ -5,6 +5,7 @@ use crate::command::options::unused::check_used;
 use crate::command::options::which_object::catalogue;
 use crate::command::terminal::output::{check_ending, terminal_width};
 use crate::command::terminal::streams::{note, say, write_out};
+use crate::inputs::units::MM;
 use crate::numbers_csv::NumberTable;
 use bubbletouch::contact::{self, Contact, Goal, Workspace};
 use bubbletouch::files::{check_single_output, open};
@@ -21,8 +22,6 @@ use bubbletouch::{Error, Result};
 use glam::{DQuat, DVec3};
 use ndarray::{Array2, Array3, ArrayView2};
 use std::path::{Path, PathBuf};
-
-const MM: f64 = 1e-3;
 
 /// Press one object on one array; draw or write deflections
 ///

@@ -193,9 +193,9 @@ impl<'p> FreeObjects<'p> {
             only.poses.fill(OUT_OF_REACH);
             only.poses[free.object] = free.reading.pose;
             for skin in skins.iter_mut() {
-                let mut springs = skin.tangential_springs();
-                let is_held = springs.any(|spring| spring.object == free.object);
-                drop(springs);
+                let is_held = skin
+                    .tangential_springs()
+                    .any(|spring| spring.object == free.object);
                 if is_put || !is_held {
                     skin.put((free.object, &only), &mut self.workspace)?;
                 }
