@@ -166,7 +166,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     let job = queue.lines().next().unwrap_or_default().trim();
     let journal = case.path("jobs/journal.3-of-8.jsonl");
     let start = Instant::now();
-    while pieces(&journal).len() == 0 {
+    while pieces(&journal).is_empty() {
         let waited = start.elapsed();
         assert!(
             waited < Duration::from_secs(200),

@@ -1,11 +1,12 @@
 //! Tables of single decisions, of recall, and the further measures of recognition.
 
 use crate::command::Case;
-use crate::study::Study;
+use crate::study::{Study, centroid_distances};
+use bubbletouch::recognition::data::dataset::dataset;
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::table::Table;
-use ndarray::{Array1, Array2, Array3, Axis};
+use ndarray::{Array1, Array3, Axis};
 use std::collections::{BTreeMap, BTreeSet};
 
 const STUDY: &str = include_str!("../fixtures/texts/predictions.toml");
@@ -222,26 +223,16 @@ fn predictions_of_own_splits_name_the_touches_of_the_file() {
         assert_eq!(own.len(), test.len());
         assert_eq!(touches, test.iter().copied().collect());
         // The answers are those of a nearest centroid on the standardised touches of the file.
-        let rows = |touches: &[i64]| -> Array2<f64> {
-            let touches: Vec<usize> = touches.iter().map(|&touch| touch as usize).collect();
-            frames.select(Axis(0), &touches)
-        };
-        let trained = rows(train);
-        let mean = trained.mean_axis(Axis(0)).unwrap();
-        let std = trained.std_axis(Axis(0), 0.0);
-        let centroids = [0, 1, 2].map(|class| {
-            let own = train.iter().copied();
-            let own = own.filter(|&touch| labels[touch as usize] == class);
-            let own = (&rows(&own.collect::<Vec<_>>()) - &mean) / &std;
-            own.mean_axis(Axis(0)).unwrap()
-        });
+        let train: Vec<usize> = train.iter().map(|&touch| touch as usize).collect();
+        let of_train = labels.select(Axis(0), &train).mapv(|label| label as usize);
+        let training = dataset(frames.select(Axis(0), &train), of_train).unwrap();
+        let distances = centroid_distances(&training, &frames);
         for row in own {
             let number = touch(row);
             let truth = format!("class {}", labels[number as usize]);
             assert_eq!(predictions.word("truth", row), truth);
             assert_eq!(predictions.word("group", row), (number / 10).to_string());
-            let scaled = (&rows(&[number]).row(0) - &mean) / &std;
-            let distance = |class: &usize| (&scaled - &centroids[*class]).mapv(|d| d * d).sum();
+            let distance = |class: &usize| distances[[number as usize, *class]];
             let nearest = (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b)));
             let nearest = nearest.unwrap();
             assert_eq!(predictions.word("answer", row), format!("class {nearest}"));

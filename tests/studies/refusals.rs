@@ -7,6 +7,7 @@
 use crate::command::{Case, contains, fails, failures_of};
 use crate::predictions::with_wrong_splits;
 use crate::recorded::arrays::wrong_arrays;
+use crate::recorded::law::with_shear;
 use crate::recorded::sensors::contradictory;
 use crate::recorded::simulated::small;
 use crate::recorded::values::with_values;
@@ -75,6 +76,7 @@ impl Refusal {
             "predictions" => with_wrong_splits(),
             "recorded_arrays" => wrong_arrays(),
             "recorded_sensors" => contradictory(),
+            "recorded_shear" => with_shear(),
             "recorded_small" => small(),
             "recorded_values" => with_values(),
             _ => Case::new(),

@@ -2,45 +2,24 @@
 
 use super::generator::{Generator, n_studies};
 use super::outcome::{rows, run};
+use crate::study::centroid_distances;
 use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
-use ndarray::{Array1, Array2, ArrayView1, Axis};
 
 /// Returns the number of test rows that a nearest-centroid classifier on standardised rows predicts correctly, by definition.
 fn n_correct_of_nearest_centroid(set: &FeatureSet) -> usize {
-    let (x, y) = (&set.data.records, &set.data.targets);
-    let train = x.select(Axis(0), &set.split.train);
-    let mean = train.mean_axis(Axis(0)).unwrap();
-    let std = train.std_axis(Axis(0), 0.0);
-    let scaled = |row: ArrayView1<f64>| -> Array1<f64> {
-        let values = row.iter().zip(&mean).zip(&std);
-        values
-            .map(|((x, mean), std)| match *std > 1e-12 * mean.abs() {
-                true => (x - mean) / std,
-                false => 0.0,
-            })
-            .collect()
-    };
-    let n_classes = y.iter().max().unwrap() + 1;
-    let mut sums = Array2::<f64>::zeros((n_classes, x.ncols()));
-    let mut counts = vec![0.0; n_classes];
-    for &row in &set.split.train {
-        let mut sum = sums.row_mut(y[row]);
-        sum += &scaled(x.row(row));
-        counts[y[row]] += 1.0;
-    }
-    let distance = |row: &Array1<f64>, class: usize| -> f64 {
-        let centroid = &sums.row(class) / counts[class];
-        (row - &centroid).mapv(|d| d * d).sum()
-    };
-    let is_correct = |&&row: &&usize| {
-        let scaled = scaled(x.row(row));
-        let classes = (0..n_classes).filter(|class| counts[*class] > 0.0);
-        let nearest =
-            classes.min_by(|a, b| distance(&scaled, *a).total_cmp(&distance(&scaled, *b)));
-        nearest == Some(y[row])
-    };
-    set.split.test.iter().filter(is_correct).count()
+    let test = set.test().unwrap();
+    let distances = centroid_distances(&set.training(None).unwrap(), &test.records);
+    let nearest = distances.outer_iter().map(|row| {
+        let classes = row.iter().enumerate();
+        classes
+            .min_by(|a, b| a.1.total_cmp(b.1))
+            .map(|(class, _)| class)
+    });
+    nearest
+        .zip(&test.targets)
+        .filter(|(a, b)| *a == Some(**b))
+        .count()
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Law: a study of recorded frames of simulated touches gives the results of the simulated study, for any signal.
 
-use crate::command::{Case, says};
+use crate::command::Case;
 use bubbletouch::signal::SENSOR_ERRORS;
 use ndarray::{Array4, Array5, Axis, concatenate};
 use std::fs;
@@ -142,7 +142,7 @@ fn recorded_touches_come_after_others_as_simulated_ones_do() {
     assert_ne!(fresh, expected);
 }
 
-/// Tangential forces in a separate file give the same frames as all values in one file; files that do not match are refused.
+/// Tangential forces in a separate file give the same frames as all values in one file; tests/refusals/recorded_shear.toml has files that do not match.
 #[test]
 fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
     let touched = PRESSED.replace("per_object = 6", "per_object = 6\nframes = 2");
@@ -187,37 +187,18 @@ fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
     let one = table(&format!("frames all_a, frames_test all_b, {test}"));
     let two = format!("{sets}, shear shear_a, shear_test shear_b, {test}");
     assert_eq!(table(&two), one);
-    let whole = format!("frames frames, {labels}");
-    for (keys, sensed, wanted) in [
-        (
-            format!("{whole}, shear frames"),
-            sensed,
-            "frames.npy: an array of shape [18, 2, 8, 8]; shape [18, 2, 2, 8, 8] (\"n t c y x\")",
-        ),
-        (
-            format!("{whole}, shear shear_a"),
-            sensed,
-            "shear_a.npy: an array of shape [12, 2, 2, 8, 8]; shape [18, 2, 2, 8, 8]",
-        ),
-        (
-            format!("{sets}, shear shear_a, {test}"),
-            sensed,
-            "key recorded.shear_test: no such key beside shear",
-        ),
-        (
-            format!("{sets}, shear_test shear_b, {test}"),
-            sensed,
-            "no such key without recorded.shear and",
-        ),
-        (format!("{whole}, shear shear"), "", "key recorded.shear: "),
-        (
-            format!("{whole}, shear shear"),
-            "",
-            "skin.sensed = \"shear\"",
-        ),
-    ] {
-        let refused = run(&keys, sensed);
-        assert_eq!(refused.status.code(), Some(2), "{refused:?}");
-        says(&String::from_utf8_lossy(&refused.stderr), &[wanted]);
+}
+
+/// Creates a folder of 18 touches of two frames with their shear, all together and divided into 12 training touches (`_a`) and 6 test touches (`_b`).
+pub fn with_shear() -> Case {
+    let case = Case::new();
+    for (set, n) in [("", 18), ("_a", 12), ("_b", 6)] {
+        let frames = Array4::from_shape_fn((n, 2, 8, 8), |(touch, ..)| touch as f32);
+        case.write_array(&format!("frames{set}.npy"), &frames);
+        let shear = Array5::<f32>::ones((n, 2, 2, 8, 8));
+        case.write_array(&format!("shear{set}.npy"), &shear);
+        let labels = (0..n).map(|touch| touch % 3);
+        case.write_integers(&format!("labels{set}.npy"), labels);
     }
+    case
 }

@@ -1,7 +1,7 @@
 //! Studies of recorded frames: files of every form, several sensors and values, and laws that compare recordings with simulated touches.
 
 pub mod arrays;
-mod law;
+pub mod law;
 pub mod sensors;
 pub mod simulated;
 mod subsets;
