@@ -1,9 +1,8 @@
 //! Quantities that several checks of an audit need, computed once.
 
 use crate::audit::data::AuditData;
-use crate::audit::scores::{Tested, scores};
 use crate::audit::sources::SOURCES;
-use crate::audit::splits::{AuditSplit, splits, touches_of_classes};
+use crate::audit::splits::{AuditSplit, Tested, scores, splits, touches_of_classes};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use bubbletouch_sim::audit::copies::N_NEAREST;
@@ -65,7 +64,24 @@ impl AuditOptions {
     /// If an option does not fit the data; the error names it.
     pub fn check(&self, data: &AuditData, place: impl Fn(&str) -> String) -> Result<()> {
         let (n_frames, n_taxels) = (data.n_frames, data.frames.ncols());
+        let refuse = |name: &str, given: String, allowed: String| {
+            Err(Error::input(place(name), given, allowed))
+        };
+        if let Some(Range { start, end }) = &self.before_contact
+            && (start >= end || *end > n_frames)
+        {
+            let allowed = format!("a first frame below the end, which is at most {n_frames}");
+            return refuse("before_contact", format!("{start}..{end}"), allowed);
+        }
+        if let Some(taxel) = self.untouched.iter().find(|&&taxel| taxel >= n_taxels) {
+            let allowed = format!("taxels from 0 to {}", n_taxels - 1);
+            return refuse("untouched", taxel.to_string(), allowed);
+        }
         let names = SOURCES.map(|source| source.name);
+        let mut not_claimed = self.not_claimed.iter().flatten();
+        if let Some(name) = not_claimed.find(|name| !names.contains(&&name[..])) {
+            return refuse("not_claimed", name.clone(), names.join(", "));
+        }
         let splits = [
             ("group", data.groups.is_some()),
             ("session", data.sessions.is_some()),
@@ -74,40 +90,13 @@ impl AuditOptions {
         ];
         let splits = splits.into_iter().filter(|(_, has)| *has);
         let splits: Vec<&str> = splits.map(|(name, _)| name).collect();
-        let is_wrong = |range: &&Range<usize>| range.is_empty() || range.end > n_frames;
-        let range = self.before_contact.as_ref().filter(is_wrong);
-        let range = range.map(|range| format!("{}..{}", range.start, range.end));
-        let taxel = self.untouched.iter().find(|&&taxel| taxel >= n_taxels);
-        let mut not_claimed = self.not_claimed.iter().flatten();
-        let source = not_claimed.find(|name| !names.contains(&&name[..]));
-        let split = self
-            .split
-            .as_ref()
-            .filter(|split| !splits.contains(&&split[..]));
-        let rows = [
-            (
-                "before_contact",
-                range,
-                format!("a first frame below the end, which is at most {n_frames}"),
-            ),
-            (
-                "untouched",
-                taxel.map(usize::to_string),
-                format!("taxels from 0 to {}", n_taxels - 1),
-            ),
-            ("not_claimed", source.cloned(), names.join(", ")),
-            (
-                "split",
-                split.cloned(),
-                format!("{} with these data", splits.join(", ")),
-            ),
-        ];
-        for (name, given, allowed) in rows {
-            if let Some(given) = given {
-                return Err(Error::input(place(name), given, allowed));
+        match &self.split {
+            Some(split) if !splits.contains(&&split[..]) => {
+                let allowed = format!("{} with these data", splits.join(", "));
+                refuse("split", split.clone(), allowed)
             }
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// Returns the range of the numbers of permutations of a test.
@@ -232,10 +221,14 @@ impl Context {
         readability(rows, &labels, units.as_deref(), range, &self.seed(name))
     }
 
-    /// Returns whether each class has touches of one group alone, so that class and group cannot be told apart.
+    /// Returns whether there are several groups, and each class has touches of one group alone, so that class and group cannot be told apart.
     pub fn has_one_group_each(&self) -> bool {
-        let units = self.units.as_deref();
-        self.has_classes && units.is_some_and(|units| is_nested_once(&self.labels, units))
+        let Some(units) = self.units.as_ref().filter(|_| self.has_classes) else {
+            return false;
+        };
+        let pairs: BTreeSet<_> = self.labels.iter().zip(units).collect();
+        let n_units = units.iter().collect::<BTreeSet<_>>().len();
+        n_units > 1 && pairs.len() == touches_of_classes(&self.labels).len()
     }
 
     /// Returns the results of one arm of a split.
@@ -273,14 +266,6 @@ impl Context {
     pub fn residuals(&self) -> Array2<f64> {
         without_class_means(self.representations[0].view(), &self.labels)
     }
-}
-
-/// Returns whether there are several units, and the touches of each class belong to one of them.
-fn is_nested_once(labels: &[usize], units: &[usize]) -> bool {
-    let pairs: BTreeSet<_> = labels.iter().zip(units).collect();
-    let n_pairs = pairs.len();
-    let n_units = units.iter().collect::<BTreeSet<_>>().len();
-    n_units > 1 && n_pairs == touches_of_classes(labels).len()
 }
 
 /// Draws at most `n_drawn` of the numbers 0..n at random, and returns them in ascending order.

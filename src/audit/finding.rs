@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 pub const ALPHA: f64 = 0.05;
 
 /// Result of a finding, in the order of the page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The data have this fault.
@@ -21,6 +21,7 @@ pub enum Verdict {
     /// The data have a property that limits conclusions, but is not a fault.
     Note,
     /// The check found nothing.
+    #[default]
     Passed,
 }
 
@@ -69,6 +70,7 @@ pub const TITLES: &[(&str, &str)] = &[
 
 row! {
 /// Finding of one check about one subject.
+#[derive(Default)]
 pub struct Finding {
     /// Name of the check, such as `copies`.
     check: String => Choice;
@@ -103,18 +105,9 @@ impl Finding {
     pub fn new(check: &str, verdict: Verdict, sentence: impl Into<String>) -> Self {
         Self {
             check: check.to_owned(),
-            subject: String::new(),
             verdict,
-            value: None,
-            value_low: None,
-            value_high: None,
-            baseline: None,
-            p_value: None,
-            p_holm: None,
-            is_end: false,
             sentence: sentence.into(),
-            advice: String::new(),
-            picture: String::new(),
+            ..Self::default()
         }
     }
 

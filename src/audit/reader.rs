@@ -2,15 +2,10 @@
 
 use crate::audit::data::AuditData;
 use crate::error::{Error, Result};
-use crate::inputs::arrays::axis_order::FrameShape;
-use crate::inputs::arrays::{
-    ClassLabels, KeyValue, group_keys, is_member, read_class_values, read_group_values,
-};
-use crate::studies::recognition::frames::touch_lengths::{
-    lengths_of_file, numbers_of, one_each, touch_of,
-};
+use crate::inputs::arrays::{ClassLabels, KeyValue, OneForEach, group_keys, is_member};
+use crate::studies::recognition::frames::{RecordedArray, touch_of};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
-use ndarray::{Array2, Axis, concatenate, s};
+use ndarray::{Array2, Axis, concatenate};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -33,20 +28,16 @@ struct RecordedToml {
     recorded: RecordedSpec,
 }
 
-/// Arrays of one recording: all touches, or the training touches followed by the test set.
+/// Arrays of one recording.
 struct Part {
     spec: RecordedSpec,
-    shape: FrameShape,
-    frames: Vec<Array2<f64>>,
-    /// Whether each touch belongs to the test set.
-    is_test: Vec<bool>,
-    /// Class, group and session of each touch.
-    lists: [Option<Vec<KeyValue>>; 3],
+    /// All touches, or the training touches followed by the test set.
+    sets: Vec<RecordedArray>,
+    labels: Option<Vec<KeyValue>>,
+    groups: Option<Vec<KeyValue>>,
+    sessions: Option<Vec<KeyValue>>,
     times: Option<Vec<f64>>,
 }
-
-/// Function that reads one value for each of some touches from an array of a file.
-type ReadValues = fn(&Path, &str, usize) -> Result<Vec<KeyValue>>;
 
 impl AuditFiles {
     /// Reads the data. Touches with times are sorted by time.
@@ -55,7 +46,6 @@ impl AuditFiles {
     /// If a file cannot be read or does not fit the others; the error names it.
     pub fn read(&self) -> Result<AuditData> {
         let recorded = self.data.join("recorded.toml");
-        let of_frames = |frames: &Path| RecordedSpec::of_frames(frames, [&None, &None], None);
         if recorded.is_file() {
             return assembled(vec![self.part(&self.spec_of(&recorded)?)?]);
         }
@@ -64,8 +54,8 @@ impl AuditFiles {
             false => Some(self.data.clone()),
         };
         match frames {
-            Some(frames) => assembled(vec![self.part(&of_frames(&frames))?]),
-            None => self.of_sessions(of_frames),
+            Some(frames) => assembled(vec![self.part(&spec_of_frames(&frames))?]),
+            None => assembled(self.parts_of_sessions()?),
         }
     }
 
@@ -94,7 +84,7 @@ impl AuditFiles {
     }
 
     /// Reads all archives of the folder, each as a session.
-    fn of_sessions(&self, of_frames: impl Fn(&Path) -> RecordedSpec) -> Result<AuditData> {
+    fn parts_of_sessions(&self) -> Result<Vec<Part>> {
         let entries = std::fs::read_dir(&self.data);
         let entries = entries.map_err(|error| Error::io(&self.data, "read", error))?;
         let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
@@ -131,13 +121,13 @@ impl AuditFiles {
             ));
         }
         let parts = archives.iter().map(|path| {
-            let mut part = self.part(&of_frames(path))?;
+            let mut part = self.part(&spec_of_frames(path))?;
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            let session = vec![KeyValue::Text(name.into_owned()); part.is_test.len()];
-            part.lists[2].get_or_insert(session);
+            let session = vec![KeyValue::Text(name.into_owned()); part.n_touches()];
+            part.sessions.get_or_insert(session);
             Ok(part)
         });
-        assembled(parts.collect::<Result<_>>()?)
+        parts.collect()
     }
 
     /// Reads the arrays of a recording.
@@ -161,86 +151,72 @@ impl AuditFiles {
             columns: given.columns.clone().or_else(|| spec.columns.clone()),
             grid: given.grid.or(spec.grid),
             full_scale: given.full_scale.or(spec.full_scale),
+            shear: None,
+            shear_test: None,
             ..spec.clone()
         };
         let is_given = given.order.is_some() || given.columns.is_some() || given.grid.is_some();
         spec.place.is_of_command |= is_given;
-        let shape = spec.shape_of("frames")?;
-        let (mut frames, mut is_test, mut lists) = (Vec::new(), Vec::new(), [None, None, None]);
-        let mut columns = None;
-        for end in ["", "_test"] {
-            let is_set = !end.is_empty();
-            if is_set && spec.frames_test.is_none() {
-                continue;
+        let mut sets: Vec<RecordedArray> = Vec::new();
+        for array in spec.frame_arrays() {
+            let mut set = spec.read_frames(array, sets.first(), None)?;
+            if let Some(first) = sets.first() {
+                set.shape
+                    .check_alike(&set.place, (&first.shape, &first.place))?;
             }
-            let key = |name: &str| format!("{name}{end}");
-            let place = spec.file_of(&key("frames")).unwrap_or(&spec.frames);
-            let own = spec.shape_of(&key("frames"))?;
-            check_shape((&own, place), (&shape, &spec.frames))?;
-            let array = spec.read_array(&key("frames"))?;
-            array.check_columns_of(columns.as_deref(), &spec.frames.display().to_string())?;
-            columns.clone_from(&array.columns);
-            let mut readings = own.arrange(array.into_numbers()?);
-            if let Some(path) = spec.file_of(&key("lengths")) {
-                let lengths = lengths_of_file((path, &key("lengths")), &own, place)?;
-                // Frames after the end of a touch are padding.
-                for (touch, length) in lengths.into_iter().enumerate() {
-                    let padding = touch * own.n_frames + length..(touch + 1) * own.n_frames;
-                    readings.slice_mut(s![padding, ..]).fill(f64::NAN);
-                }
-            }
-            frames.push(readings);
-            is_test.extend(vec![is_set; own.n_touches]);
-            let reads: [(&str, ReadValues); 2] =
-                [("labels", read_class_values), ("groups", read_group_values)];
-            for (list, (name, read)) in lists.iter_mut().zip(reads) {
-                let path = spec.file_of(&key(name));
-                if is_set && list.is_some() != path.is_some() {
-                    let frames = spec.frames.display();
-                    let allowed =
-                        format!("labels_test and groups_test, if {frames} has labels and groups");
-                    return Err(Error::input(place.display(), "a test set", allowed));
-                }
-                if let Some(path) = path {
-                    let values = read(path, &key(name), own.n_touches)?;
-                    one_each(
-                        (path, &key(name)),
-                        (values.len(), own.n_touches),
-                        touch_of(place),
-                    )?;
-                    list.get_or_insert_with(Vec::new).extend(values);
-                }
-            }
+            set.fill_padding(f64::NAN);
+            sets.push(set);
         }
-        let n = is_test.len();
+        let n = [0, 1].map(|set| sets.get(set).map_or(0, |set| set.shape.n_touches));
+        let of_sets = |name: &str| match spec.values_of_sets(name, n)? {
+            [train, test] if n[1] > 0 && train.is_some() != test.is_some() => {
+                let frames = spec.frames.display();
+                let allowed =
+                    format!("labels_test and groups_test, if {frames} has labels and groups");
+                let place = spec.frames_file("frames_test").display();
+                Err(Error::input(place, "a test set", allowed))
+            }
+            [train, test] => {
+                let test = test.unwrap_or_default();
+                Ok(train.map(|train| [train, test].concat()))
+            }
+        };
         let beside = |given: &Option<PathBuf>, name: &str| {
             let within = || is_member(&spec.frames, name).then(|| spec.frames.clone());
             let given = given.clone().or_else(within);
             given.or_else(|| file_in(&self.data, name))
         };
-        if let Some(path) = beside(&self.sessions, "sessions") {
-            let sessions = read_group_values(&path, "sessions", n)?;
-            one_each(
-                (&path, "sessions"),
-                (sessions.len(), n),
-                touch_of(&spec.frames),
-            )?;
-            lists[2] = Some(sessions);
-        }
+        let sessions = beside(&self.sessions, "sessions");
         let times = beside(&self.times, "times");
-        let times = times.map(|path| {
-            let each = (n, "touch".to_owned());
-            numbers_of((&path, "times"), each, f64::is_finite, "finite numbers")
-        });
+        let of_touches =
+            |path, name| OneForEach::new(path, name, n[0] + n[1], touch_of(&spec.frames));
+        let sessions = sessions
+            .as_ref()
+            .map(|path| of_touches(path, "sessions").groups());
+        let times = times
+            .as_ref()
+            .map(|path| of_touches(path, "times").numbers(f64::is_finite, "finite numbers"));
         Ok(Part {
+            labels: of_sets("labels")?,
+            groups: of_sets("groups")?,
+            sessions: sessions.transpose()?,
             times: times.transpose()?,
             spec,
-            shape,
-            frames,
-            is_test,
-            lists,
+            sets,
         })
     }
+}
+
+impl Part {
+    /// Returns the number of touches of both sets.
+    fn n_touches(&self) -> usize {
+        self.sets.iter().map(|set| set.shape.n_touches).sum()
+    }
+}
+
+/// Returns the keys of a recording of which only the file of the frames is known.
+fn spec_of_frames(frames: &Path) -> RecordedSpec {
+    RecordedSpec::of_frames(frames, [&None, &None], None)
 }
 
 /// Returns the file of an array in a folder, if there is one.
@@ -250,73 +226,74 @@ fn file_in(folder: &Path, name: &str) -> Option<PathBuf> {
     paths.find(|path| path.is_file())
 }
 
-/// Checks that frames have the taxels and the number of frames of the first file.
-fn check_shape((own, path): (&FrameShape, &Path), first: (&FrameShape, &Path)) -> Result<()> {
-    let sides = |shape: &FrameShape| shape.has_grid.then_some((shape.rows, shape.columns));
-    let counts = |shape: &FrameShape| (shape.n_frames, shape.n_frame_values());
-    if (sides(own), counts(own)) == (sides(first.0), counts(first.0)) {
-        return Ok(());
+/// Joins a list of all parts. Returns `None` if a part has no such list.
+///
+/// # Errors
+/// If the lists contain texts and numbers.
+fn joined(
+    name: &str,
+    parts: &[Part],
+    list: fn(&Part) -> &Option<Vec<KeyValue>>,
+) -> Result<Option<Vec<KeyValue>>> {
+    let lists = parts.iter().map(|part| list(part).as_deref());
+    let values = lists
+        .collect::<Option<Vec<_>>>()
+        .map(|lists| lists.concat());
+    let is_text = |value: &KeyValue| value.is_text();
+    match &values {
+        Some(values) if values.iter().any(is_text) && !values.iter().all(is_text) => {
+            let given = "texts in one array and numbers in another";
+            Err(Error::input(name, given, "texts or numbers in all"))
+        }
+        _ => Ok(values),
     }
-    let words = |shape: &FrameShape| {
-        let (n_frames, n_taxels) = counts(shape);
-        format!("{n_frames} frames of {n_taxels} taxels a touch")
-    };
-    let allowed = format!("{}, as {}", words(first.0), first.1.display());
-    Err(Error::input(path.display(), words(own), allowed))
 }
 
 /// Joins the arrays of all parts, one after the other, and sorts the touches by time if all parts have times.
 fn assembled(parts: Vec<Part>) -> Result<AuditData> {
-    let first = &parts[0];
+    let first = &parts[0].sets[0];
+    let mut is_test = Vec::new();
     for part in &parts {
-        check_shape(
-            (&part.shape, &part.spec.frames),
-            (&first.shape, &first.spec.frames),
-        )?;
-    }
-    let joined = |name: &str, list: usize| {
-        let lists = parts.iter().map(|part| part.lists[list].clone());
-        let lists: Option<Vec<Vec<KeyValue>>> = lists.collect();
-        let values = lists.map(|lists| lists.concat()).unwrap_or_default();
-        let n_texts = values.iter().filter(|value| value.is_text()).count();
-        match n_texts == 0 || n_texts == values.len() {
-            true => Ok(Some(values).filter(|values| !values.is_empty())),
-            false => {
-                let given = "texts in one array and numbers in another";
-                Err(Error::input(name, given, "texts or numbers in all"))
-            }
+        let own = &part.sets[0];
+        own.shape
+            .check_alike(&own.place, (&first.shape, &first.place))?;
+        for (number, set) in part.sets.iter().enumerate() {
+            is_test.extend(vec![number > 0; set.shape.n_touches]);
         }
-    };
-    let mut spec = first.spec.clone();
-    let labels = joined("labels", 0)?.map(|values| ClassLabels::new(&values));
+    }
+    let shape = &first.shape;
+    let grid = shape.grid().map(|[rows, columns]| (rows, columns));
+    let n_frames = shape.n_frames;
+    let labels = joined("labels", &parts, |part| &part.labels)?;
+    let labels = labels.map(|values| ClassLabels::new(&values));
+    let mut spec = parts[0].spec.clone();
     // Texts are their own names.
-    let is_text = |labels: &ClassLabels| labels.classes[0].is_text();
-    if labels.as_ref().is_some_and(is_text) {
+    if labels
+        .as_ref()
+        .is_some_and(|labels| labels.classes[0].is_text())
+    {
         spec.names = None;
     }
     let classes = labels.as_ref().map(|labels| spec.classes(labels));
-    let (groups, sessions) = (joined("groups", 1)?, joined("sessions", 2)?);
+    let groups = joined("groups", &parts, |part| &part.groups)?;
+    let sessions = joined("sessions", &parts, |part| &part.sessions)?;
     let times: Option<Vec<Vec<f64>>> = parts.iter().map(|part| part.times.clone()).collect();
-    let is_test: Vec<bool> = parts.iter().flat_map(|part| part.is_test.clone()).collect();
-    let n_frames = first.shape.n_frames;
-    let grid = first
-        .shape
-        .has_grid
-        .then_some((first.shape.rows, first.shape.columns));
-    let mut all: Vec<Array2<f64>> = parts.into_iter().flat_map(|part| part.frames).collect();
+    let sets = parts.into_iter().flat_map(|part| part.sets);
+    let mut all: Vec<Array2<f64>> = sets.map(|set| set.readings).collect();
     let frames = match all.len() {
         1 => all.remove(0),
         _ => {
             let views: Vec<_> = all.iter().map(Array2::view).collect();
-            concatenate(Axis(0), &views)
-                .map_err(|error| Error::input("frames", error, "frames of equal shape"))?
+            concatenate(Axis(0), &views).expect("the shapes are checked")
         }
     };
     let mut data = AuditData {
         frames,
         n_frames,
         grid,
-        classes: classes.transpose()?.map_or(Vec::new(), |classes| classes.0),
+        classes: classes
+            .transpose()?
+            .map_or(Vec::new(), |classes| classes.names),
         labels: labels.map(|labels| labels.labels),
         groups: groups.map(|values| group_keys(&values)),
         sessions: sessions.map(|values| group_keys(&values)),

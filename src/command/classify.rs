@@ -129,19 +129,10 @@ pub struct Args {
 /// Writes the predicted classes with the values of the label file: integers or texts.
 fn write_predictions(path: &Path, classes: &[KeyValue], predicted: &Array1<usize>) -> Result<()> {
     let values = predicted.iter().map(|&class| &classes[class]);
-    let integers = values.clone().map(|value| match value {
-        KeyValue::Integer(number) => Some(*number),
-        KeyValue::Text(_) => None,
-    });
+    let integers = values.clone().map(KeyValue::integer);
     match integers.collect::<Option<Vec<i64>>>() {
         Some(integers) => write_npy(path, &Array1::from(integers)),
-        None => {
-            let texts = values.map(|value| match value {
-                KeyValue::Integer(number) => number.to_string(),
-                KeyValue::Text(text) => text.clone(),
-            });
-            write_texts(path, &texts.collect::<Vec<_>>())
-        }
+        None => write_texts(path, &values.map(KeyValue::to_string).collect::<Vec<_>>()),
     }
 }
 
@@ -286,20 +277,17 @@ impl Args {
         if self.json {
             return say(serde_json::to_string(&applied).expect("numbers have a JSON form"));
         }
-        say(format_args!(
-            "rows      {n_rows}, {} measurements each",
-            features.ncols()
-        ))?;
+        let mut lines = vec![(
+            "rows",
+            format!("{n_rows}, {} measurements each", features.ncols()),
+        )];
         if let (Some(n_correct), Some(accuracy)) = (n_correct, applied.accuracy) {
-            say(format_args!(
-                "accuracy  {accuracy:.4}: {n_correct} of {n_rows}"
-            ))?;
+            let found = format!("{accuracy:.4}: {n_correct} of {n_rows}");
+            lines.push(("accuracy", found));
         }
         let predict_s = quantile(&mut applied.predict_s.clone(), 0.5);
-        let each_us = 1e6 * predict_s / n_rows as f64;
-        say(format_args!(
-            "testing   {predict_s:.4} s, {each_us:.1} µs a row"
-        ))
+        lines.push(("testing", testing_time(predict_s, n_rows)));
+        say_lines(&lines)
     }
 
     fn train_and_test(
@@ -446,49 +434,60 @@ fn svm_findings(trained: &TrainedClassifier) -> Option<SvmFindings> {
     })
 }
 
+/// Prints lines of a title and a text.
+fn say_lines(lines: &[(&str, String)]) -> Result<()> {
+    let mut lines = lines.iter();
+    lines.try_for_each(|(title, text)| say(format_args!("{title:<10}{text}")))
+}
+
+/// Returns the time of a prediction of all rows, and the time of each row.
+fn testing_time(predict_s: f64, n_rows: usize) -> String {
+    let each_us = 1e6 * predict_s / n_rows as f64;
+    format!("{predict_s:.4} s, {each_us:.1} µs a row")
+}
+
+/// Prints the findings as text.
 fn tell(found: &Findings) -> Result<()> {
-    say(format_args!(
-        "rows      {} to train on, {} to test, {} measurements each",
+    let rows = format!(
+        "{} to train on, {} to test, {} measurements each",
         found.n_train, found.n_test, found.n_measurements
-    ))?;
+    );
+    let mut lines = vec![("rows", rows)];
     if let (Some(n_train), Some(n_test)) = (found.n_train_groups, found.n_test_groups) {
         let few = match n_test < FEW_GROUPS {
             true => ", too few for a narrow interval",
             false => "",
         };
-        say(format_args!(
-            "split     by groups: {n_train} to train on, {n_test} to test; the interval comes from {n_test} groups{few}"
-        ))?;
+        let split = format!(
+            "by groups: {n_train} to train on, {n_test} to test; the interval comes from {n_test} groups{few}"
+        );
+        lines.push(("split", split));
     }
-    say(format_args!(
-        "accuracy  {:.4} ({:.4} to {:.4}): {} of {}",
+    let accuracy = format!(
+        "{:.4} ({:.4} to {:.4}): {} of {}",
         found.accuracy, found.accuracy_low, found.accuracy_high, found.n_correct, found.n_test
-    ))?;
+    );
+    lines.push(("accuracy", accuracy));
     if let Some(Chosen { best, tried, .. }) = &found.chosen {
-        let gamma = best
-            .gamma
-            .map(|gamma| format!(" and γ = {}", short_number(gamma)));
-        say(format_args!(
-            "choice    C = {}{}, {:.4} on validation rows, of {} candidates",
-            best.c,
-            gamma.unwrap_or_default(),
-            best.accuracy,
-            tried.len()
-        ))?;
+        let gamma = best.gamma.map(short_number);
+        let gamma = gamma.map_or(String::new(), |gamma| format!(" and γ = {gamma}"));
+        let (c, accuracy, n) = (best.c, best.accuracy, tried.len());
+        let choice = format!("C = {c}{gamma}, {accuracy:.4} on validation rows, of {n} candidates");
+        lines.push(("choice", choice));
     }
-    say(format_args!("training  {:.4} s", found.fit_median_s))?;
-    let each_us = 1e6 * found.predict_median_s / found.n_test as f64;
-    say(format_args!(
-        "testing   {:.4} s, {each_us:.1} µs a row",
-        found.predict_median_s
-    ))?;
+    lines.push(("training", format!("{:.4} s", found.fit_median_s)));
+    lines.push((
+        "testing",
+        testing_time(found.predict_median_s, found.n_test),
+    ));
     if let Some(svm) = &found.svm {
-        say(format_args!(
-            "SVM       {} support vectors, {} of {} problems stopped short of the tolerance, dual objective {:.6}",
+        let svm = format!(
+            "{} support vectors, {} of {} problems stopped short of the tolerance, dual objective {:.6}",
             svm.n_support_vectors, svm.n_capped, svm.n_problems, svm.dual_objective
-        ))?;
+        );
+        lines.push(("SVM", svm));
     }
-    Ok(())
+    say_lines(&lines)
 }
 
 /// Parses a text to a value that is spelled as in study files; the error lists the allowed values.

@@ -6,56 +6,23 @@ use crate::error::Result;
 use crate::files::{WholeFile, write_whole};
 use ndarray::Array1;
 use ndarray_npy::WriteNpyExt;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 /// First bytes of a `.npy` file of version 1, which NumPy writes for arrays of numbers and texts. The length of the header follows.
 const MAGIC: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
-/// Returns the text of a `.npy` header that describes an array, such as `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
-fn dictionary(descr: &str, shape: &[usize]) -> String {
+/// Returns the header of a `.npy` file, given the element type in NumPy's notation (such as `<f4`) and the shape. Its length is a multiple of 64 bytes.
+pub(crate) fn npy_header(descr: &str, shape: &[usize]) -> Vec<u8> {
     let lengths: Vec<String> = shape.iter().map(usize::to_string).collect();
     let comma = if shape.len() == 1 { "," } else { "" };
     let lengths = lengths.join(", ") + comma;
-    format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({lengths}), }}")
-}
-
-/// Returns the header of a `.npy` file, given the element type in NumPy's notation (such as `<f4`) and the shape. Its length is a multiple of 64 bytes.
-pub(crate) fn npy_header(descr: &str, shape: &[usize]) -> Vec<u8> {
-    let mut text = dictionary(descr, shape);
+    let text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({lengths}), }}");
     let n_before = MAGIC.len() + 2;
     let n_bytes = (n_before + text.len() + 1).next_multiple_of(64);
-    text += &" ".repeat(n_bytes - n_before - text.len() - 1);
-    text += "\n";
+    let text = format!("{text:<width$}\n", width = n_bytes - n_before - 1);
     let length = (text.len() as u16).to_le_bytes();
     [&MAGIC[..], &length, text.as_bytes()].concat()
-}
-
-/// Reads a `.npy` header; returns its text and its length in bytes.
-pub(crate) fn read_npy_header(reader: &mut impl Read) -> io::Result<(String, usize)> {
-    let mut start = [0; MAGIC.len() + 2];
-    reader.read_exact(&mut start)?;
-    let Some([low, high]) = start.strip_prefix(&MAGIC) else {
-        return Err(io::Error::other("no .npy header of version 1"));
-    };
-    let mut text = vec![0; usize::from(u16::from_le_bytes([*low, *high]))];
-    reader.read_exact(&mut text)?;
-    let n_bytes = start.len() + text.len();
-    Ok((String::from_utf8_lossy(&text).trim().to_owned(), n_bytes))
-}
-
-/// Returns an error if a header has another element type or shape than expected; commas and spaces are ignored.
-pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::Result<()> {
-    let plain = |text: &str| {
-        let letters = text.chars().filter(|letter| !letter.is_whitespace());
-        let text: String = letters.collect();
-        text.replace(",)", ")").replace(",}", "}")
-    };
-    let expected = dictionary(descr, shape);
-    match plain(text) == plain(&expected) {
-        true => Ok(()),
-        false => Err(io::Error::other(format!("{text} instead of {expected}"))),
-    }
 }
 
 /// Array file in `.npy` format that is written element by element; the file appears at its path when all elements are written.
@@ -128,8 +95,14 @@ pub fn write_texts(path: &Path, texts: &[String]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::inputs::arrays::npy_file::read_header;
     use ndarray::{ArrayD, IxDyn};
     use ndarray_npy::ReadNpyExt;
+
+    fn is_read(mut bytes: &[u8], descr: &str, shape: &[usize]) -> bool {
+        let header = read_header("array", &mut bytes);
+        header.is_ok_and(|header| header.check("array", descr, shape).is_ok())
+    }
 
     #[test]
     fn ndarray_npy_reads_our_headers_and_we_read_its() {
@@ -137,18 +110,24 @@ mod tests {
             let array = ArrayD::from_elem(IxDyn(&shape), 0.5);
             let mut theirs = Vec::new();
             array.write_npy(&mut theirs).unwrap();
-            let (text, n_bytes) = read_npy_header(&mut &theirs[..]).unwrap();
-            check_npy_header(&text, "<f8", &shape).unwrap();
-            assert!(check_npy_header(&text, "<f4", &shape).is_err());
+            assert!(is_read(&theirs, "<f8", &shape));
+            assert!(!is_read(&theirs, "<f4", &shape));
             let header = npy_header("<f8", &shape);
             assert_eq!(header.len() % 64, 0);
-            let ours = [&header, &theirs[n_bytes..]].concat();
+            let n_bytes = read_header("array", &mut &theirs[..]).unwrap().n_bytes;
+            let ours = [&header, &theirs[n_bytes as usize..]].concat();
             assert_eq!(ArrayD::<f64>::read_npy(&ours[..]).unwrap(), array);
         }
     }
 
     #[test]
     fn arrays_of_another_kind_are_refused() {
+        let with_text = |text: &str| {
+            let length = (text.len() as u16).to_le_bytes();
+            [&MAGIC[..], &length, text.as_bytes()].concat()
+        };
+        let usual = "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 2), }";
+        assert!(is_read(&with_text(usual), "<f8", &[3, 2]));
         for text in [
             "{'descr': '>f8', 'fortran_order': False, 'shape': (3, 2), }",
             "{'descr': '<f8', 'fortran_order': True, 'shape': (3, 2), }",
@@ -156,10 +135,10 @@ mod tests {
             "{'descr': '<f8', 'fortran_order': False}",
             "",
         ] {
-            assert!(check_npy_header(text, "<f8", &[3, 2]).is_err(), "{text}");
+            assert!(!is_read(&with_text(text), "<f8", &[3, 2]), "{text}");
         }
-        assert!(read_npy_header(&mut &b"\x93NUMPY\x02\x00\xff\xff\xff\xff"[..]).is_err());
-        assert!(read_npy_header(&mut &b"\x93NUMPY\x01\x00\xff\xff"[..]).is_err());
-        assert!(read_npy_header(&mut &b"\x93NUM"[..]).is_err());
+        assert!(read_header("array", &mut &b"\x93NUMPY\x02\x00\xff\xff\xff\xff"[..]).is_err());
+        assert!(read_header("array", &mut &b"\x93NUMPY\x01\x00\xff\xff"[..]).is_err());
+        assert!(read_header("array", &mut &b"\x93NUM"[..]).is_err());
     }
 }

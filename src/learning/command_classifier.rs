@@ -6,7 +6,7 @@
 //! | 2 | `test.npz` | `features` (n × m, float64) |
 //! | 3 | `labels.npy` | written by the program: one label for each test row |
 
-use crate::inputs::arrays::file_array::FileArray;
+use crate::inputs::arrays::FileArray;
 use crate::learning::classifiers::foreign::{ForeignClassifier, ForeignModel, ForeignParameters};
 use bubbletouch_svm::dataset::Dataset;
 use bubbletouch_svm::{Error, Result};

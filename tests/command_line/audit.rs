@@ -186,7 +186,10 @@ fn a_given_test_set_is_read_from_the_folder_or_from_recorded_toml() {
         &["frames_test.npy", "labels_test"],
     );
     case.file("other/u.npy", npy(&test.slice(s![.., 1.., ..]).to_owned()));
-    says(&case.refuses(&audit("other")), &["u.npy", "64"]);
+    says(
+        &case.refuses(&audit("other")),
+        &["u.npy", "7 × 8 taxels", "8 × 8 taxels"],
+    );
 }
 
 /// The file lists the touches from the last to the first in time.

@@ -276,7 +276,7 @@ fn arrays_that_cannot_be_trained_on_are_refused_by_name() {
         (
             "labels.npy",
             rows(&[0, 1, 2]),
-            "3 labels … each of the 60 rows",
+            "labels.npy: 3 values … 60, one a row of features",
         ),
         ("labels.npy", b"0,1,2".to_vec(), "labels.npy"),
         ("labels.npy", npy(&negative), "labels.npy, position 4: -2"),
@@ -399,7 +399,7 @@ fn groups_that_do_not_fit_the_rows_or_the_split_are_refused() {
         (
             npy(&array![1, 2, 3]),
             "",
-            "groups.npy: 3 groups … 60, one for each row of features",
+            "groups.npy: 3 values … 60, one a row of features",
         ),
         (
             npy(&Array1::<i64>::zeros(N_ROWS)),

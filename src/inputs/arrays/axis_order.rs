@@ -34,12 +34,8 @@ pub struct FrameShape {
     pub n_touches: usize,
     /// Number of frames in each touch.
     pub n_frames: usize,
-    /// Number of rows of the taxel grid; 1 if the taxels form no grid.
-    pub rows: usize,
-    /// Number of columns of the taxel grid; if the taxels form no grid, the number of taxels.
-    pub columns: usize,
-    /// Whether the taxels form a grid with rows and columns, with one kind of values.
-    pub has_grid: bool,
+    /// Number of taxels.
+    pub n_taxels: usize,
     /// Numbers of rows and columns of the positions on the skin; `None` if the positions form no grid.
     pub sides: Option<[usize; 2]>,
     /// Number of recorded values per taxel.
@@ -50,27 +46,34 @@ pub struct FrameShape {
     axes: Vec<usize>,
     /// Letters of the axes in their order in the file.
     order: String,
+    /// Lengths of the axes in their order in the file.
+    lengths: Vec<usize>,
 }
 
 impl FrameShape {
     /// Returns the number of values in each frame: number of taxels times number of values per taxel.
     pub fn n_frame_values(&self) -> usize {
-        self.n_values * self.rows * self.columns
+        self.n_values * self.n_taxels
+    }
+
+    /// Returns the numbers of rows and columns if the taxels form a grid with one kind of values.
+    pub fn grid(&self) -> Option<[usize; 2]> {
+        self.sides.filter(|_| self.n_places == self.n_taxels)
     }
 
     /// Returns whether several axes `c` count the taxels of a skin without rows and columns.
     pub fn has_several_taxel_axes(&self) -> bool {
-        !self.has_grid && self.n_values == 1 && self.order.matches('c').count() > 1
+        self.grid().is_none() && self.n_values == 1 && self.order.matches('c').count() > 1
     }
 
     /// Returns the shape in which one of several axes `c`, of length `n_places`, counts the positions on the skin. This axis becomes the last one, so values of
-    /// one kind are together. The shape of the file is `shape`. Without such an axis, the result is unchanged.
-    pub fn with_places(mut self, shape: &[usize], n_places: usize) -> Self {
-        if !self.has_several_taxel_axes() || self.columns == n_places {
+    /// one kind are together. Without such an axis, the result is unchanged.
+    pub fn with_places(mut self, n_places: usize) -> Self {
+        if !self.has_several_taxel_axes() || self.n_taxels == n_places {
             return self;
         }
-        let is_of_places =
-            |axis: &usize| self.order.as_bytes()[*axis] == b'c' && shape[*axis] == n_places;
+        let letters = self.order.as_bytes();
+        let is_of_places = |axis: &usize| letters[*axis] == b'c' && self.lengths[*axis] == n_places;
         let found = self.axes.iter().position(is_of_places);
         if let (Some(found), None) = (found, self.sides) {
             // The axes c are the last ones of a skin without rows and columns.
@@ -81,10 +84,10 @@ impl FrameShape {
         self
     }
 
-    /// Returns the axis order and the axis lengths that an additional array with `n_values` values per taxel must have. The shape of the frames is `shape`; the
-    /// additional axis c comes before the axes of position.
-    pub fn beside(&self, shape: &[usize], n_values: usize) -> (String, Vec<usize>) {
-        let (mut order, mut shape) = (self.order.clone(), shape.to_owned());
+    /// Returns the axis order and the axis lengths that an additional array with `n_values` values per taxel must have. The additional axis c comes before the
+    /// axes of position.
+    pub fn beside(&self, n_values: usize) -> (String, Vec<usize>) {
+        let (mut order, mut shape) = (self.order.clone(), self.lengths.clone());
         let has_rows = order.contains('y');
         match order.find('c').filter(|_| has_rows) {
             Some(axis) => shape[axis] = n_values,
@@ -97,19 +100,17 @@ impl FrameShape {
         (order, shape)
     }
 
-    /// Arranges an array with one number per taxel row by row, as a list of rows · columns numbers. The input has the taxel axes of a file of frames of shape
-    /// `frames`, or the shape rows × columns, or is a list.
+    /// Arranges an array with one number per taxel row by row, as a list. The input has the taxel axes of the file of frames, or the shape rows × columns, or is a
+    /// list.
     ///
     /// # Errors
     /// If the numbers do not fill a frame; the error contains the expected shape.
     pub fn arrange_taxels(
         &self,
         numbers: ArrayD<f64>,
-        frames: &[usize],
     ) -> std::result::Result<Vec<f64>, Vec<usize>> {
-        let n_taxels = self.rows * self.columns;
         // If the order contains y, one axis c of the file counts the values of a taxel.
-        let is_value = self.sides.is_none() || self.has_grid;
+        let is_value = self.sides.is_none() || self.grid().is_some();
         let of_values = match self.order.contains('y') && is_value {
             true => self
                 .order
@@ -123,22 +124,48 @@ impl FrameShape {
             let letter = self.order.as_bytes()[*axis];
             !matches!(letter, b'n' | b't') && !of_values.contains(axis)
         };
-        let of_taxels: Vec<usize> = (0..frames.len()).filter(is_of_taxels).collect();
-        let expected: Vec<usize> = of_taxels.iter().map(|&axis| frames[axis]).collect();
+        let of_taxels: Vec<usize> = (0..self.lengths.len()).filter(is_of_taxels).collect();
+        let expected: Vec<usize> = of_taxels.iter().map(|&axis| self.lengths[axis]).collect();
         if numbers.shape() == expected {
             let place = |axis: &usize| of_taxels.iter().position(|own| own == axis);
             let axes: Vec<usize> = self.axes.iter().filter_map(place).collect();
             return Ok(numbers.permuted_axes(axes).iter().copied().collect());
         }
-        let is_list = numbers.len() == n_taxels
+        let is_list = numbers.len() == self.n_taxels
             && numbers.shape().iter().filter(|&&length| length > 1).count() <= 1;
-        match is_list || numbers.shape() == [self.rows, self.columns] {
+        let is_grid = self.grid().is_some_and(|grid| numbers.shape() == grid);
+        match is_list || is_grid {
             true => Ok(numbers.iter().copied().collect()),
             false => Err(expected),
         }
     }
 
-    /// Arranges all recorded values with one row per frame: shape (touches · frames, values · rows · columns).
+    /// Checks that the touches have the frames and taxels of the touches of another file. `place` and `first_place` are the names of the files.
+    ///
+    /// # Errors
+    /// If the numbers of frames, rows, columns or values differ.
+    pub fn check_alike(&self, place: &str, (first, first_place): (&Self, &str)) -> Result<()> {
+        let axes = |shape: &Self| {
+            let [rows, columns] = shape.sides.unwrap_or([1, shape.n_places]);
+            let n_values = shape.n_taxels / shape.n_places;
+            [shape.n_frames, rows, columns, n_values]
+        };
+        let words = |[n_frames, rows, columns, n_values]: [usize; 4]| {
+            let values = match n_values {
+                1 => String::new(),
+                n => format!(" of {n} values"),
+            };
+            format!("touches of {n_frames} frames of {rows} × {columns} taxels{values}")
+        };
+        let (own, wanted) = (axes(self), axes(first));
+        if own == wanted {
+            return Ok(());
+        }
+        let allowed = format!("{}, as {first_place} has", words(wanted));
+        Err(Error::input(place, words(own), allowed))
+    }
+
+    /// Arranges all recorded values with one row per frame: shape (touches · frames, values · taxels).
     ///
     /// # Panics
     /// If the axes of the numbers differ from the shape.
@@ -159,11 +186,10 @@ impl FrameShape {
 /// # Errors
 /// If the order does not fit the array, or no order is given and two orders are possible.
 pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<FrameShape> {
-    let lengths = shape.iter().map(usize::to_string).collect::<Vec<_>>();
-    let given = format!("an array of shape [{}]", lengths.join(", "));
+    let given = format!("an array of shape {shape:?}");
     let key = axes.key;
     if shape.contains(&0) {
-        let given = format!("no readings, shape [{}]", lengths.join(", "));
+        let given = format!("no readings, shape {shape:?}");
         return Err(Error::input(place, given, "at least one reading"));
     }
     let order = match axes.order {
@@ -188,14 +214,7 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
                 && axes.grid.is_none()
                 && let Some(other) = other_order(shape)
             {
-                let read = |order: &str| {
-                    let letters = order
-                        .chars()
-                        .map(String::from)
-                        .collect::<Vec<_>>()
-                        .join(" ");
-                    format!("{} (\"{letters}\")", words(shape, order))
-                };
+                let read = |order: &str| format!("{} (\"{}\")", words(shape, order), spaced(order));
                 let given = format!("{given}, which may be {} or {}", read(usual), read(other));
                 return Err(Error::input(
                     place,
@@ -233,66 +252,51 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
         false => length('c') / of_values,
     };
     let several = axes_of('c').count() > 1 && axes.n_values == 1;
-    let is_of_positions = |n| several && axes_of('c').any(|axis| Some(shape[axis]) == n);
-    let (rows, columns) = match (has_rows, axes.grid) {
-        (true, None) if has_kinds => (1, n_taxels),
-        (true, None) => (length('y'), length('x')),
-        (false, Some([rows, columns])) if is_of_positions(rows.checked_mul(columns)) => {
-            (1, n_taxels)
-        }
-        (false, None) => (1, n_taxels),
-        (false, Some([rows, columns])) if rows.checked_mul(columns) == Some(n_taxels) => {
-            (rows, columns)
-        }
+    let is_of_positions = |n| several && axes_of('c').any(|axis| shape[axis] == n);
+    let fits = |n| n == n_taxels || is_of_positions(n);
+    let sides = match (has_rows, axes.grid) {
+        (true, None) => Some([length('y'), length('x')]),
+        (false, None) => None,
+        (false, Some([rows, columns])) if fits(rows.saturating_mul(columns)) => axes.grid,
         (_, Some([rows, columns])) => {
             let given = format!("{rows} × {columns} taxels");
             let allowed = match has_rows {
                 true => "no such key: the frames have rows and columns of their own".to_owned(),
                 false => format!("rows and columns of the {n_taxels} taxels of {place}"),
             };
-            let key = key.replace("order", "grid");
-            return Err(Error::input(key, given, allowed));
+            return Err(Error::input(key.replace("order", "grid"), given, allowed));
         }
     };
-    let sides = match has_rows {
-        true => Some([length('y'), length('x')]),
-        false => axes.grid,
-    };
+    // One of several axes c counts the positions of the grid.
+    let n_places = sides.map_or(n_taxels, |[rows, columns]| rows * columns);
     let found = FrameShape {
         n_touches: length('n'),
         n_frames: length('t'),
-        rows,
-        columns,
-        has_grid: sides == Some([rows, columns]),
+        n_taxels,
         sides: None,
         n_values: axes.n_values,
-        n_places: rows * columns,
+        n_places: n_taxels,
         axes: "ntcyx".chars().flat_map(axes_of).collect(),
         order: order.clone(),
+        lengths: shape.to_owned(),
     };
-    // One of several axes c counts the positions of the grid.
-    let n_places = sides.map_or(found.n_places, |[rows, columns]| rows * columns);
     let found = FrameShape {
         sides,
         n_places,
-        ..found.with_places(shape, n_places)
+        ..found.with_places(n_places)
     };
     let is_side = |side| (1..=MAX_SIDE).contains(&side);
     let is_allowed = found.n_touches > 0
         && (1..=MAX_FRAMES).contains(&found.n_frames)
-        && found
-            .sides
-            .is_none_or(|sides| sides.into_iter().all(is_side))
-        && found.rows * found.columns <= MAX_SIDE * MAX_SIDE;
-    match is_allowed && found.columns > 0 {
-        true => Ok(found),
-        false => {
-            let allowed = format!(
-                "n × rows × columns or n × F × rows × columns, 1 to {MAX_FRAMES} frames of 1 to {MAX_SIDE} rows and columns"
-            );
-            Err(Error::input(place, given, allowed))
-        }
+        && sides.is_none_or(|sides| sides.into_iter().all(is_side))
+        && (1..=MAX_SIDE * MAX_SIDE).contains(&n_taxels);
+    if is_allowed {
+        return Ok(found);
     }
+    let allowed = format!(
+        "n × rows × columns or n × F × rows × columns, 1 to {MAX_FRAMES} frames of 1 to {MAX_SIDE} rows and columns"
+    );
+    Err(Error::input(place, given, allowed))
 }
 
 /// Checks that a text is a valid order of array axes; returns its letters without separators.
@@ -333,6 +337,12 @@ fn other_order(shape: &[usize]) -> Option<&'static str> {
     }
 }
 
+/// Returns the letters of an axis order with spaces between them.
+pub fn spaced(order: &str) -> String {
+    let letters: Vec<String> = order.chars().map(String::from).collect();
+    letters.join(" ")
+}
+
 /// Returns a text that describes the axes of an array and their lengths, given the axis order.
 fn words(shape: &[usize], order: &str) -> String {
     let length = |letter: char| order.find(letter).map(|axis| shape[axis]);
@@ -362,7 +372,8 @@ mod tests {
         };
         let found = frame_shape("frames.npy", shape, axes);
         let found = found.map_err(|error| error.to_string())?;
-        Ok([found.n_touches, found.n_frames, found.rows, found.columns])
+        let [rows, columns] = found.grid().unwrap_or([1, found.n_taxels]);
+        Ok([found.n_touches, found.n_frames, rows, columns])
     }
 
     #[test]

@@ -13,7 +13,7 @@
 use crate::encoding::decoded;
 use crate::error::{Error, Result};
 use crate::inputs::arrays::column_names::{column_families, listed, matches};
-use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
+use crate::inputs::arrays::{ElementKind, Elements, FileArray};
 use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 
@@ -219,7 +219,7 @@ impl Table {
             self.keep(&self.without_index(), COUNTS);
             return Ok(self);
         };
-        let Some(patterns) = columns else {
+        let Some(columns) = columns else {
             self.keep(&self.without_index(), COUNTS);
             let families = self.names.as_deref().and_then(column_families);
             let Some((listed, largest)) = families else {
@@ -231,26 +231,20 @@ impl Table {
                 format!("those that are readings, such as {key}{largest:?}, or {key}\"*\" for all");
             return Err(Error::input(self.place, given, allowed));
         };
-        let place = &self.place;
-        let refuse = |given: String, allowed: String| Err(Error::input(place, given, allowed));
+        let refuse =
+            |given: String, allowed: String| Err(Error::input(&self.place, given, allowed));
         let Some(names) = &self.names else {
-            let given = format!("{key}{patterns:?} for a table without names of columns");
-            return refuse(
-                given,
-                "a first line with the name of each column".to_owned(),
-            );
+            let given = format!("{key}{columns:?} for a table without names of columns");
+            let allowed = "a first line with the name of each column";
+            return refuse(given, allowed.to_owned());
         };
-        for pattern in patterns.split(',').map(str::trim) {
-            if !names.iter().any(|name| matches(pattern, name)) {
-                let allowed = format!("patterns of {}", listed(names));
-                return refuse(format!("{key}{patterns:?}: no column `{pattern}`"), allowed);
-            }
+        let patterns: Vec<&str> = columns.split(',').map(str::trim).collect();
+        let is_of = |pattern: &&str| names.iter().any(|name| matches(pattern, name));
+        if let Some(pattern) = patterns.iter().find(|pattern| !is_of(pattern)) {
+            let allowed = format!("patterns of {}", listed(names));
+            return refuse(format!("{key}{columns:?}: no column `{pattern}`"), allowed);
         }
-        let is_chosen = |&k: &usize| {
-            patterns
-                .split(',')
-                .any(|pattern| matches(pattern.trim(), &names[k]))
-        };
+        let is_chosen = |&k: &usize| patterns.iter().any(|pattern| matches(pattern, &names[k]));
         let chosen: Vec<usize> = (0..names.len()).filter(is_chosen).collect();
         self.select(&chosen);
         Ok(self)
@@ -275,32 +269,26 @@ impl Table {
         });
         let are_texts = text.is_some() || self.has_padded_twin();
         let cells = self.rows.into_iter().flat_map(|(_, cells)| cells);
-        if are_texts {
-            return FileArray {
-                place: self.place,
-                shape,
-                kind: ElementKind::Text,
-                elements: Elements::Texts(cells.collect()),
-                columns,
-                refusal: text,
-            };
-        }
-        let mut is_whole = true;
-        let numbers = cells.map(|cell| {
-            is_whole &= cell.parse::<i64>().is_ok();
-            number(&cell).unwrap_or(f64::NAN)
-        });
-        let numbers = numbers.collect();
+        let (kind, elements) = if are_texts {
+            (ElementKind::Text, Elements::Texts(cells.collect()))
+        } else {
+            let mut kind = ElementKind::Integer;
+            let numbers = cells.map(|cell| {
+                if cell.parse::<i64>().is_err() {
+                    kind = ElementKind::Float(f64::EPSILON);
+                }
+                number(&cell).unwrap_or(f64::NAN)
+            });
+            let numbers = numbers.collect();
+            (kind, Elements::Numbers(numbers))
+        };
         FileArray {
             place: self.place,
             shape,
-            kind: match is_whole {
-                true => ElementKind::Integer,
-                false => ElementKind::Float(f64::EPSILON),
-            },
-            elements: Elements::Numbers(numbers),
+            kind,
+            elements,
             columns,
-            refusal: None,
+            refusal: text,
         }
     }
 
@@ -340,10 +328,8 @@ impl Table {
                 } else {
                     "tabs"
                 };
-                let given = format!(
-                    "`{}`, a table with {words} and decimal commas",
-                    cells[column]
-                );
+                let cell = &cells[column];
+                let given = format!("`{cell}`, a table with {words} and decimal commas");
                 let allowed = format!(
                     "decimal points: pandas.read_csv({:?}, sep={separator:?}, decimal=\",\").to_csv(\"points.csv\", index=False)",
                     self.place

@@ -1,11 +1,11 @@
 //! Classes, groups and row numbers read from arrays: integers, texts, or one column per class.
 
 use crate::error::{Error, Result};
-use crate::inputs::arrays::csv_table::TableContent;
-use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
+use crate::inputs::arrays::{ElementKind, Elements, FileArray, TableContent, is_member};
 use crate::note::note;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::fmt::{Display, Formatter};
 use std::path::Path;
 use unicode_normalization::UnicodeNormalization;
 
@@ -26,6 +26,24 @@ impl KeyValue {
     /// Returns whether the value is a text.
     pub const fn is_text(&self) -> bool {
         matches!(self, Self::Text(_))
+    }
+
+    /// Returns the integer; `None` if the value is a text.
+    pub const fn integer(&self) -> Option<i64> {
+        match self {
+            Self::Integer(number) => Some(*number),
+            Self::Text(_) => None,
+        }
+    }
+}
+
+/// Writes the integer or the text.
+impl Display for KeyValue {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        match self {
+            Self::Integer(number) => number.fmt(f),
+            Self::Text(text) => text.fmt(f),
+        }
     }
 }
 
@@ -81,56 +99,105 @@ fn distinct(values: &[KeyValue]) -> Vec<KeyValue> {
     match values.first() {
         Some(KeyValue::Integer(_)) => all.collect::<BTreeSet<_>>().into_iter().collect(),
         _ => {
-            let mut known = std::collections::HashSet::new();
+            let mut known = HashSet::new();
             all.filter(|value| known.insert(value.clone())).collect()
         }
     }
 }
 
-/// Reads one class value for each of `n` touches. The file contains integers of any type, texts, an n × 1 array of either, or a column of 0 and 1 for each
-/// class.
-///
-/// # Errors
-/// If the file does not exist or contains other data, or a position has no class.
-pub fn read_class_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
-    let array = one_hot(FileArray::read_content(path, name, TableContent::Rows(n))?)?;
-    values(
-        array,
-        "one class for each touch: int8 to int64, uint8 to uint64, whole floats (each below 2^53), bool or texts, or a column of 0 and 1 for each class",
-    )
+/// Array with one value for each touch or frame of a recording, or for each row of features.
+pub struct OneForEach<'a> {
+    path: &'a Path,
+    name: &'a str,
+    n: usize,
+    each: String,
 }
 
-/// Reads the class of each of `n_rows` feature rows, as [`read_class_values`] does. Integers must be at least 0.
-///
-/// # Errors
-/// Returns the errors of [`read_class_values`], or an error if there are no labels or an integer is negative; the error names its position.
-pub fn read_class_labels(path: &Path, name: &str, n_rows: usize) -> Result<ClassLabels> {
-    let values = read_class_values(path, name, n_rows)?;
-    if values.is_empty() {
-        return Err(Error::input(path.display(), "no labels", "at least one"));
+impl<'a> OneForEach<'a> {
+    /// Creates the description of an array in a file; in an archive, `name` is the name of the array. There are `n` values; `each` names what has a value, such
+    /// as `touch of frames.npy`.
+    pub fn new(path: &'a Path, name: &'a str, n: usize, each: impl Into<String>) -> Self {
+        let each = each.into();
+        Self {
+            path,
+            name,
+            n,
+            each,
+        }
     }
-    not_below_zero(path, &values)?;
-    Ok(ClassLabels::new(&values))
-}
 
-/// Reads one group for each of `n` touches: non-negative whole numbers of any type, or texts.
-///
-/// # Errors
-/// If the file does not exist or contains other data, or an integer is not from 0 to 2⁵³ − 1; the error names its position.
-pub fn read_group_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyValue>> {
-    let array = FileArray::read_content(path, name, TableContent::Rows(n))?;
-    let allowed = "one group for each touch: int8 to int64, uint8 to uint64, whole floats (each below 2^53), bool or texts";
-    let values = values(array, allowed)?;
-    not_below_zero(path, &values)?;
-    Ok(values)
-}
+    /// Reads the values as classes. The file contains integers of any type, texts, an n × 1 array of either, or a column of 0 and 1 for each class.
+    ///
+    /// # Errors
+    /// If the file does not exist or contains other data, or does not contain a class for each touch.
+    pub fn classes(&self) -> Result<Vec<KeyValue>> {
+        let allowed = "one class for each touch: int8 to int64, uint8 to uint64, whole floats (each below 2^53), bool or texts, or a column of 0 and 1 for each class";
+        self.checked(values(one_hot(self.read()?)?, allowed)?)
+    }
 
-/// Reads one group number for each of `n` touches. Integers are unchanged; texts are numbered in the order of first occurrence.
-///
-/// # Errors
-/// Returns the errors of [`read_group_values`].
-pub fn read_group_keys(path: &Path, name: &str, n: usize) -> Result<Vec<usize>> {
-    Ok(group_keys(&read_group_values(path, name, n)?))
+    /// Reads the values as groups: non-negative whole numbers of any type, or texts.
+    ///
+    /// # Errors
+    /// If the file does not exist or contains other data, or does not contain a group for each touch. If an integer is not from 0 to 2⁵³ − 1; the error names
+    /// its position.
+    pub fn groups(&self) -> Result<Vec<KeyValue>> {
+        let allowed = "one group for each touch: int8 to int64, uint8 to uint64, whole floats (each below 2^53), bool or texts";
+        let values = values(self.read()?, allowed)?;
+        not_below_zero(self.path, &values)?;
+        self.checked(values)
+    }
+
+    /// Reads the values as classes of which integers are at least 0, and numbers the classes.
+    ///
+    /// # Errors
+    /// Returns the errors of [`classes`](Self::classes), or an error if there are no labels or an integer is negative.
+    pub fn class_labels(&self) -> Result<ClassLabels> {
+        let values = self.classes()?;
+        if values.is_empty() {
+            return Err(Error::input(
+                self.path.display(),
+                "no labels",
+                "at least one",
+            ));
+        }
+        not_below_zero(self.path, &values)?;
+        Ok(ClassLabels::new(&values))
+    }
+
+    /// Reads the values as numbers.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or contains texts, numbers that are not allowed, or another number of values.
+    pub fn numbers(&self, is_allowed: impl Fn(f64) -> bool, allowed: &str) -> Result<Vec<f64>> {
+        let array = self.read()?;
+        let place = array.place.clone();
+        let numbers = self.checked(array.into_numbers()?.into_iter().collect())?;
+        check_each(&place, &numbers, |number| is_allowed(*number), allowed)?;
+        Ok(numbers)
+    }
+
+    fn read(&self) -> Result<FileArray> {
+        FileArray::read_content(self.path, self.name, TableContent::Rows(self.n))
+    }
+
+    /// Checks that there is one value for each touch, frame or row.
+    fn checked<T>(&self, values: Vec<T>) -> Result<Vec<T>> {
+        let Self {
+            path,
+            name,
+            n,
+            each,
+        } = self;
+        if values.len() == *n {
+            return Ok(values);
+        }
+        let place = match is_member(path, name) {
+            true => format!("{}, array `{name}`", path.display()),
+            false => path.display().to_string(),
+        };
+        let given = format!("{} values", values.len());
+        Err(Error::input(place, given, format!("{n}, one a {each}")))
+    }
 }
 
 /// Converts group values to group numbers; equal values get equal numbers. Integers are unchanged; texts are numbered in the order of first occurrence.
@@ -162,11 +229,7 @@ pub fn read_rows(path: &Path, name: &str, n_rows: usize) -> Result<Vec<usize>> {
         return Err(Error::input(place, "elements of another type", ALLOWED));
     }
     let values = values(array, ALLOWED)?;
-    let numbers = values.iter().map(|value| match value {
-        KeyValue::Integer(number) => *number,
-        KeyValue::Text(_) => -1,
-    });
-    let mut rows: Vec<i64> = numbers.collect();
+    let mut rows: Vec<i64> = values.iter().filter_map(KeyValue::integer).collect();
     if kind == ElementKind::Truth {
         if rows.len() != n_rows {
             let given = format!("a mask of {} rows", rows.len());
@@ -180,26 +243,35 @@ pub fn read_rows(path: &Path, name: &str, n_rows: usize) -> Result<Vec<usize>> {
     if rows.is_empty() {
         return Err(Error::input(place, "no rows", "at least one"));
     }
-    let is_wrong = |row: &i64| !(0..n_rows as i64).contains(row);
-    if let Some(position) = rows.iter().position(is_wrong) {
-        let place = format!("{place}, position {position}");
-        let last = n_rows.saturating_sub(1);
-        let allowed = format!("0 to {last}, as there are {n_rows} rows of features");
-        return Err(Error::input(place, rows[position], allowed));
-    }
+    let last = n_rows.saturating_sub(1);
+    let allowed = format!("0 to {last}, as there are {n_rows} rows of features");
+    check_each(
+        &place,
+        &rows,
+        |row| (0..n_rows as i64).contains(row),
+        &allowed,
+    )?;
     Ok(rows.into_iter().map(|row| row as usize).collect())
 }
 
 fn not_below_zero(path: &Path, values: &[KeyValue]) -> Result<()> {
-    let below = |value: &KeyValue| matches!(value, KeyValue::Integer(number) if *number < 0);
-    match values.iter().position(below) {
+    let is_allowed = |value: &KeyValue| value.integer().is_none_or(|number| number >= 0);
+    let place = path.display().to_string();
+    check_each(&place, values, is_allowed, "zero or more, below 2^53")
+}
+
+/// Returns an error if a value is not allowed; the error contains the position of the first such value.
+fn check_each<T: ToString>(
+    place: &str,
+    values: &[T],
+    is_allowed: impl Fn(&T) -> bool,
+    allowed: &str,
+) -> Result<()> {
+    match values.iter().position(|value| !is_allowed(value)) {
         None => Ok(()),
         Some(position) => {
-            let KeyValue::Integer(number) = &values[position] else {
-                return Ok(());
-            };
-            let place = format!("{}, position {position}", path.display());
-            Err(Error::input(place, number, "zero or more, below 2^53"))
+            let place = format!("{place}, position {position}");
+            Err(Error::input(place, values[position].to_string(), allowed))
         }
     }
 }
@@ -237,31 +309,22 @@ fn values(array: FileArray, allowed: &str) -> Result<Vec<KeyValue>> {
         let given = format!("an array of shape {:?}", array.shape);
         return Err(Error::input(array.place, given, allowed));
     }
-    let numbers = match array.elements {
+    match array.elements {
         Elements::Texts(texts) => {
             let is_missing =
                 |text: &String| text.trim().is_empty() || text == "nan" || text == "NaN";
             if let Some(position) = texts.iter().position(is_missing) {
                 let place = format!("{}, position {position}", array.place);
-                return Err(Error::input(
-                    place,
-                    format!("{:?}", texts[position]),
-                    allowed,
-                ));
+                let given = format!("{:?}", texts[position]);
+                return Err(Error::input(place, given, allowed));
             }
-            return Ok(texts.into_iter().map(KeyValue::Text).collect());
+            Ok(texts.into_iter().map(KeyValue::Text).collect())
         }
-        Elements::Numbers(numbers) => numbers,
-    };
-    let is_wrong = |number: &f64| number.fract() != 0.0 || number.abs() >= MAX_INTEGER;
-    match numbers.iter().position(is_wrong) {
-        None => Ok(numbers
-            .into_iter()
-            .map(|number| KeyValue::Integer(number as i64))
-            .collect()),
-        Some(position) => {
-            let place = format!("{}, position {position}", array.place);
-            Err(Error::input(place, numbers[position], allowed))
+        Elements::Numbers(numbers) => {
+            let is_whole = |number: &f64| number.fract() == 0.0 && number.abs() < MAX_INTEGER;
+            check_each(&array.place, &numbers, is_whole, allowed)?;
+            let numbers = numbers.into_iter().map(|number| number as i64);
+            Ok(numbers.map(KeyValue::Integer).collect())
         }
     }
 }

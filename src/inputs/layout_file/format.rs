@@ -23,12 +23,6 @@ pub enum LayoutFormat {
     Urdf,
 }
 
-/// Content that a format can carry in addition to positions and normals.
-struct Carries {
-    radii: bool,
-    pixels: bool,
-}
-
 impl LayoutFormat {
     /// All formats, each with its name.
     pub const ALL: [(&'static str, Self); 6] = [
@@ -53,13 +47,14 @@ impl LayoutFormat {
         })
     }
 
-    fn carries(self) -> Carries {
-        let (radii, pixels) = match self {
-            Self::Csv | Self::Npz | Self::Dex01 => (true, true),
-            Self::Urdf => (true, false),
-            Self::Icub | Self::Paxini => (false, false),
-        };
-        Carries { radii, pixels }
+    /// Returns whether the format can carry radii.
+    const fn has_radii(self) -> bool {
+        !matches!(self, Self::Icub | Self::Paxini)
+    }
+
+    /// Returns whether the format can carry the image of the sensor.
+    const fn has_pixels(self) -> bool {
+        matches!(self, Self::Csv | Self::Npz | Self::Dex01)
     }
 }
 
@@ -111,7 +106,6 @@ impl LayoutFile {
             LayoutFormat::Urdf => urdf::written(self, name).into_bytes(),
         };
         write_bytes(path, &bytes)?;
-        let carries = format.carries();
         let default = self.default_radius();
         let is_default = |radius: &f64| (radius / default - 1.0).abs() < 1e-9;
         let has_radii = self
@@ -120,12 +114,12 @@ impl LayoutFile {
             .flatten()
             .any(|radius| !is_default(radius));
         let mut notes = Vec::new();
-        if has_radii && !carries.radii {
+        if has_radii && !format.has_radii() {
             notes.push(format!(
                 "{place}: the format has no radii; a reader takes half the distance of neighbours"
             ));
         }
-        if self.image().is_some() && !carries.pixels {
+        if self.image().is_some() && !format.has_pixels() {
             notes.push(format!(
                 "{place}: the format has no image of rows and columns"
             ));

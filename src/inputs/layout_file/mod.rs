@@ -14,13 +14,12 @@ pub mod csv;
 mod format;
 pub mod icub;
 mod millimetres;
-mod normals;
 pub mod npz;
 pub mod paxini;
 pub mod urdf;
 
 use crate::error::{Error, Result};
-use crate::mesh::{LengthUnit, TriangleMesh};
+use crate::mesh::{LengthUnit, Surface, TriangleMesh};
 use crate::world::{Layout, TactileSensor, unit_axis};
 pub use format::LayoutFormat;
 use glam::{DVec2, DVec3};
@@ -164,7 +163,7 @@ impl LayoutFile {
     /// If a position is invalid or more than 5 mm from the surface; the error contains the row, from 1.
     pub fn on_surface(place: &str, positions: Vec<DVec3>, surface: &TriangleMesh) -> Result<Self> {
         let rows: Vec<usize> = (1..=positions.len()).collect();
-        let normals = normals::surface_normals(place, (&positions, &rows), surface)?;
+        let normals = surface_normals(place, (&positions, &rows), surface)?;
         Self::from_points(place, positions, normals)
     }
 
@@ -208,7 +207,7 @@ impl LayoutFile {
                     placeholder
                         .map(|given| format!("{place}: {given}; the mesh gives the normals")),
                 );
-                normals::surface_normals(place, (positions, rows), mesh)?
+                surface_normals(place, (positions, rows), mesh)?
             }
             (None, None) if *is_flat && placeholder.is_none() => {
                 notes.push(format!(
@@ -332,6 +331,31 @@ fn placeholder(positions: &[DVec3], normals: &[DVec3]) -> Option<String> {
         let n_taxels = normals.len();
         format!("the normal {first} of all {n_taxels} taxels is not perpendicular to their surface")
     })
+}
+
+/// Maximum distance between a taxel and the surface that provides its normal, metres. A larger distance indicates that taxels and mesh have different frames or
+/// units.
+const MAX_DISTANCE: f64 = 5e-3;
+
+/// Returns the outward unit normal of the mesh surface at the point nearest to each taxel. `rows` contains the number of each taxel's row in the file.
+fn surface_normals(
+    place: &str,
+    (points, rows): (&[DVec3], &[usize]),
+    mesh: &TriangleMesh,
+) -> Result<Vec<DVec3>> {
+    let surface = Surface::new(mesh.clone());
+    let normal = |(point, row): (&DVec3, &usize)| {
+        let closest = surface.closest(*point, f64::INFINITY);
+        let near = closest.filter(|closest| closest.distance <= MAX_DISTANCE);
+        let Some(near) = near else {
+            let distance = closest.map_or(f64::INFINITY, |closest| closest.distance);
+            let given = format!("a point {:.1} mm from the mesh", 1e3 * distance);
+            let allowed = "points on the mesh, within 5 mm, in the frame of the mesh";
+            return Err(Error::input(format!("{place}, row {row}"), given, allowed));
+        };
+        Ok(surface.pseudonormal(&near).normalize_or_zero())
+    };
+    points.iter().zip(rows).map(normal).collect()
 }
 
 /// Usual lengths of a layout, metres: from the smallest sensor arrays to the limbs of a robot. Files in another unit are beyond them by a factor of 100 or 1000.

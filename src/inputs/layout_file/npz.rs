@@ -6,8 +6,7 @@
 use super::{LayoutFile, LayoutOptions, Points};
 use crate::error::{Error, Result};
 use crate::geometry::written_rotation_matrix;
-use crate::inputs::arrays::csv_table::TableContent;
-use crate::inputs::arrays::file_array::FileArray;
+use crate::inputs::arrays::{FileArray, TableContent, member_names};
 use glam::{DMat3, DVec3};
 use ndarray::{Array1, Array2, Array3, ArrayD};
 use ndarray_npy::{NpzWriter, WriteNpzError};
@@ -27,7 +26,7 @@ const ALLOWED: &str = "positions and normals, or poses";
 /// Reads a layout of taxels from a `.npz` archive of NumPy arrays.
 pub(super) fn read(path: &Path, options: LayoutOptions) -> Result<LayoutFile> {
     let place = path.display().to_string();
-    let names = crate::inputs::arrays::member_names(path)?;
+    let names = member_names(path)?;
     let mut found = [None; NAMES.len()];
     for (found, known) in found.iter_mut().zip(NAMES) {
         let mut same = names.iter().filter(|name| known.contains(&name.as_str()));

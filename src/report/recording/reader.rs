@@ -3,7 +3,7 @@
 use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::inputs::npy::{check_npy_header, read_npy_header};
+use crate::inputs::arrays::npy_file::read_header;
 use crate::signal::Quantity;
 use glam::{DQuat, DVec3};
 use std::fs::File;
@@ -130,7 +130,7 @@ impl RecordingFile {
     /// Reads the JSON text of the archive member `meta`.
     fn meta(&mut self) -> io::Result<String> {
         let mut entry = self.archive.by_name("meta.npy")?;
-        read_npy_header(&mut entry)?;
+        read_header("meta", &mut entry).map_err(io::Error::other)?;
         let mut bytes = Vec::new();
         entry.read_to_end(&mut bytes)?;
         let code_points = bytes.as_chunks().0.iter().map(|&c| u32::from_le_bytes(c));
@@ -162,11 +162,12 @@ fn open_rows<'a>(
     member: &Member,
 ) -> io::Result<(ZipFile<'a, BufReader<File>>, usize)> {
     let mut entry = archive.by_name(&format!("{}.npy", member.name))?;
-    let (text, start) = read_npy_header(&mut entry)?;
-    let n_bytes = entry.size().saturating_sub(start as u64);
+    let header = read_header(&member.name, &mut entry).map_err(io::Error::other)?;
+    let n_bytes = entry.size().saturating_sub(header.n_bytes);
     let row_bytes = member.row_bytes() as u64;
     let n_rows = (n_bytes / row_bytes) as usize;
-    check_npy_header(&text, &member.descr(), &member.shape(n_rows))?;
+    let checked = header.check(&member.name, &member.descr(), &member.shape(n_rows));
+    checked.map_err(io::Error::other)?;
     match n_bytes % row_bytes {
         0 => Ok((entry, n_rows)),
         _ => Err(io::Error::other(format!(
@@ -197,9 +198,9 @@ fn read_row(
     row: usize,
 ) -> io::Result<Vec<f64>> {
     let mut entry = archive.by_name_seek(&format!("{}.npy", member.name))?;
-    let (_, start) = read_npy_header(&mut entry)?;
+    let header = read_header(&member.name, &mut entry).map_err(io::Error::other)?;
     let mut bytes = vec![0; member.row_bytes()];
-    let before = start as u64 + (row * bytes.len()) as u64;
+    let before = header.n_bytes + (row * bytes.len()) as u64;
     entry.seek(SeekFrom::Start(before))?;
     entry.read_exact(&mut bytes)?;
     Ok(decode(&bytes, member))

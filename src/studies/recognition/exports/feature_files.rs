@@ -12,10 +12,10 @@
 //! | `manifest.json` | the files of the folder; only files listed in it may be replaced |
 
 use crate::files::{CsvFile, DataFolder, write_bytes};
-use crate::inputs::arrays::whole_numbers::{
-    ClassLabels, KeyValue, read_class_labels, read_group_keys, read_rows,
+use crate::inputs::arrays::{
+    ClassLabels, ColumnNames, KeyValue, OneForEach, check_names, group_keys, is_member,
+    read_matrix, read_rows,
 };
-use crate::inputs::arrays::{ColumnNames, check_names, is_member, read_matrix};
 use crate::inputs::npy::{write_integers, write_npy};
 use crate::note::note;
 use crate::studies::prelude::*;
@@ -231,7 +231,7 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     let file = |name: &str| array_file(folder, name);
     let (features, columns) = read_matrix(&file("features"), "features")?;
     let n_rows = features.nrows();
-    let labels = read_class_labels(&file("labels"), "labels", n_rows)?;
+    let labels = of_rows(&file("labels"), "labels", n_rows).class_labels()?;
     let split = Split {
         train: read_rows(&file("train"), "train", n_rows)?,
         test: read_rows(&file("test"), "test", n_rows)?,
@@ -304,12 +304,17 @@ pub fn read_new_rows(folder: &Path, trained: Option<&[String]>) -> Result<NewRow
     };
     let mut labels = None;
     if has("labels") {
-        let read = read_class_labels(&file("labels"), "labels", n_rows)?;
+        let read = of_rows(&file("labels"), "labels", n_rows).class_labels()?;
         let label = |row: &usize| read.classes[read.labels[*row]].clone();
         labels = Some(rows.iter().map(label).collect());
     }
     let features = features.select(Axis(0), &rows);
     Ok(NewRows { features, labels })
+}
+
+/// Returns an array with one value for each row of features.
+fn of_rows<'a>(path: &'a Path, name: &'a str, n_rows: usize) -> OneForEach<'a> {
+    OneForEach::new(path, name, n_rows, "row of features")
 }
 
 /// Returns the path of the file that contains an array of a feature folder. If several files exist, the order is `.npy`, `.npz`, `.csv`, and the archive
@@ -335,15 +340,8 @@ impl FeatureSet {
     /// If the file is missing or has another type. If there is not one group per row, or a group has rows on both sides of the split.
     pub fn with_groups(self, path: &Path) -> Result<Self> {
         let n_rows = self.data.records.nrows();
-        let groups = Array1::from(read_group_keys(path, "groups", n_rows)?);
-        let refused = |given: String, allowed: String| {
-            let place = path.display();
-            Err(Error::input(place, given, allowed))
-        };
-        if groups.len() != n_rows {
-            let given = format!("{} groups", groups.len());
-            return refused(given, format!("{n_rows}, one for each row of features"));
-        }
+        let groups = of_rows(path, "groups", n_rows).groups()?;
+        let groups = Array1::from(group_keys(&groups));
         let Split { train, test } = &self.split;
         let trained: HashMap<usize, usize> = train.iter().map(|&row| (groups[row], row)).collect();
         let both = test
@@ -354,7 +352,7 @@ impl FeatureSet {
             let given =
                 format!("group {group} of row {learned} in train.npy and row {tested} in test.npy");
             let allowed = "groups that train.npy and test.npy leave whole on one side (as GroupShuffleSplit and GroupKFold of scikit-learn do)";
-            return refused(given, allowed.to_owned());
+            return Err(Error::input(path.display(), given, allowed));
         }
         Ok(Self {
             groups: Some(groups),

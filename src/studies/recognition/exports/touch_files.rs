@@ -17,7 +17,7 @@
 //! = "shear"` a configuration reads three forces: `frames.npy` then has 3 × ny × nx newtons per frame, and there is no `shear.npy`.
 
 use crate::files::{CsvFile, write_bytes};
-use crate::inputs::npy::{NpyFile, write_integers};
+use crate::inputs::npy::{NpyFile, write_integers, write_npy};
 use crate::studies::prelude::*;
 use crate::studies::recognition::exports::find;
 use crate::studies::recognition::frames::{ArrayPress, ArrayWorkspace, HumanTouches, TouchSet};
@@ -227,24 +227,24 @@ pub fn write_touches(
     let sources = sources.collect::<Result<Vec<_>>>()?;
     let n_touches = sources.iter().map(TouchSource::n_touches).sum();
     progress.stage(&format!("touch {}", array.describe()), n_touches as u64);
+    let mut frames = FrameFiles::create(folder, (array, n_frames), n_touches, read.is_some())?;
     let file = |name: &str, descr, shape: &[usize]| {
         let shape = [&[n_touches], shape].concat();
         NpyFile::create(&folder.join(name), descr, &shape)
     };
-    let mut frames = FrameFiles::create(folder, (array, n_frames), n_touches, read.is_some())?;
     let mut labels = file("labels.npy", "<i8", &[])?;
     let mut poses = file("poses.npy", "<f8", &[7])?;
     let mut depths = file("depths.npy", "<f8", &[])?;
     let mut n_before = 0;
     let mut table = CsvFile::create(&folder.join("touches.csv"))?;
-    let mut rows = CsvFile::create(&folder.join("objects.csv"))?;
+    let mut rows = Vec::new();
     for (label, ((object, rests), source)) in objects.iter().zip(&rests).zip(&sources).enumerate() {
-        rows.row(ObjectRow {
+        rows.push(ObjectRow {
             label,
             object: &object.name,
             n_spheres: object.model.n_spheres(),
             n_touches: source.n_touches(),
-        })?;
+        });
         let press = array.press(&object.model);
         for first in (0..source.n_touches()).step_by(BLOCK) {
             let block = first..source.n_touches().min(first + BLOCK);
@@ -274,7 +274,7 @@ pub fn write_touches(
     }
     write_taxels(folder, array)?;
     table.commit()?;
-    rows.commit()?;
+    write_objects(folder, rows)?;
     if read.is_none() {
         let recorded = RecordedSpec {
             depths: Some("depths.npy".into()),
@@ -316,16 +316,14 @@ pub fn write_human_touches(
     }
     frames.commit()?;
     write_integers(&folder.join("labels.npy"), labels.to_vec())?;
-    let mut rows = CsvFile::create(&folder.join("objects.csv"))?;
-    for (label, (object, n_touches)) in touches.classes().into_iter().enumerate() {
-        rows.row(ObjectRow {
-            label,
-            object,
-            n_spheres: 0,
-            n_touches,
-        })?;
-    }
-    rows.commit()?;
+    let classes = touches.classes().into_iter().enumerate();
+    let rows = classes.map(|(label, (object, n_touches))| ObjectRow {
+        label,
+        object,
+        n_spheres: 0,
+        n_touches,
+    });
+    write_objects(folder, rows)?;
     let names = touches.class_names().into_iter().map(str::to_owned);
     let recorded = RecordedSpec {
         frame_interval_s: Some(human.interval()),
@@ -334,6 +332,13 @@ pub fn write_human_touches(
     };
     write_recorded(folder, recorded, (&plan.spec.skin, array))?;
     Ok(labels.len())
+}
+
+/// Writes the table of the objects.
+fn write_objects<'a>(folder: &Path, rows: impl IntoIterator<Item = ObjectRow<'a>>) -> Result<()> {
+    let mut table = CsvFile::create(&folder.join("objects.csv"))?;
+    rows.into_iter().try_for_each(|row| table.row(row))?;
+    table.commit()
 }
 
 /// Returns the letters of the axes of a frame file, and the lengths of the axes for a single touch.
@@ -402,13 +407,11 @@ fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
         return Ok(());
     }
     let layout = array.patch().layout();
-    let (centers, axes) = (layout.centers(), layout.axes());
-    let mut file = NpyFile::create(&folder.join("taxels.npy"), "<f8", &[centers.len(), 6])?;
-    for (center, axis) in centers.iter().zip(axes) {
-        let numbers = center.to_array().into_iter().chain(axis.to_array());
-        file.push(numbers.map(f64::to_le_bytes))?;
-    }
-    file.commit()
+    let taxels = layout.centers().iter().zip(layout.axes());
+    let numbers = taxels.flat_map(|(center, axis)| [center.to_array(), axis.to_array()].concat());
+    let numbers = Array2::from_shape_vec((layout.n_taxels(), 6), numbers.collect());
+    let numbers = numbers.expect("six numbers a taxel");
+    write_npy(&folder.join("taxels.npy"), &numbers)
 }
 
 /// Simulates one touch of an object. The touch is given by its number, its label and the name of the object.

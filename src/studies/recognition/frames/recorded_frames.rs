@@ -4,11 +4,6 @@
 //! so they have the same effect as on a simulated skin. A full scale below the zero belongs to readings that fall under pressure. Readings of tangential forces are in newtons. The readings of several sensors are joined to one frame.
 
 use crate::contact::saturation_limit;
-use crate::inputs::arrays::is_member;
-use crate::inputs::arrays::whole_numbers::{
-    ClassLabels, KeyValue, group_keys, note_spellings, read_class_values, read_group_values,
-    read_rows,
-};
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
 use crate::report::pictures::snapshots::Snapshots;
@@ -16,13 +11,13 @@ use crate::signal::Quantity;
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     Frames, RecordedContent, Samples, SensorFrames, SensorScale, TouchSet, TouchToRead,
-    check_alike, joined_readings, numbers_of, one_each, spread_samples, touch_of, touches_to_read,
+    check_alike, joined_readings, spread_samples, touches_to_read,
 };
 use crate::studies::recognition::plan::MeasurementGroup;
 use crate::studies::recognition::spec::PreviousTouch;
 use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2};
 use rand::Rng;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Touches that a real skin recorded.
@@ -82,62 +77,66 @@ impl RecordedFrames {
             sensors.push(sensor);
         }
         check_alike(&sensors)?;
-        let [n_train, n_test] = sensors[0].n_touches();
-        let labels = spec.class_labels([n_train, n_test])?;
-        let (names, streams, counts) = spec.classes(&labels)?;
-        let mut order: Vec<usize> = (0..n_train + n_test).collect();
+        let n = sensors[0].n_touches();
+        let labels = spec.class_labels(n)?;
+        let classes = spec.classes(&labels)?;
+        let mut order: Vec<usize> = (0..n[0] + n[1]).collect();
         order.sort_by_key(|&touch| labels.labels[touch]);
-        let groups = spec.group_keys([n_train, n_test])?;
+        let groups = spec.groups_of_sets(n)?.map(|groups| {
+            let keys: Array1<usize> = order.iter().map(|&touch| groups.keys[touch]).collect();
+            (keys, groups.names)
+        });
         let (groups, group_names) = groups.unzip();
-        let groups =
-            groups.map(|groups: Vec<usize>| order.iter().map(|&touch| groups[touch]).collect());
-        let side = |&touch: &usize| match touch < n_train {
-            true => Side::Train,
-            false => Side::Test,
-        };
-        let groups: Option<Array1<usize>> = groups;
-        let mut sides = spec.read_splits((&order, groups.as_ref()))?;
+        let mut sides = spec.read_splits(&order, groups.as_ref())?;
         if spec.has_test_set() {
+            let side = |&touch: &usize| match touch < n[0] {
+                true => Side::Train,
+                false => Side::Test,
+            };
             sides.push(order.iter().map(side).collect());
-            spec.check_test_set(&names, &order, &sides[0], &labels)?;
+            spec.check_test_set(&classes.names, &order, &sides[0], &labels)?;
         }
-        let depths = spec.read_depths(n_train + n_test)?;
+        let depths = spec.read_depths(order.len())?;
         let depths = depths.map(|depths| order.iter().map(|&touch| depths[touch]).collect());
-        let n_frames = sensors[0].n_frames();
-        let steps = sensors[0].steps();
-        let steps = order.iter().map(|&touch| steps[touch]).collect();
         let scales = sensors.iter().map(|sensor| sensor.scale(depths.is_some()));
         let scales = scales.collect::<Result<Vec<SensorScale>>>()?;
-        let names_of = sensors.iter().zip(&scales);
-        let names_of = names_of.map(|(sensor, scale)| (sensor.name.clone(), scale.zeros.len()));
-        let sensors_of: Vec<(String, usize)> = names_of.collect();
-        let each = |of: fn(&SensorScale) -> f64| -> Vec<f64> {
-            let values = scales
-                .iter()
-                .map(|s| std::iter::repeat_n(of(s), s.zeros.len()));
-            values.flatten().collect()
-        };
-        Ok(Self {
+        let mut recording = Self {
             spec: spec.clone(),
             content: spec.content()?,
-            names,
-            streams,
-            counts,
-            order,
-            full_scales: each(|scale| scale.full_scale),
-            saturations: each(|scale| scale.saturation),
-            is_masked: scales.iter().flat_map(|s| s.is_masked.clone()).collect(),
-            zeros: scales.iter().flat_map(|s| s.zeros.clone()).collect(),
-            steps,
-            n_frames,
-            n_taxels: sensors_of.iter().map(|(_, n)| n).sum(),
-            sensors: sensors_of,
+            names: classes.names,
+            streams: classes.streams,
+            counts: classes.counts,
+            is_masked: Vec::new(),
+            zeros: Vec::new(),
+            full_scales: Vec::new(),
+            saturations: Vec::new(),
+            steps: order.iter().map(|&touch| sensors[0].steps[touch]).collect(),
+            sensors: Vec::new(),
+            n_frames: sensors[0].n_frames(),
+            n_taxels: 0,
             groups,
             group_names: group_names.unwrap_or_default(),
             sides,
             depths,
-            readings: joined_readings(sensors),
-        })
+            order,
+            readings: Default::default(),
+        };
+        for (sensor, scale) in sensors.iter().zip(scales) {
+            recording.add_scale(&sensor.name, scale);
+        }
+        recording.readings = joined_readings(sensors);
+        Ok(recording)
+    }
+
+    /// Adds the taxels of a sensor.
+    fn add_scale(&mut self, name: &str, scale: SensorScale) {
+        let n = scale.zeros.len();
+        self.sensors.push((name.to_owned(), n));
+        self.n_taxels += n;
+        self.full_scales.extend(vec![scale.full_scale; n]);
+        self.saturations.extend(vec![scale.saturation; n]);
+        self.is_masked.extend(scale.is_masked);
+        self.zeros.extend(scale.zeros);
     }
 
     /// Returns the recorded readings of one frame of a touch.
@@ -189,9 +188,6 @@ impl RecordedFrames {
     }
 }
 
-/// Number of the group of every touch, and the names of the groups by their numbers.
-type NamedGroups = (Vec<usize>, Vec<String>);
-
 impl RecordedSpec {
     /// Returns the identity of the recording, which depends on the contents of the files.
     fn content(&self) -> Result<RecordedContent> {
@@ -211,244 +207,6 @@ impl RecordedSpec {
             hashes,
             identity: identity(&spec),
         })
-    }
-
-    /// Returns the class labels of all touches; the separate test set comes last.
-    fn class_labels(&self, n: [usize; 2]) -> Result<ClassLabels> {
-        let mut values: Vec<KeyValue> = Vec::new();
-        for (name, n) in ["labels", "labels_test"].into_iter().zip(n) {
-            let Some(path) = self.file_of(name).filter(|_| n > 0) else {
-                continue;
-            };
-            let own = read_class_values(path, name, n)?;
-            one_each((path, name), (own.len(), n), touch_of(self.first_frames()))?;
-            if let (Some(first), Some(other)) = (own.first(), values.first())
-                && first.is_text() != other.is_text()
-            {
-                let labels = self.file_of("labels").unwrap_or(&self.labels);
-                let allowed = format!("texts or numbers in both, as in {}", labels.display());
-                let given = "numbers in one array of labels and texts in the other";
-                return Err(Error::input(path.display(), given, allowed));
-            }
-            values.extend(own);
-        }
-        let labels = ClassLabels::new(&values);
-        let (Some(names), Some(KeyValue::Text(_))) = (&self.names, values.first()) else {
-            return Ok(labels);
-        };
-        // Texts are numbered in the order of `names`.
-        let known: Vec<KeyValue> = names.iter().cloned().map(KeyValue::Text).collect();
-        let number = |value: &KeyValue| {
-            let number = known.iter().position(|name| name == value);
-            number.ok_or_else(|| {
-                let given = format!("no name {:?}", name_of(value));
-                let labels = self.file_of("labels").unwrap_or(&self.labels);
-                let allowed = format!("each text of {} once", labels.display());
-                Error::input("key recorded.names", given, allowed)
-            })
-        };
-        Ok(ClassLabels {
-            labels: values.iter().map(number).collect::<Result<_>>()?,
-            classes: known,
-        })
-    }
-
-    /// Returns the name, the random-stream name and the number of touches of each class.
-    pub(crate) fn classes(
-        &self,
-        labels: &ClassLabels,
-    ) -> Result<(Vec<String>, Vec<String>, Vec<usize>)> {
-        let n_classes = labels.classes.len();
-        let mut counts = vec![0; n_classes];
-        for &label in &labels.labels {
-            counts[label] += 1;
-        }
-        let file = self.file_of("labels").unwrap_or(&self.labels);
-        if let Some(label) = counts.iter().position(|&count| count == 0) {
-            let given = format!("no touch of class {}", name_of(&labels.classes[label]));
-            return Err(Error::input(file.display(), given, "touches of each class"));
-        }
-        let (names, streams): (Vec<String>, Vec<String>) = match &self.names {
-            None => {
-                let classes = labels.classes.iter().enumerate();
-                let names = classes.map(|(number, class)| match class {
-                    KeyValue::Integer(value) => {
-                        (format!("class {value}"), format!("class {number}"))
-                    }
-                    KeyValue::Text(text) => (text.clone(), text.clone()),
-                });
-                names.unzip()
-            }
-            Some(names) if names.len() == n_classes => (names.clone(), names.clone()),
-            Some(names) => {
-                let given = format!("{} names", names.len());
-                let allowed = format!("{n_classes}, one a class of {}", file.display());
-                return Err(Error::input("key recorded.names", given, allowed));
-            }
-        };
-        if let Some(name) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
-            let given = format!("{:?} twice", names[name]);
-            return Err(Error::input("key recorded.names", given, "each name once"));
-        }
-        note_spellings("labels", names.iter().map(String::as_str));
-        Ok((names, streams, counts))
-    }
-
-    /// Returns the group of every touch, and the names of groups that are texts; the touches of the separate test set come last. Returns `None` if the
-    /// recording defines no groups.
-    fn group_keys(&self, [n_train, n_test]: [usize; 2]) -> Result<Option<NamedGroups>> {
-        let named = |values: &[KeyValue]| {
-            let classes = ClassLabels::new(values).classes.into_iter();
-            let names = classes.filter(KeyValue::is_text).map(|name| name_of(&name));
-            (group_keys(values), names.collect())
-        };
-        let read = |name: &str, n: usize| -> Result<Option<Vec<KeyValue>>> {
-            match self.file_of(name) {
-                None => Ok(None),
-                Some(path) => {
-                    let groups = read_group_values(path, name, n)?;
-                    one_each(
-                        (path, name),
-                        (groups.len(), n),
-                        touch_of(self.first_frames()),
-                    )?;
-                    Ok(Some(groups))
-                }
-            }
-        };
-        let (train, test) = (read("groups", n_train)?, read("groups_test", n_test)?);
-        if n_test == 0 {
-            return Ok(train.map(|groups| named(&groups)));
-        }
-        match (train, test) {
-            (None, None) => Ok(None),
-            (Some(_), None) => {
-                let allowed = "the groups of the test set beside groups, or neither of them";
-                Err(Error::input(
-                    "key recorded.groups_test",
-                    "no such key",
-                    allowed,
-                ))
-            }
-            (None, Some(test)) => {
-                // Each training touch is a group of its own.
-                let (keys, names) = named(&test);
-                let first = keys.iter().max().map_or(0, |last| last + 1);
-                Ok(Some((
-                    (first..first + n_train).chain(keys).collect(),
-                    names,
-                )))
-            }
-            (Some(train), Some(test)) => {
-                let known: HashSet<&KeyValue> = train.iter().collect();
-                if let Some(both) = test.iter().find(|group| known.contains(group)) {
-                    let given = format!("group {} in both sets", name_of(both));
-                    let allowed = "groups that either train or test";
-                    return Err(Error::input("key recorded.groups_test", given, allowed));
-                }
-                Ok(Some(named(&[train, test].concat())))
-            }
-        }
-    }
-
-    /// Returns an error if a class has no training touches or no test touches.
-    fn check_test_set(
-        &self,
-        names: &[String],
-        order: &[usize],
-        sides: &[Side],
-        labels: &ClassLabels,
-    ) -> Result<()> {
-        let without = |side: Side| {
-            let is_on =
-                |(touch, own): (&usize, &Side)| (*own == side).then_some(labels.labels[*touch]);
-            let found: HashSet<usize> = order.iter().zip(sides).filter_map(is_on).collect();
-            (0..names.len()).find(|label| !found.contains(label))
-        };
-        let (given, allowed) = match (without(Side::Train), without(Side::Test)) {
-            (Some(label), _) => (
-                format!("{}, of which no touch trains", names[label]),
-                "classes of recorded.labels",
-            ),
-            (None, Some(label)) => (
-                format!("no touch of {}", names[label]),
-                "touches of each class among those that train and in the test set",
-            ),
-            (None, None) => return Ok(()),
-        };
-        Err(Error::input("key recorded.labels_test", given, allowed))
-    }
-
-    /// Returns the side of each touch in each split of the file `splits`; the touches are in the order `order`. The list is empty without the file.
-    fn read_splits(
-        &self,
-        (order, groups): (&[usize], Option<&Array1<usize>>),
-    ) -> Result<Vec<Vec<Side>>> {
-        let mut splits = Vec::new();
-        let Some(path) = &self.splits else {
-            return Ok(splits);
-        };
-        let refused = |given: String, allowed: &str| {
-            Err(Error::input(
-                format!("{} (key recorded.splits)", path.display()),
-                given,
-                allowed,
-            ))
-        };
-        while is_member(path, &format!("train_{}", splits.len())) {
-            let number = splits.len();
-            let mut of_touch = vec![Side::LeftOut; order.len()];
-            for (name, side) in [("train", Side::Train), ("test", Side::Test)] {
-                for touch in read_rows(path, &format!("{name}_{number}"), order.len())? {
-                    if std::mem::replace(&mut of_touch[touch], side) != Side::LeftOut {
-                        let given =
-                            format!("touch {touch} twice in train_{number} and test_{number}");
-                        return refused(given, "each touch once, or not at all");
-                    }
-                }
-            }
-            let sides: Vec<Side> = order.iter().map(|&touch| of_touch[touch]).collect();
-            if let Some(groups) = groups {
-                let of = |wanted: Side| {
-                    let sides = groups.iter().zip(&sides);
-                    sides.filter_map(move |(group, side)| (*side == wanted).then_some(*group))
-                };
-                let trained: HashSet<usize> = of(Side::Train).collect();
-                if let Some(both) = of(Side::Test).find(|group| trained.contains(group)) {
-                    let given = format!("group {both} in train_{number} and test_{number}");
-                    return refused(given, "groups of recorded.groups that either train or test");
-                }
-            }
-            splits.push(sides);
-        }
-        match splits.is_empty() {
-            true => refused(
-                "no array train_0".to_owned(),
-                "an archive .npz of train_0, test_0, train_1, test_1, …",
-            ),
-            false => Ok(splits),
-        }
-    }
-
-    fn read_depths(&self, n: usize) -> Result<Option<Vec<f64>>> {
-        let read = |path: &PathBuf| {
-            let each = (n, touch_of(self.first_frames()));
-            let is_depth = |depth: f64| depth.is_finite() && depth > 0.0;
-            numbers_of(
-                (path, "depths"),
-                each,
-                is_depth,
-                "a positive number of metres",
-            )
-        };
-        self.depths.as_ref().map(read).transpose()
-    }
-}
-
-fn name_of(value: &KeyValue) -> String {
-    match value {
-        KeyValue::Integer(number) => number.to_string(),
-        KeyValue::Text(text) => text.clone(),
     }
 }
 
@@ -486,11 +244,6 @@ impl TouchSet for RecordedFrames {
 
     fn recorded_content(&self) -> Option<&RecordedContent> {
         Some(&self.content)
-    }
-
-    fn n_masked(&self) -> (usize, usize) {
-        let of_taxels = &self.is_masked[..self.n_taxels];
-        (of_taxels.iter().filter(|&&is| is).count(), self.n_taxels)
     }
 
     fn absent(&self) -> &[bool] {

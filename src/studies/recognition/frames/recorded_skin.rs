@@ -1,8 +1,9 @@
 //! Recorded frames of a skin, with the additional data that calibration needs.
 
 use crate::calibration::RecordedSkin;
+use crate::inputs::arrays::OneForEach;
 use crate::studies::prelude::*;
-use crate::studies::recognition::frames::numbers_of;
+use crate::studies::recognition::frames::RecordedArray;
 use bubbletouch_sim::statistics::quantile::quantile;
 use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;
@@ -48,9 +49,6 @@ pub struct RecordedSkinFiles {
     pub stroke_mm: Option<f64>,
 }
 
-/// Frames with one row each, their numbers of rows and columns, and the names of the columns of a table.
-type NamedFrames = (Array2<f64>, (usize, usize), Option<Vec<String>>);
-
 impl RecordedSkinFiles {
     /// Reads the recorded files of the skin. Also returns the reading of a taxel that is not touched.
     ///
@@ -58,30 +56,27 @@ impl RecordedSkinFiles {
     /// If a file cannot be read or does not fit the others, a range exceeds the frames, the times of untouched frames are no ranges within 0 to 1,
     /// or the full scale equals the zero.
     pub fn read(&self) -> Result<(RecordedSkin, f64)> {
-        let (frames, shape, columns) = self.frames_of(&self.frames, None)?;
-        let n = frames.nrows();
+        let (recorded, sides) = self.frames_of(&self.frames, None)?;
+        let (frames, n) = (&recorded.readings, recorded.readings.nrows());
         let times = Array1::linspace(0.0, 1.0, n);
-        let forces = self
-            .forces
-            .as_ref()
-            .map(|path| {
-                let each = (n, "frame".to_owned());
-                numbers_of((path, "forces"), each, f64::is_finite, "finite numbers")
-            })
-            .transpose()?;
+        let forces = self.forces.as_ref().map(|path| {
+            let of_frames = OneForEach::new(path, "forces", n, "frame");
+            of_frames.numbers(f64::is_finite, "finite numbers")
+        });
+        let forces = forces.transpose()?;
         let all: Vec<usize> = (0..n).collect();
         let (untouched, untouched_times, touched) = match &self.untouched {
             UntouchedFrames::None => (Array2::zeros((0, frames.ncols())), Array1::zeros(0), all),
             UntouchedFrames::File { path, times } => {
-                let (untouched, other, _) = self.frames_of(path, columns.as_deref())?;
-                if other != shape {
-                    let given = format!("frames of {} × {} taxels", other.0, other.1);
-                    let allowed =
-                        format!("{} × {}, as {}", shape.0, shape.1, self.frames.display());
+                let (untouched, other) = self.frames_of(path, Some(&recorded))?;
+                if other != sides {
+                    let [given, wanted] = [other, sides].map(|[n, m]| format!("{n} × {m}"));
+                    let given = format!("frames of {given} taxels");
+                    let allowed = format!("{wanted}, as {}", self.frames.display());
                     return Err(Error::input(path.display(), given, allowed));
                 }
-                let times = times_in(times, untouched.nrows())?;
-                (untouched, times, all)
+                let times = times_in(times, untouched.readings.nrows())?;
+                (untouched.readings, times, all)
             }
             UntouchedFrames::Among(ranges) => {
                 if let Some(range) = ranges.iter().find(|r| r.is_empty() || r.end > n) {
@@ -105,7 +100,7 @@ impl RecordedSkinFiles {
         }
         let share = |reading: f64| (reading - zero) / (full_scale - zero);
         let skin = RecordedSkin {
-            shape,
+            shape: sides.into(),
             touched: frames.select(Axis(0), &touched).mapv(share),
             touched_times: times.select(Axis(0), &touched),
             untouched: untouched.mapv(share),
@@ -115,27 +110,25 @@ impl RecordedSkinFiles {
         };
         Ok((skin, zero))
     }
-}
 
-impl RecordedSkinFiles {
-    /// Reads frames from a file, one per row; also returns the numbers of rows and columns of each frame, and the names of the columns of a table. These are
-    /// compared with the names `first`.
-    fn frames_of(&self, path: &Path, first: Option<&[String]>) -> Result<NamedFrames> {
+    /// Reads frames of a grid of taxels; also returns its numbers of rows and columns. The columns of a table must have the names of the frames `first`.
+    fn frames_of(
+        &self,
+        path: &Path,
+        first: Option<&RecordedArray>,
+    ) -> Result<(RecordedArray, [usize; 2])> {
         let spec = RecordedSpec::of_frames(path, [&self.order, &self.columns], self.grid);
-        let shape = spec.shape_of("frames")?;
-        if !shape.has_grid {
-            let given = match shape.sides {
-                Some(_) => format!("{} values a taxel", shape.columns / shape.n_places),
-                None => format!("{} taxels without rows and columns", shape.columns),
-            };
-            let allowed = "frames of a grid of taxels with one value each (--grid ROWS,COLUMNS or --order names them)";
-            return Err(Error::input(path.display(), given, allowed));
+        let array = spec.read_frames("frames", first, None)?;
+        let shape = &array.shape;
+        if let Some(sides) = shape.grid() {
+            return Ok((array, sides));
         }
-        let array = spec.read_array("frames")?;
-        array.check_columns_of(first, &self.frames.display().to_string())?;
-        let columns = array.columns.clone();
-        let readings = shape.arrange(array.into_numbers()?);
-        Ok((readings, (shape.rows, shape.columns), columns))
+        let given = match shape.sides {
+            Some(_) => format!("{} values a taxel", shape.n_taxels / shape.n_places),
+            None => format!("{} taxels without rows and columns", shape.n_taxels),
+        };
+        let allowed = "frames of a grid of taxels with one value each (--grid ROWS,COLUMNS or --order names them)";
+        Err(Error::input(path.display(), given, allowed))
     }
 }
 

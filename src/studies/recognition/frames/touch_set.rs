@@ -76,9 +76,10 @@ pub trait TouchSet: Sync {
         None
     }
 
-    /// Returns the number of masked taxels (with too many missing readings) and the total number of taxels.
+    /// Returns the number of masked taxels (with too many missing readings) and the total number of taxels of a recorded skin; zeros for simulated touches.
     fn n_masked(&self) -> (usize, usize) {
-        (0, 0)
+        let absent = self.absent();
+        (absent.iter().filter(|&&is| is).count(), absent.len())
     }
 
     /// Returns whether each taxel of a recorded skin is absent, that is, masked; empty for simulated touches.

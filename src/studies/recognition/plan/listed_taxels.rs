@@ -49,14 +49,6 @@ impl PlacedSensor {
         })
     }
 
-    /// Returns the sensor with another name.
-    pub fn renamed(&self, name: String) -> Self {
-        Self {
-            name,
-            ..self.clone()
-        }
-    }
-
     /// Creates a sensor from a layout and its pitch, metres. The numbers of rows and columns are given if the frames have rows and columns. Text `place` names
     /// the layout file in errors.
     ///
@@ -128,16 +120,20 @@ pub struct SensorImage {
 /// Sensor within an array of listed taxels.
 #[derive(Clone, Debug)]
 struct ListedSensor {
-    name: String,
+    sensor: PlacedSensor,
     taxels: Range<usize>,
     /// Positions of the taxels on the plane of the sensor's image, metres, relative to the middle of the image.
     places: Vec<DVec2>,
+    /// Numbers of rows and columns of the image.
     shape: ImageShape,
-    /// Numbers of rows and columns of taxels, if the taxels are numbered row by row.
-    sides: Option<ImageShape>,
-    pitch: f64,
-    widest: f64,
-    is_grid: bool,
+}
+
+impl ListedSensor {
+    /// Returns the numbers of rows and columns of taxels, if the taxels are numbered row by row.
+    fn sides(&self) -> Option<ImageShape> {
+        let sides = self.sensor.layout.sides();
+        sides.map(|[ny, nx]| ImageShape { ny, nx })
+    }
 }
 
 /// Taxels at listed positions, with the positions that pictures and images use.
@@ -185,14 +181,10 @@ impl ListedTaxels {
             let first = places.len();
             places.extend(own.iter().map(|place| *place + middle));
             listed.push(ListedSensor {
-                name: sensor.name.clone(),
+                sensor: sensor.clone(),
                 taxels: first..places.len(),
                 places: own,
                 shape,
-                sides: sensor.layout.sides().map(|[ny, nx]| ImageShape { ny, nx }),
-                pitch: sensor.pitch,
-                widest: sensor.widest,
-                is_grid: sensor.layout.as_grid().is_some(),
             });
             let away = Pose::from_translation(APART * number as f64 * DVec3::X);
             let moved = match number {
@@ -221,7 +213,7 @@ impl ListedTaxels {
     /// Returns the numbers of rows and columns of taxels; `None` for several sensors, or if the taxels are not numbered row by row.
     pub fn sides(&self) -> Option<ImageShape> {
         match &self.sensors[..] {
-            [one] => one.sides,
+            [one] => one.sides(),
             _ => None,
         }
     }
@@ -229,8 +221,8 @@ impl ListedTaxels {
     /// Returns the number of sensors, and the numbers of rows and columns that all of them have. Returns `None` if these numbers differ or a sensor has
     /// none.
     pub fn equal_sides(&self) -> Option<(usize, ImageShape)> {
-        let first = self.sensors.first()?.sides?;
-        let is_equal = |sensor: &ListedSensor| sensor.sides == Some(first);
+        let first = self.sensors.first()?.sides()?;
+        let is_equal = |sensor: &ListedSensor| sensor.sides() == Some(first);
         let all_equal = self.sensors.iter().all(is_equal);
         all_equal.then_some((self.sensors.len(), first))
     }
@@ -256,12 +248,12 @@ impl ListedTaxels {
     /// Returns the pitch of the sensor with this taxel, metres.
     pub fn pitch_at(&self, taxel: usize) -> f64 {
         let own = self.sensors.iter().find(|s| s.taxels.contains(&taxel));
-        own.map_or(f64::NAN, |sensor| sensor.pitch)
+        own.map_or(f64::NAN, |own| own.sensor.pitch)
     }
 
     /// Returns the smallest pitch of the sensors, metres.
     pub fn finest_pitch(&self) -> f64 {
-        let pitches = self.sensors.iter().map(|sensor| sensor.pitch);
+        let pitches = self.sensors.iter().map(|listed| listed.sensor.pitch);
         pitches.fold(f64::INFINITY, f64::min)
     }
 
@@ -272,14 +264,14 @@ impl ListedTaxels {
 
     /// Returns the image of each sensor.
     pub fn images(&self) -> Vec<SensorImage> {
-        let image = |sensor: &ListedSensor| {
-            let (shape, pitch) = (sensor.shape, sensor.pitch);
-            let widest = (sensor.widest / pitch).max(1.0);
-            let chart = || Chart::with_gaps(&sensor.places, (pitch, widest), (shape, pitch));
+        let image = |listed: &ListedSensor| {
+            let (shape, pitch) = (listed.shape, listed.sensor.pitch);
+            let widest = (listed.sensor.widest / pitch).max(1.0);
+            let chart = || Chart::with_gaps(&listed.places, (pitch, widest), (shape, pitch));
             SensorImage {
-                taxels: sensor.taxels.clone(),
+                taxels: listed.taxels.clone(),
                 shape,
-                chart: (!sensor.is_grid).then(chart),
+                chart: listed.sensor.layout.as_grid().is_none().then(chart),
             }
         };
         self.sensors.iter().map(image).collect()
@@ -291,7 +283,7 @@ impl ListedTaxels {
             [_] => "layout of a file".to_owned(),
             sensors => {
                 let each = sensors.iter();
-                let each = each.map(|s| format!("{} {}", s.name, s.taxels.len()));
+                let each = each.map(|s| format!("{} {}", s.sensor.name, s.taxels.len()));
                 let each: Vec<String> = each.collect();
                 format!("{} sensors ({})", sensors.len(), each.join(", "))
             }
@@ -302,7 +294,10 @@ impl ListedTaxels {
 /// Writes what determines frames: the numbers of taxels, the pitches of the sensors, and the positions and axes of the taxels.
 impl Serialize for ListedTaxels {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        let pitches = self.sensors.iter().map(|s| (s.taxels.len(), s.pitch));
+        let pitches = self
+            .sensors
+            .iter()
+            .map(|s| (s.taxels.len(), s.sensor.pitch));
         (pitches.collect::<Vec<_>>(), &self.content).serialize(serializer)
     }
 }

@@ -155,7 +155,7 @@ impl Check<'_> {
         let (mut placed, mut n_taxels) = (Vec::new(), 0);
         for (name, sensor) in &sensors {
             let shape = sensor.shape_of("frames")?;
-            n_taxels += shape.rows * shape.columns;
+            n_taxels += shape.n_taxels;
             let pitch_mm = sensor.place.pitch_mm.unwrap_or(pitch_mm);
             placed.push(sensor.placed(name, pitch_mm * MM)?);
         }
@@ -211,7 +211,7 @@ impl Check<'_> {
         }
         let mut arrays = self.touching_arrays(skin, &TouchesSpec::default())?;
         let shape = sensor.shape_of("frames")?;
-        let n_taxels = shape.rows * shape.columns;
+        let n_taxels = shape.n_taxels;
         let (Some(array), 0) = (arrays.pop(), arrays.len()) else {
             let allowed = "one, of the skin that read the frames";
             return Err(self.error("skin", "several arrays", allowed));
@@ -231,13 +231,13 @@ impl RecordedSpec {
     fn placed(&self, name: &str, pitch: f64) -> Result<Option<Vec<PlacedSensor>>> {
         let shape = self.shape_of("frames")?;
         let sides = shape.sides;
-        let n_values = shape.rows * shape.columns / shape.n_places;
+        let n_values = shape.n_taxels / shape.n_places;
         let of_values = |sensor: PlacedSensor| -> Vec<PlacedSensor> {
-            let of_value = |value: usize| match n_values {
-                1 => sensor.clone(),
-                _ => sensor.renamed(format!("{name}, value {}", value + 1)),
-            };
-            (0..n_values).map(of_value).collect()
+            let mut sensors = vec![sensor; n_values];
+            for (value, sensor) in sensors.iter_mut().enumerate().filter(|_| n_values > 1) {
+                sensor.name = format!("{name}, value {}", value + 1);
+            }
+            sensors
         };
         let Some(path) = &self.layout else {
             let sensor = |[ny, nx]: [usize; 2]| PlacedSensor::grid(name, &Grid { nx, ny, pitch });

@@ -1,8 +1,7 @@
 //! Specification of recorded frames: the table `[recorded]`, which replaces `[objects]` and `[touches]`.
 
-use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
-use crate::inputs::arrays::file_array::FileArray;
-use crate::inputs::arrays::{TableContent, is_member};
+use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape, spaced};
+use crate::inputs::arrays::{FileArray, TableContent, is_member};
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::inputs::params::is_default;
 use crate::inputs::range::Range::{Any, Count, NotNegative, Positive, Unchecked};
@@ -126,18 +125,19 @@ impl RecordedSpec {
     /// Returns the file that contains the array `name`: the file given by its key, or the archive with the frames.
     pub fn file_of(&self, name: &str) -> Option<&Path> {
         let given = match name {
-            "frames" => Some(self.frames.as_path()),
-            "labels" => Some(self.labels.as_path()).filter(|path| !path.as_os_str().is_empty()),
-            "groups" => self.groups.as_deref(),
-            "frames_test" => self.frames_test.as_deref(),
-            "labels_test" => self.labels_test.as_deref(),
-            "groups_test" => self.groups_test.as_deref(),
-            "lengths" => self.lengths.as_deref(),
-            "lengths_test" => self.lengths_test.as_deref(),
-            _ => self.depths.as_deref(),
+            "frames" => Some(&self.frames),
+            "labels" => Some(&self.labels),
+            "groups" => self.groups.as_ref(),
+            "frames_test" => self.frames_test.as_ref(),
+            "labels_test" => self.labels_test.as_ref(),
+            "groups_test" => self.groups_test.as_ref(),
+            "lengths" => self.lengths.as_ref(),
+            "lengths_test" => self.lengths_test.as_ref(),
+            _ => self.depths.as_ref(),
         };
+        let given = given.filter(|path| !is_default(*path));
         let archive = self.frames.as_path();
-        given.or_else(|| {
+        given.map(PathBuf::as_path).or_else(|| {
             let mut names = self.place.array_names(name).into_iter();
             let has_array = names.any(|name| is_member(archive, &name));
             has_array.then_some(archive)
@@ -146,7 +146,7 @@ impl RecordedSpec {
 
     /// Returns the name of the array `name` in its file. In an archive with the arrays of several sensors, the name contains the name of the sensor.
     pub fn array_name(&self, name: &str) -> String {
-        let path = self.file_of(name).unwrap_or(&self.frames);
+        let path = self.frames_file(name);
         let names = self.place.array_names(name).into_iter();
         // A file of the test set alone may have the names of the training frames.
         let same_name = self.place.name.clone().filter(|_| path != self.frames);
@@ -154,11 +154,24 @@ impl RecordedSpec {
         found.unwrap_or_else(|| name.to_owned())
     }
 
+    /// Returns the file that contains the array `frames` or `frames_test`; for several sensors, the file of the frames of the first sensor.
+    pub fn frames_file(&self, name: &str) -> &Path {
+        self.file_of(name).unwrap_or_else(|| self.first_frames())
+    }
+
+    /// Returns the names of the arrays of frames of a sensor: `frames` and, with a separate test set, `frames_test`.
+    pub fn frame_arrays(&self) -> &'static [&'static str] {
+        match self.file_of("frames_test") {
+            Some(_) => &["frames", "frames_test"],
+            None => &["frames"],
+        }
+    }
+
     /// Returns whether the recording has a separate test set.
     pub fn has_test_set(&self) -> bool {
         let sensors = self.used_sensors();
         let mut sensors = sensors.iter();
-        sensors.any(|(_, sensor)| sensor.file_of("frames_test").is_some())
+        sensors.any(|(_, sensor)| sensor.frame_arrays().len() > 1)
     }
 
     /// Returns the path of the frames, or of the frames of the first sensor.
@@ -174,7 +187,7 @@ impl RecordedSpec {
     /// # Errors
     /// If the file does not exist or its axes are not axes of frames.
     pub fn shape_of(&self, name: &str) -> Result<FrameShape> {
-        let path = self.file_of(name).unwrap_or(&self.frames);
+        let path = self.frames_file(name);
         let shape = self.with_frames(name, FileArray::shape_of)?;
         let n_values = match self.shear {
             Some(_) => 1,
@@ -186,22 +199,17 @@ impl RecordedSpec {
         match &self.layout {
             Some(layout) if found.has_several_taxel_axes() => {
                 let layout = LayoutFile::read(layout, LayoutOptions::default())?.layout;
-                Ok(found.with_places(&shape, layout.n_taxels()))
+                Ok(found.with_places(layout.n_taxels()))
             }
             _ => Ok(found),
         }
     }
 
-    /// Reads the array `frames` or `frames_test`.
+    /// Calls a function that reads the array `frames` or `frames_test`, given its path, its name in an archive, and its content.
     ///
     /// # Errors
-    /// If the file cannot be read, or a table has columns that are no readings.
-    pub fn read_array(&self, name: &str) -> Result<FileArray> {
-        self.with_frames(name, FileArray::read_content)
-    }
-
-    /// Calls a function that reads the array `frames` or `frames_test`, given its path, its name in an archive, and its content.
-    fn with_frames<T>(
+    /// Returns the errors of the function.
+    pub fn with_frames<T>(
         &self,
         name: &str,
         read: impl FnOnce(&Path, &str, TableContent) -> Result<T>,
@@ -210,32 +218,27 @@ impl RecordedSpec {
             columns: self.columns.as_deref(),
             key: &self.place.assigned("columns"),
         };
-        let path = self.file_of(name).unwrap_or(&self.frames);
-        read(path, &self.array_name(name), content)
+        read(self.frames_file(name), &self.array_name(name), content)
     }
 
-    /// Returns the readings of untouched taxels, shape (rows · columns,), in row-major order.
+    /// Returns the readings of untouched taxels, shape (n_taxels,), in row-major order.
     ///
     /// # Errors
     /// If the file cannot be read or does not have one number for each taxel of `shape`, the axes of `frames`, whose columns have the names `columns`.
     pub fn zeros(&self, shape: &FrameShape, columns: Option<&[String]>) -> Result<Vec<f64>> {
         let path = match &self.zero {
-            ZeroSpec::One(number) => return Ok(vec![*number; shape.rows * shape.columns]),
+            ZeroSpec::One(number) => return Ok(vec![*number; shape.n_taxels]),
             ZeroSpec::Each(path) => path,
         };
         let array = FileArray::read(path, "zero")?;
         array.check_columns_of(columns, &self.frames.display().to_string())?;
         let (place, given) = (array.place.clone(), array.shape.clone());
-        let frames = self.with_frames("frames", FileArray::shape_of)?;
-        shape
-            .arrange_taxels(array.into_numbers()?, &frames)
-            .map_err(|expected| {
-                let allowed = format!(
-                    "shape {expected:?}, one number for each taxel of {}",
-                    self.frames.display()
-                );
-                Error::input(place, format!("an array of shape {given:?}"), allowed)
-            })
+        let zeros = shape.arrange_taxels(array.into_numbers()?);
+        zeros.map_err(|expected| {
+            let frames = self.frames.display();
+            let allowed = format!("shape {expected:?}, one number for each taxel of {frames}");
+            Error::input(place, format!("an array of shape {given:?}"), allowed)
+        })
     }
 
     fn axes<'a>(&self, order: Option<&'a str>, n_values: usize, key: &'a str) -> FrameAxes<'a> {
@@ -265,17 +268,15 @@ impl RecordedSpec {
         let Some((path, array)) = self.shear_of(name) else {
             return Ok(None);
         };
-        let of_frames = self.file_of(name).unwrap_or(&self.frames);
-        let (order, expected) = frames.beside(&self.with_frames(name, FileArray::shape_of)?, 2);
+        let (order, expected) = frames.beside(2);
         let shape = FileArray::shape_of(path, array, TableContent::Any)?;
         let place = path.display().to_string();
         if shape != expected {
             let given = format!("an array of shape {shape:?}");
-            let letters: Vec<String> = order.chars().map(String::from).collect();
             let allowed = format!(
                 "shape {expected:?} (\"{}\"): the axes of {}, and two forces of each taxel",
-                letters.join(" "),
-                of_frames.display()
+                spaced(&order),
+                self.frames_file(name).display()
             );
             return Err(Error::input(place, given, allowed));
         }
@@ -303,7 +304,7 @@ impl RecordedSpec {
             Err(Error::input(format!("key recorded.{key}"), given, allowed))
         };
         let sensors = self.used_sensors();
-        let is_without = |(_, sensor): &&(String, Self)| sensor.file_of("frames_test").is_none();
+        let is_without = |(_, sensor): &&(String, Self)| sensor.frame_arrays().len() == 1;
         let (frames, labels) = (self.has_test_set(), has("labels_test"));
         if let (true, Some((_, sensor))) = (frames, sensors.iter().find(is_without)) {
             let key = format!("key {}", sensor.place.key("frames_test"));

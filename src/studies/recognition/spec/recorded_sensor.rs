@@ -292,14 +292,6 @@ variants! {
 }
 
 impl ZeroSpec {
-    /// Returns the path of the file with the readings; `None` for a common reading.
-    pub fn path(&self) -> Option<&PathBuf> {
-        match self {
-            Self::One(_) => None,
-            Self::Each(path) => Some(path),
-        }
-    }
-
     /// Returns a mutable reference to the path of the file with the readings; `None` for a common reading.
     pub fn path_mut(&mut self) -> Option<&mut PathBuf> {
         match self {
