@@ -189,7 +189,7 @@ fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
         assert_eq!(frames, [0, 10, 20, 30, 39]);
         let (pictures, seconds) = played(&out);
         // 0.39 s at half the speed; the last frame is shown as long as the previous one.
-        assert!((seconds - 0.78 - 0.08).abs() < 1e-9, "{seconds}");
+        assert!((seconds - 0.78 - 0.18).abs() < 1e-9, "{seconds}");
         let scale = ColourScale {
             quantity: Quantity::Deflection,
             low: 0.0,
