@@ -88,33 +88,20 @@ fn frames_become_pictures_and_grids_are_drawn_here() {
             && error.contains("palm: t = 0.14 s, frame 7 of 0–29")
     );
     for patch in ["palm", "finger"] {
-        let name = format!("{patch}.png");
-        let options = [
-            "--patch",
-            patch,
-            "--frame=3",
-            "--quantity=force",
-            "--out",
-            &name,
-        ];
-        let (said, _) = case.succeeds(&[&["recording", "touch.npz"], &options[..]].concat());
+        let options = format!("--patch {patch} --frame=3 --quantity=force --out {patch}.png");
+        let (said, _) = case.succeeds(&format!("recording touch.npz {options}"));
         assert_eq!(said, "");
-        assert!(case.bytes(&name).starts_with(b"\x89PNG"));
+        assert!(case.bytes(&format!("{patch}.png")).starts_with(b"\x89PNG"));
     }
-    let options = [
-        "--patch=palm",
-        "--animate=film.png",
-        "--fps=10",
-        "--speed=0.5",
-    ];
-    let (said, error) = case.succeeds(&[&["recording", "touch.npz"], &options[..]].concat());
-    assert_eq!(said, "");
-    assert_eq!(
-        error,
-        "13 of 30 frames in 1.2 s, at 0.5 × the speed of the recording\n"
+    let options = "--patch=palm --animate=film.png --fps=10 --speed=0.5";
+    let (said, error) = case.succeeds(&format!("recording touch.npz {options}"));
+    let line = "13 of 30 frames in 1.2 s, at 0.5 × the speed of the recording\n";
+    assert_eq!((&said[..], &error[..]), ("", line));
+    assert!(
+        case.bytes("film.png")
+            .windows(4)
+            .any(|chunk| chunk == b"acTL")
     );
-    let film = case.bytes("film.png");
-    assert!(film.windows(4).any(|chunk| chunk == b"acTL"));
 }
 
 const NUMPY: &str = r#"

@@ -8,9 +8,8 @@ use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use glam::{DQuat, DVec3};
 use ndarray::{Array1, Array2, Array3, Array4};
-use ndarray_npy::{ReadableElement, read_npy};
+use ndarray_npy::read_npy;
 use std::io::Write;
-use std::path::Path;
 use std::process::Stdio;
 
 /// Study with two arrays; some touches miss the object, some saturate a taxel.
@@ -42,7 +41,7 @@ struct ObjectRow {
     n_touches: usize,
 }
 
-/// Files of one array.
+/// Files of one array. Reading them fails if the type of an array is not the documented one.
 struct Files {
     frames: Array3<f32>,
     labels: Array1<i64>,
@@ -52,27 +51,20 @@ struct Files {
     objects: Vec<ObjectRow>,
 }
 
-impl Files {
-    fn read(folder: &Path) -> Self {
-        Self {
-            frames: read_npy(folder.join("frames.npy")).unwrap(),
-            labels: read_npy(folder.join("labels.npy")).unwrap(),
-            poses: read_npy(folder.join("poses.npy")).unwrap(),
-            depths: read_npy(folder.join("depths.npy")).unwrap(),
-            touches: read_csv(&folder.join("touches.csv")),
-            objects: read_csv(&folder.join("objects.csv")),
-        }
+fn files(case: &Case, folder: &str) -> Files {
+    let path = |name: &str| case.path(&format!("{folder}/{name}.npy"));
+    Files {
+        frames: read_npy(path("frames")).unwrap(),
+        labels: read_npy(path("labels")).unwrap(),
+        poses: read_npy(path("poses")).unwrap(),
+        depths: read_npy(path("depths")).unwrap(),
+        touches: case.rows(&format!("{folder}/touches.csv")),
+        objects: case.rows(&format!("{folder}/objects.csv")),
     }
 }
 
-fn read_csv<R: serde::de::DeserializeOwned>(path: &Path) -> Vec<R> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    reader.deserialize().map(|row| row.unwrap()).collect()
-}
-
 fn written() -> Case {
-    let case = Case::new();
-    case.file("study.toml", STUDY);
+    let case = Case::with("study.toml", STUDY);
     let (said, _) = case.succeeds("touches study.toml --out data");
     assert_eq!(said, "");
     case
@@ -86,7 +78,7 @@ fn the_frames_are_the_librarys_one_folder_an_array() {
     let case = written();
     let study = Study::new(STUDY);
     for (folder, array) in FOLDERS.iter().zip(&study.plan.arrays) {
-        let files = Files::read(&case.path(folder));
+        let files = files(&case, folder);
         let bubbletouch::world::ImageShape { ny, nx } = array.shape();
         assert_eq!(files.frames.dim(), (900, ny, nx));
         let expected = simulate_array(&study.touched, array, 1, &Silent);
@@ -101,7 +93,7 @@ fn the_frames_are_the_librarys_one_folder_an_array() {
         );
     }
     // Plus the manifest.
-    assert_eq!(std::fs::read_dir(case.path("data")).unwrap().count(), 2 + 1);
+    assert_eq!(case.names_in("data").len(), 2 + 1);
 }
 
 #[test]
@@ -119,27 +111,12 @@ fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
     let (_, said) = case.succeeds("touches study.toml --out clean");
     says(&said, &["without noise"]);
     // Array 1 (24 × 24) with noise of 10 % is configuration 3.
-    let configuration = ["--configuration", "3", "--trial", "0"];
-    let (_, said) = case.succeeds(
-        &[
-            &["touches", "study.toml", "--out", "read"],
-            &configuration[..],
-        ]
-        .concat(),
-    );
+    let configuration = "study.toml --configuration 3 --trial 0";
+    let (_, said) = case.succeeds(&format!("touches {configuration} --out read"));
     says(&said, &["as configuration 3 reads them"]);
-    case.succeeds(
-        &[
-            &["features", "study.toml", "--out", "features"],
-            &configuration[..],
-        ]
-        .concat(),
-    );
+    case.succeeds(&format!("features {configuration} --out features"));
     let features: Array2<f64> = read_npy(case.path("features/features.npy")).unwrap();
-    let (clean, read) = (
-        Files::read(&case.path("clean/24x24_at_2_mm")),
-        Files::read(&case.path("read")),
-    );
+    let (clean, read) = (files(&case, "clean/24x24_at_2_mm"), files(&case, "read"));
     let flat = read.frames.to_shape(features.dim()).unwrap();
     assert_eq!(
         flat.mapv(f64::from),
@@ -164,7 +141,7 @@ fn labels_depths_and_tables_agree_and_are_the_touches_of_the_study() {
     let case = written();
     let study = Study::new(STUDY);
     for folder in FOLDERS {
-        let files = Files::read(&case.path(folder));
+        let files = files(&case, folder);
         let mut rows = files.touches.iter();
         assert_eq!(files.objects.len(), study.touched.len());
         for (label, (object, row)) in study.touched.iter().zip(&files.objects).enumerate() {
@@ -201,7 +178,7 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
     let case = written();
     let study = Study::new(STUDY);
     for (folder, array) in FOLDERS.iter().zip(&study.plan.arrays) {
-        let files = Files::read(&case.path(folder));
+        let files = files(&case, folder);
         let mut workspace = Workspace::new();
         for (touch, pose) in files.poses.outer_iter().enumerate() {
             let rotation = DQuat::from_xyzw(pose[4], pose[5], pose[6], pose[3]);
@@ -213,17 +190,11 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
                 .unwrap()
                 .unwrap_or_default();
             let row = &files.touches[touch];
+            let frame = files.frames.index_axis(ndarray::Axis(0), touch);
             if row.n_touched == 0 {
-                assert!(
-                    files
-                        .frames
-                        .index_axis(ndarray::Axis(0), touch)
-                        .iter()
-                        .all(|&d| d == 0.0)
-                );
+                assert!(frame.iter().all(|&d| d == 0.0));
                 continue;
             }
-            let frame = files.frames.index_axis(ndarray::Axis(0), touch);
             for (&written, &pressed) in frame.iter().zip(workspace.deflections()) {
                 // Half a unit in the last place of f32 at the stroke of 3 mm is 1.2e-10.
                 assert!((f64::from(written) - pressed).abs() < 2e-10);
@@ -236,21 +207,6 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
 }
 
 #[test]
-fn the_types_are_as_documented() {
-    fn refuses<A: ReadableElement>(path: &Path) {
-        assert!(read_npy::<_, ndarray::ArrayD<A>>(path).is_err());
-    }
-    let case = written();
-    let folder = case.path(FOLDERS[0]);
-    // Reading as the documented type works above; reading as another type fails.
-    refuses::<f64>(&folder.join("frames.npy"));
-    refuses::<i32>(&folder.join("labels.npy"));
-    refuses::<f32>(&folder.join("poses.npy"));
-    refuses::<f32>(&folder.join("depths.npy"));
-    assert_eq!(Files::read(&folder).poses.dim(), (900, 7));
-}
-
-#[test]
 fn one_array_needs_no_folder_of_its_own_and_threads_change_no_byte() {
     let case = Case::new();
     case.file("study.toml", STUDY.replace("[4.0, 2.0]", "4.0"));
@@ -259,27 +215,12 @@ fn one_array_needs_no_folder_of_its_own_and_threads_change_no_byte() {
             "touches study.toml --threads {threads} --out {threads}"
         ));
     }
-    let mut names = Vec::new();
-    for entry in std::fs::read_dir(case.path("1")).unwrap() {
-        let name = entry.unwrap().file_name().into_string().unwrap();
-        let read = |folder| case.bytes(&format!("{folder}/{name}"));
-        assert!(read("1") == read("3"), "{name}");
-        names.push(name);
+    let names = "depths.npy frames.npy labels.npy manifest.json objects.csv poses.npy recorded.toml touches.csv";
+    assert_eq!(case.names_in("1").join(" "), names);
+    for name in names.split(' ') {
+        let bytes = |folder| case.bytes(&format!("{folder}/{name}"));
+        assert!(bytes("1") == bytes("3"), "{name}");
     }
-    names.sort();
-    assert_eq!(
-        names,
-        [
-            "depths.npy",
-            "frames.npy",
-            "labels.npy",
-            "manifest.json",
-            "objects.csv",
-            "poses.npy",
-            "recorded.toml",
-            "touches.csv"
-        ]
-    );
 }
 
 /// Returns a study of touches of two balls on 16 × 16 taxels.
@@ -343,8 +284,7 @@ const AXES: &str = include_str!("../fixtures/texts/touches_axes.toml");
 
 #[test]
 fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
-    let case = Case::new();
-    case.file("study.toml", AXES);
+    let case = Case::with("study.toml", AXES);
     case.succeeds("touches study.toml --out data");
     let alone = |depth: &str| {
         let (study, _) = AXES.split_once("[axes]").unwrap();
@@ -353,10 +293,10 @@ fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
         case.file("alone.toml", study);
         let out = format!("alone_{depth}");
         case.succeeds(&format!("touches alone.toml --out {out}"));
-        Files::read(&case.path(&out)).frames
+        files(&case, &out).frames
     };
     for (folder, depth) in [("data/depth_mm_1", "1.0"), ("data/depth_mm_4", "4.0")] {
-        let files = Files::read(&case.path(folder));
+        let files = files(&case, folder);
         assert!(files.frames == alone(depth), "{folder}");
         assert!(
             files
@@ -365,7 +305,7 @@ fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
                 .all(|&d| (1e3 * d - depth.parse::<f64>().unwrap()).abs() < 1e-9)
         );
     }
-    let names = std::fs::read_dir(case.path("data")).unwrap().count();
+    let names = case.names_in("data").len();
     assert_eq!(names, 3, "two arrays and the manifest");
     // An axis that changes no touch gives no further folders.
     let same = AXES.replace(
@@ -377,18 +317,18 @@ fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
         same.replace("per_object = 20", "per_object = 20\ndepth_mm = 3.0"),
     );
     case.succeeds("touches same.toml --out same");
-    assert_eq!(Files::read(&case.path("same")).frames.dim(), (40, 8, 8));
+    assert_eq!(files(&case, "same").frames.dim(), (40, 8, 8));
     // Several arrays together with an axis.
     let both = AXES.replace("pitch_mm = 4.0", "pitch_mm = [4.0, 8.0]");
     case.file("both.toml", both);
     case.succeeds("touches both.toml --out both");
     for folder in ["8x8_at_4_mm_depth_mm_1", "8x8_at_8_mm_depth_mm_4"] {
         assert_eq!(
-            Files::read(&case.path("both").join(folder)).frames.dim(),
+            files(&case, &format!("both/{folder}")).frames.dim(),
             (40, 8, 8)
         );
     }
-    assert_eq!(std::fs::read_dir(case.path("both")).unwrap().count(), 5);
+    assert_eq!(case.names_in("both").len(), 5);
 }
 
 #[test]

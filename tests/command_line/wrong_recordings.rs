@@ -1,12 +1,9 @@
 //! Recordings with a fault, in each format of arrays: the error names the file and the array, and nothing is written.
 
-use crate::command::{Case, says};
-use bubbletouch::study::{write_integers, write_npy};
-use ndarray::Array2;
-use ndarray_npy::NpzWriter;
+use crate::arrays::{npy, npz};
+use crate::command::{Case, filled, says};
+use ndarray::{Array1, Array2, ArrayView1};
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
-use std::fs::File;
 
 const N: usize = 30;
 
@@ -60,47 +57,44 @@ fn with_test() -> Arrays {
 
 /// Writes the arrays and a study of them; returns the name of the file of each array.
 fn write(case: &Case, format: Format, arrays: &Arrays) -> BTreeMap<&'static str, String> {
-    let mut files = BTreeMap::new();
-    let mut archive = NpzWriter::new(File::create(case.path("a.npz")).unwrap());
-    for (key, content) in arrays {
-        let file = match format {
-            Format::Npz => "a.npz".to_owned(),
-            Format::Npy => format!("{key}.npy"),
-            Format::Csv => format!("{key}.csv"),
-        };
-        match (format, content) {
-            (Format::Npy, Content::Numbers(numbers)) => {
-                write_npy(&case.path(&file), numbers).unwrap()
-            }
-            (Format::Npz, Content::Numbers(numbers)) => archive.add_array(*key, numbers).unwrap(),
-            (Format::Csv, Content::Numbers(numbers)) => {
-                let mut text = String::new();
-                for row in numbers.outer_iter() {
-                    let cells: Vec<String> = row.iter().map(f64::to_string).collect();
-                    writeln!(text, "{}", cells.join(",")).unwrap();
+    let file = |key: &str, content: &Content| match (format, content) {
+        // Texts are tables in every case.
+        (Format::Csv, _) | (_, Content::Texts(_)) => format!("{key}.csv"),
+        (Format::Npz, _) => "a.npz".to_owned(),
+        (Format::Npy, _) => format!("{key}.npy"),
+    };
+    let archive = npz(|archive| {
+        for (key, content) in arrays {
+            let name = file(key, content);
+            match content {
+                Content::Texts(texts) => drop(case.file(&name, texts.join("\n"))),
+                Content::Numbers(numbers) if format == Format::Npy => {
+                    case.file(&name, npy(numbers));
                 }
-                case.file(&file, text);
-            }
-            // Texts are tables in every case.
-            (_, Content::Texts(texts)) => {
-                case.file(&format!("{key}.csv"), texts.join("\n"));
-                files.insert(*key, format!("{key}.csv"));
-                continue;
+                Content::Numbers(numbers) if format == Format::Npz => {
+                    archive.add_array(*key, numbers).unwrap();
+                }
+                Content::Numbers(numbers) => {
+                    let line =
+                        |row: ArrayView1<f64>| row.mapv(|x| x.to_string()).to_vec().join(",");
+                    let lines: Vec<String> = numbers.outer_iter().map(line).collect();
+                    case.file(&name, lines.join("\n") + "\n");
+                }
             }
         }
-        files.insert(*key, file);
-    }
-    archive.finish().unwrap();
-    let keys: Vec<String> = files
+    });
+    case.file("a.npz", archive);
+    let files = arrays
         .iter()
-        .map(|(key, file)| format!("{key} = {file:?}\n"))
-        .collect();
+        .map(|(key, content)| (*key, file(key, content)));
+    let files: BTreeMap<&str, String> = files.collect();
+    let keys = files
+        .iter()
+        .map(|(key, file)| format!("{key} = {file:?}\n"));
+    let study = include_str!("../fixtures/texts/wrong_recordings.toml");
     case.file(
         "study.toml",
-        format!(
-            "question = \"?\"\ntrials = 1\n[recorded]\n{}[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n[sensing]\nmeasurements = 2\n[recognition]\nclassifier = \"nearest_centroid\"\n",
-            keys.concat()
-        ),
+        filled(study, &[("keys", &keys.collect::<String>())]),
     );
     files
 }
@@ -266,10 +260,11 @@ fn truncated_and_empty_files_are_refused_by_their_name() {
     }
     let case = Case::new();
     write(&case, Format::Npz, &whole());
-    let mut archive = NpzWriter::new(File::create(case.path("a.npz")).unwrap());
-    archive.add_array("frame", &frames(N, 6)).unwrap();
-    archive.add_array("label", &frames(N, 1)).unwrap();
-    archive.finish().unwrap();
+    let archive = npz(|archive| {
+        archive.add_array("frame", &frames(N, 6)).unwrap();
+        archive.add_array("label", &frames(N, 1)).unwrap();
+    });
+    case.file("a.npz", archive);
     is_refused(&case, "a.npz", "frame, label");
     // Without labels, the key is named.
     let mut arrays = whole();
@@ -282,7 +277,7 @@ fn truncated_and_empty_files_are_refused_by_their_name() {
             "key recorded.labels: no such key; labels = \"FILE\"",
         );
     }
-    write_integers(&case.path("labels.npy"), [0; N]).unwrap();
+    case.file("labels.npy", npy(&Array1::<i64>::zeros(N)));
     let text = case.read("study.toml");
     case.file(
         "study.toml",

@@ -42,12 +42,17 @@ fn film(touch: &HumanTouch) -> Vec<HandState> {
     (0..=n).map(|k| touch.at(k as f64 * STEP)).collect()
 }
 
-/// Returns the spring force Σ k δ in newtons, and the position of the centre of pressure: metres along the arm, radians around it.
-fn felt(skin: &Patch, state: &HandState) -> (f64, Option<(f64, f64)>) {
+/// Presses a hand into a skin.
+fn press(skin: &Patch, state: &HandState) -> Workspace {
     let mut workspace = Workspace::new();
     let hand: [Model; 1] = [state.spheres().into()];
     press_with_contacts(skin, &hand, &[state.patch_from_hand], &mut workspace).unwrap();
-    let load = spring_load(skin, workspace.contacts());
+    workspace
+}
+
+/// Returns the spring force Σ k δ in newtons, and the position of the centre of pressure: metres along the arm, radians around it.
+fn felt(skin: &Patch, state: &HandState) -> (f64, Option<(f64, f64)>) {
+    let load = spring_load(skin, press(skin, state).contacts());
     let place = load.center_of_pressure.map(|p| (p.z, p.y.atan2(p.x)));
     (load.spring_force, place)
 }
@@ -131,14 +136,15 @@ fn a_hand_starts_and_ends_in_the_air_and_touches_in_between() {
 fn a_hand_goes_exactly_as_deep_as_it_says() {
     // For dense taxels, the deepest one is as deep as the hand.
     let skin = forearm(1.5e-3);
-    let mut workspace = Workspace::new();
     for number in 0..10 {
         let touch = touch(TouchKind::Tap, number);
         let state = deepest(&touch);
         assert!((state.height + touch.depth).abs() < 1e-5 || touch.hold < STEP);
-        let hand: [Model; 1] = [state.spheres().into()];
-        press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace).unwrap();
-        let most = workspace.deflections().iter().copied().fold(0.0, f64::max);
+        let most = press(&skin, &state)
+            .deflections()
+            .iter()
+            .copied()
+            .fold(0.0, f64::max);
         assert!(most <= -state.height + 1e-9, "{most} for {}", state.height);
         assert!(most > -state.height - 3e-4, "{most} for {}", state.height);
     }
@@ -236,9 +242,7 @@ fn a_grab_closes_its_fingers_around_the_arm_and_opens_them() {
     let skin = forearm(6e-3);
     let bent = |finger: &FingerPose| finger.knuckle + finger.middle + finger.end;
     let angles = |state: &HandState| {
-        let mut workspace = Workspace::new();
-        let hand: [Model; 1] = [state.spheres().into()];
-        press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace).unwrap();
+        let workspace = press(&skin, state);
         let touched = workspace.contacts().iter();
         let angles: Vec<f64> = touched.map(|c| c.point.y.atan2(c.point.x)).collect();
         let most = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -270,47 +274,41 @@ fn a_grab_closes_its_fingers_around_the_arm_and_opens_them() {
 
 #[test]
 fn what_no_hand_can_do_is_refused_by_its_name() {
-    let usual = || TouchRanges::usual(TouchKind::Tap);
-    let refused = |ranges: TouchRanges| {
-        let drawn = HumanTouch::draw(TouchKind::Tap, &ranges, SURFACE, &Seed::new(1));
-        drawn.unwrap_err().to_string()
+    let refused = |ranges: &TouchRanges, radius: f64, words: &str| {
+        let drawn = HumanTouch::draw(TouchKind::Tap, ranges, radius, &Seed::new(1));
+        let error = drawn.unwrap_err().to_string();
+        assert!(error.starts_with(words), "{error}");
     };
     #[allow(clippy::reversed_empty_ranges)]
-    let backwards = TouchRanges {
-        depth: 3e-3..=1e-3,
-        ..usual()
-    };
-    assert!(refused(backwards).starts_with("tap, range of depth: 0.003 to 0.001; "));
-    let unknown = TouchRanges {
-        rise: 0.1..=f64::NAN,
-        ..usual()
-    };
-    assert!(refused(unknown).starts_with("tap, range of rise: 0.1 to NaN; "));
-    let endless = TouchRanges {
-        hold: 0.0..=f64::INFINITY,
-        ..usual()
-    };
-    assert!(refused(endless).starts_with("tap, range of hold: 0 to inf; "));
-    let none = TouchRanges {
-        fingers: Vec::new(),
-        ..usual()
-    };
-    assert_eq!(
-        refused(none),
-        "tap, fingers: none; at least one number, 1 to 5"
-    );
-    let glued = TouchRanges {
-        contacts: 2..=3,
-        ..usual()
-    };
-    assert!(refused(glued).starts_with("tap, range of lift: 0 m between contacts; "));
-    let drawn = HumanTouch::draw(TouchKind::Tap, &usual(), f64::NAN, &Seed::new(1));
-    assert!(
-        drawn
-            .unwrap_err()
-            .to_string()
-            .starts_with("radius of the arm: NaN m; ")
-    );
+    let changes: [(fn(&mut TouchRanges), &str); 5] = [
+        (
+            |of| of.depth = 3e-3..=1e-3,
+            "tap, range of depth: 0.003 to 0.001; ",
+        ),
+        (
+            |of| of.rise = 0.1..=f64::NAN,
+            "tap, range of rise: 0.1 to NaN; ",
+        ),
+        (
+            |of| of.hold = 0.0..=f64::INFINITY,
+            "tap, range of hold: 0 to inf; ",
+        ),
+        (
+            |of| of.fingers.clear(),
+            "tap, fingers: none; at least one number, 1 to 5",
+        ),
+        (
+            |of| of.contacts = 2..=3,
+            "tap, range of lift: 0 m between contacts; ",
+        ),
+    ];
+    let usual = TouchRanges::usual(TouchKind::Tap);
+    for (change, words) in changes {
+        let mut ranges = usual.clone();
+        change(&mut ranges);
+        refused(&ranges, SURFACE, words);
+    }
+    refused(&usual, f64::NAN, "radius of the arm: NaN m; ");
 }
 
 const STUDY: &str = include_str!("../fixtures/texts/human_touch.toml");
@@ -391,8 +389,7 @@ fn touches_are_balanced_and_alone_the_same() {
         let recorded = &touches.touches[number];
         for frame in 0..human.n_frames() {
             let state = recorded.touch.at(frame as f64 / 15.0 - recorded.onset);
-            let hand: [Model; 1] = [state.spheres().into()];
-            press_with_contacts(&skin, &hand, &[state.patch_from_hand], &mut workspace).unwrap();
+            let workspace = press(&skin, &state);
             let row = deflection.row(number * human.n_frames() + frame);
             for (&stored, &pressed) in row.iter().zip(workspace.deflections()) {
                 assert!((stored - pressed).abs() < 1e-8);

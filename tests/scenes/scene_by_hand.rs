@@ -73,55 +73,9 @@ fn a_step_by_hand_is_the_time_loops() {
 #[test]
 fn joints_and_bases_by_hand_move_skin_as_trajectories_do() {
     let arm = |joints: &str| {
-        let names = [
-            "shoulder_turn",
-            "shoulder_bend",
-            "arm_turn",
-            "elbow_bend",
-            "forearm_turn",
-            "wrist_bend",
-            "flange_turn",
-        ];
-        let rest = names.map(|name| match name {
-            "shoulder_turn" => format!("shoulder_turn_deg = {joints}"),
-            "shoulder_bend" => "shoulder_bend_deg = [90.0, 90.0]".to_owned(),
-            other => format!("{other}_deg = [0.0, 0.0]"),
-        });
-        format!(
-            r#"{CLOCK}
-            [[robots]]
-            name = "arm"
-            urdf = "objects/robots/arm.urdf"
-            joints = {{ time_s = [0.0, 0.75], positions = {{ {} }} }}
-            [[robots]]
-            name = "tray"
-            floating = true
-            at = {{ position_mm = [2000.0, 0.0, 0.0] }}
-            [[patches]]
-            name = "forearm"
-            robot = "arm"
-            link = "forearm"
-            at = {{ position_mm = [0.0, 0.0, 120.0] }}
-            layout = {{ cylinder = {{ radius_mm = 51.0, length_mm = 220.0, arc_deg = 360.0, pitch_mm = 8.0 }} }}
-            stroke_mm = 5.0
-            damping_n_s_per_m = 2.0
-            [[patches]]
-            name = "sheet"
-            robot = "tray"
-            layout = {{ grid = {{ nx = 24, ny = 24, pitch_mm = 5.0 }} }}
-            stroke_mm = 8.0
-            [[objects]]
-            name = "football"
-            object = "soccer"
-            at = {{ position_mm = [470.0, -120.0, 33.5] }}
-            [[objects]]
-            name = "mug"
-            object = "mug"
-            surface_error_mm = 2.0
-            at = {{ position_mm = [2005.0, 0.0, 40.0] }}
-            free = {{ mass_kg = 0.118 }}
-            "#,
-            rest.join(", ")
+        filled(
+            include_str!("../fixtures/texts/scene_by_hand_arm.toml"),
+            &[("CLOCK", &CLOCK), ("shoulder_turn", &joints)],
         )
     };
     let turning = plan(&arm("[-40.0, 0.0]"));

@@ -246,30 +246,9 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
 fn two_balls(apart: f64, one: &str, other: &str) -> ScenePlan {
     // A scene that is read must have free objects apart; they are moved together afterwards.
     let read = apart.max(33.0);
-    let mut plan = plan_of(&format!(
-        r#"
-        title = "Two balls on a bed"
-        duration_s = 0.0
-
-        [[patches]]
-        name = "bed"
-        layout = {{ grid = {{ nx = 40, ny = 20, pitch_mm = 4.0 }} }}
-        stroke_mm = 8.0
-        stiffness_n_per_m = 20.0
-
-        [[objects]]
-        name = "one"
-        object = "tennis"
-        at = {{ position_mm = [{}, 0.0, -3.0] }}
-        {one}
-
-        [[objects]]
-        name = "other"
-        object = "tennis"
-        at = {{ position_mm = [{read}, 0.0, -3.0] }}
-        {other}
-        "#,
-        -read
+    let mut plan = plan_of(&filled(
+        include_str!("../fixtures/texts/scene_laws_two_balls.toml"),
+        &[("read", &read), ("one", &one), ("other", &other)],
     ));
     for (object, x) in plan.objects.iter_mut().zip([-apart, apart]) {
         match &mut object.movement {
@@ -581,26 +560,9 @@ fn the_original_slides_a_drill_over_64_x_64_taxels() {
         format!("x,y,z,r\n{spheres}"),
     )
     .unwrap();
-    let text = format!(
-        r#"
-        title = "example.m"
-        output_hz = 20.0
-        [[robots]]
-        name = "sensor"
-        floating = true
-        motion = {{ interpolation = "linear", way_points = [
-        {}] }}
-        [[patches]]
-        name = "array"
-        robot = "sensor"
-        at = {{ position_mm = [0.0, 0.0, 20.0] }}
-        layout = {{ grid = {{ nx = 64, ny = 64, pitch_mm = 4.0 }} }}
-        stroke_mm = 20.0
-        [[objects]]
-        name = "drill"
-        spheres = "drill.csv"
-        "#,
-        way_points.collect::<String>()
+    let text = filled(
+        include_str!("../fixtures/texts/scene_laws_example.toml"),
+        &[("way_points", &way_points.collect::<String>())],
     );
     let plan = plan_in(beside.path(), &text).unwrap();
     let frames = frames(&plan, Stepping::AsNeeded);

@@ -1,5 +1,6 @@
 //! Free objects that are triangle meshes.
 
+use crate::command::filled;
 use crate::scene::{frames, plan_in, plan_shipped, shipped};
 use bubbletouch::contact::{Workspace, press_with_contacts};
 use bubbletouch::geometry::Pose;
@@ -108,51 +109,35 @@ fn a_turned_block_in_the_shipped_cup_rests_and_rises_with_the_bed() {
 
 /// Robot with a patch of skin, as the finger of a gripper: approaches along the world's x-axis by `approach` mm/s, then rises.
 fn finger(name: &str, x_mm: f64, tilt_deg: f64, approach: f64) -> String {
-    format!(
-        r#"
-[[robots]]
-name = "{name}"
-floating = true
-motion = {{ phases = [
-    {{ duration_s = 0.2, linear_mm_per_s = [{approach:?}, 0.0, 0.0] }},
-    {{ duration_s = 0.1, linear_mm_per_s = [0.0, 0.0, 40.0] }},
-] }}
+    filled(
+        include_str!("../fixtures/texts/scene_meshes_finger.toml"),
+        &[
+            ("name", &name),
+            ("x_mm", &x_mm),
+            ("tilt_deg", &tilt_deg),
+            ("approach", &approach),
+        ],
+    )
+}
 
-[[patches]]
-name = "skin of {name}"
-robot = "{name}"
-layout = {{ grid = {{ nx = 10, ny = 10, pitch_mm = 2.0 }} }}
-at = {{ position_mm = [{x_mm:?}, 0.0, 10.0], rotation_deg = [0.0, {tilt_deg:?}, 0.0] }}
-stroke_mm = 6.0
-stiffness_n_per_m = 400.0
-friction = 0.8
-"#
+/// Returns a scene in which fingers grasp a block on a table.
+fn grasp(fingers: &str, dt_ms: f64, mesh: &str, height_mm: f64) -> String {
+    filled(
+        include_str!("../fixtures/texts/scene_meshes_grasp.toml"),
+        &[
+            ("fingers", &fingers),
+            ("dt_ms", &dt_ms),
+            ("mesh", &mesh),
+            ("height_mm", &height_mm),
+        ],
     )
 }
 
 /// The taxels hold the block by friction: half of its weight each, while it hangs above the table.
 #[test]
 fn two_fingers_grasp_a_free_mesh_and_lift_it_from_a_table() {
-    let scene = format!(
-        r#"
-title = "Grasp"
-dt_ms = 5.0
-output_hz = 20.0
-{}{}
-[[planes]]
-name = "table"
-
-[[objects]]
-name = "block"
-mesh = "block.obj"
-unit = "mm"
-model = "mesh"
-at = {{ position_mm = [0.0, 0.0, 10.0] }}
-free = {{ mass_kg = 0.05 }}
-"#,
-        finger("left", -18.0, 90.0, 20.0),
-        finger("right", 18.0, -90.0, -20.0)
-    );
+    let fingers = finger("left", -18.0, 90.0, 20.0) + &finger("right", 18.0, -90.0, -20.0);
+    let scene = grasp(&fingers, 5.0, "block.obj", 10.0);
     let frames = frames(&plan_shipped(&scene));
     for frame in &frames {
         assert_eq!(frame.objects[0].held, PoseControl::AtRest);
@@ -232,11 +217,7 @@ fn friction_holds_a_box_whose_edges_lie_on_rows_of_taxels_from_the_first_touch()
                 "",
             )
             .replace("friction = 0.8", &format!("friction = {friction:?}"));
-        let scene = format!(
-            "title = \"Grasp\"\ndt_ms = {dt_ms:?}\noutput_hz = 20.0\n{fingers}[[planes]]\nname = \"table\"\n\
-             [[objects]]\nname = \"block\"\nmesh = \"box.obj\"\nunit = \"mm\"\nmodel = \"mesh\"\n\
-             at = {{ position_mm = [0.0, 0.0, 8.5] }}\nfree = {{ mass_kg = 0.05 }}\n"
-        );
+        let scene = grasp(&fingers, dt_ms, "box.obj", 8.5);
         let frames = frames(&plan_in(folder.path(), &scene).unwrap());
         let case = format!("dt {dt_ms} ms, lag {lag_mm} mm, friction {friction}");
         // Where both fingers touch at once, the box stays. One finger alone presses a box that slides on the table with no force, so nothing holds it.

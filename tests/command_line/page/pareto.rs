@@ -1,7 +1,7 @@
 //! Charts of accuracy against time: when they are drawn, and what they show.
 
 use crate::command::says;
-use crate::report_synthetic::{configuration, noise_cells, quickstart_cells, tables};
+use crate::report_synthetic::{configuration, each, noise_cells, quickstart_cells, tables};
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::report::chart::draw;
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
@@ -9,21 +9,22 @@ use bubbletouch::study::table::Configuration;
 
 fn of_three_classifiers() -> Vec<Configuration> {
     use ClassifierKind::{LinearSvm, PolynomialSvm, RbfSvm};
-    let mut configurations = Vec::new();
-    for noise_std in [0.0, 0.1] {
-        for classifier in [LinearSvm, RbfSvm, PolynomialSvm] {
-            for measurements in [16, 64, 256] {
-                configurations.push(Configuration {
-                    noise_std,
-                    classifier,
-                    measurements,
-                    ratio: 4096.0 / measurements as f64,
-                    ..configuration()
-                });
-            }
-        }
-    }
-    configurations
+    let noises = each(vec![configuration()], [0.0, 0.1], |one, std| {
+        one.noise_std = std
+    });
+    let kinds = [LinearSvm, RbfSvm, PolynomialSvm];
+    let classifiers = each(noises, kinds, |one, kind| one.classifier = kind);
+    measured(classifiers, [16, 64, 256])
+}
+
+/// Returns each configuration with each number of measurements.
+fn measured<const N: usize>(
+    configurations: Vec<Configuration>,
+    measurements: [usize; N],
+) -> Vec<Configuration> {
+    each(configurations, measurements, |one, measurements| {
+        (one.measurements, one.ratio) = (measurements, 4096.0 / measurements as f64);
+    })
 }
 
 #[test]
@@ -64,12 +65,7 @@ fn accuracy_against_time_is_among_the_first_two_charts_of_every_study_of_three_d
 
 /// Returns two configurations that differ only in their number of measurements.
 fn two_designs() -> Vec<Configuration> {
-    let design = |measurements| Configuration {
-        measurements,
-        ratio: 4096.0 / measurements as f64,
-        ..configuration()
-    };
-    [16, 64].map(design).to_vec()
+    measured(vec![configuration()], [16, 64])
 }
 
 #[test]
@@ -91,9 +87,5 @@ fn every_classifier_and_every_noise_is_named_on_the_chart() {
                 "Pareto front",
             ],
         );
-        if let Ok(folder) = std::env::var("BUBBLETOUCH_PICTURES") {
-            let png = draw(&spec, &made).unwrap().png().unwrap();
-            std::fs::write(format!("{folder}/{}.png", spec.name), png).unwrap();
-        }
     }
 }

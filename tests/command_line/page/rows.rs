@@ -3,7 +3,7 @@
 use crate::chart_tables;
 use crate::command::says;
 use crate::report_synthetic::{
-    about, add_headlines, configuration, noise_cells, quickstart_cells, tables, write_all,
+    about, add_headlines, configuration, each, noise_cells, quickstart_cells, tables, write_all,
 };
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::report::chart::{draw, omitted, places};
@@ -14,16 +14,15 @@ use bubbletouch::table::{ChartSpec, Mark, Table};
 
 /// Returns configurations of a linear SVM with three values of C, and of a k-nearest-neighbours classifier without C.
 fn with_k_nearest() -> Vec<Configuration> {
-    let of_svm = [0.1, 1.0, 10.0].map(|c| Configuration {
-        c: Some(c),
-        ..configuration()
+    let mut all = each(vec![configuration()], [0.1, 1.0, 10.0], |one, c| {
+        one.c = Some(c)
     });
-    let of_k_nearest = Configuration {
+    all.push(Configuration {
         classifier: ClassifierKind::KNearest,
         c: None,
         ..configuration()
-    };
-    of_svm.into_iter().chain([of_k_nearest]).collect()
+    });
+    all
 }
 
 #[test]
@@ -105,17 +104,9 @@ fn every_row_is_a_point_or_is_counted_on_the_chart() {
 
 #[test]
 fn charts_of_accuracies_stand_together() {
-    let mut configurations = Vec::new();
-    for configuration in noise_cells() {
-        for tested in [16, 64, 256] {
-            let configuration = configuration.clone();
-            configurations.push(Configuration {
-                measurements: tested,
-                ratio: 4096.0 / tested as f64,
-                ..configuration
-            });
-        }
-    }
+    let configurations = each(noise_cells(), [16, 64, 256], |one, measurements| {
+        (one.measurements, one.ratio) = (measurements, 4096.0 / measurements as f64);
+    });
     let made = tables_of(&tables(configurations, 3, 24)).unwrap();
     let is_accuracy = |spec: &ChartSpec| spec.name.starts_with("accuracy_by");
     let mut specs = charts(&made, Some(true));

@@ -34,9 +34,6 @@ fn written(tables: &[Table], charts: &[ChartSpec]) -> (TempDir, PathBuf) {
     let files = files_with(&about, &found, || Ok(Beyond::default())).unwrap();
     write_files(folder.path(), files).unwrap();
     let page = folder.path().join("report.html");
-    if let Ok(kept) = std::env::var("BUBBLETOUCH_PICTURES") {
-        std::fs::copy(&page, format!("{kept}/study_page.html")).unwrap();
-    }
     (folder, page)
 }
 

@@ -2,14 +2,14 @@
 
 use crate::command::says;
 use crate::report_synthetic::{
-    ReportPage, about, add_headlines, configuration, noise_cells, quickstart_cells, tables,
+    ReportPage, about, add_headlines, configuration, each, noise_cells, quickstart_cells, tables,
     write_all, write_tables,
 };
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_folder::{ChartFormat, MAX_CHARTS};
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
-use bubbletouch::study::table::{Comparison, Configuration, PStatus, Tables};
+use bubbletouch::study::table::{Comparison, PStatus, Tables};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -135,23 +135,18 @@ fn a_table_without_rows_has_the_header_of_one_with_rows_and_reads_as_none() {
 #[test]
 fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
     // The ratio is along x, ensembles are lines and pitches are panels; the remaining settings give 27 charts.
-    let mut configurations = Vec::new();
-    for ratio in [4.0, 16.0, 64.0, 256.0] {
-        for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe, Ensemble::Sparse] {
-            for place in 0..81_u8 {
-                let [pitch, noise, smoothing, touches] = [1, 3, 9, 27].map(|n| place / n % 3);
-                configurations.push(Configuration {
-                    pitch_mm: 2.0 + f64::from(pitch),
-                    noise_std: 0.05 * f64::from(noise),
-                    smoothing_mm: f64::from(smoothing),
-                    train_touches: 50 + usize::from(touches),
-                    ratio,
-                    ensemble,
-                    ..configuration()
-                });
-            }
-        }
-    }
+    let ratios = [4.0, 16.0, 64.0, 256.0];
+    let all = each(vec![configuration()], ratios, |one, ratio| {
+        one.ratio = ratio
+    });
+    let ensembles = [Ensemble::Gaussian, Ensemble::Sbhe, Ensemble::Sparse];
+    let all = each(all, ensembles, |one, ensemble| one.ensemble = ensemble);
+    let all = each(all, [50, 51, 52], |one, touches| {
+        one.train_touches = touches
+    });
+    let all = each(all, [0.0, 1.0, 2.0], |one, mm| one.smoothing_mm = mm);
+    let all = each(all, [0.0, 0.05, 0.1], |one, std| one.noise_std = std);
+    let configurations = each(all, [2.0, 3.0, 4.0], |one, mm| one.pitch_mm = mm);
     let made = tables(configurations, 1, 8);
     let dir = tempfile::tempdir().unwrap();
     let drawn = |name: &str, all_charts, chart_format| {
@@ -252,42 +247,28 @@ fn equal_tables_give_equal_bytes_in_every_file() {
 #[test]
 fn a_table_that_cannot_be_read_is_named_with_its_line() {
     let dir = tempfile::tempdir().unwrap();
-    let made = tables(
-        vec![
-            configuration(),
-            Configuration {
-                ratio: 4.0,
-                ..configuration()
-            },
-        ],
-        2,
-        3,
-    );
+    let two = each(vec![configuration()], [16.0, 4.0], |one, ratio| {
+        one.ratio = ratio
+    });
+    let made = tables(two, 2, 3);
     write_tables(dir.path(), &made);
     let path = dir.path().join("summary.csv");
     let whole = fs::read_to_string(&path).unwrap();
-    fs::write(
-        &path,
-        whole.replace(
-            "full_scale,0.0,gaussian,256,4.0",
-            "full_scale,0.0,gaussian,many,4.0",
-        ),
-    )
-    .unwrap();
-    let said = read_tables(dir.path()).unwrap_err();
-    assert_eq!(said.exit_code(), 2);
-    assert!(said.to_string().contains("summary.csv: line 3"), "{said}");
-    // Incomplete line.
-    fs::write(&path, &whole[..whole.len() - 30]).unwrap();
-    let said = read_tables(dir.path()).unwrap_err();
-    assert!(said.to_string().contains("summary.csv: line 3"), "{said}");
-    fs::remove_file(&path).unwrap();
-    let said = read_tables(dir.path()).unwrap_err();
-    assert_eq!(said.exit_code(), 2);
-    assert!(
-        said.to_string().contains("summary.csv: is missing"),
-        "{said}"
-    );
+    let wrong = whole.replace("gaussian,256,4.0", "gaussian,many,4.0");
+    let cut = whole[..whole.len() - 30].to_owned();
+    for (text, words) in [
+        (Some(wrong), "summary.csv: line 3"),
+        (Some(cut), "summary.csv: line 3"),
+        (None, "summary.csv: is missing"),
+    ] {
+        match text {
+            Some(text) => fs::write(&path, text).unwrap(),
+            None => fs::remove_file(&path).unwrap(),
+        }
+        let error = read_tables(dir.path()).unwrap_err();
+        says(&error.to_string(), &[words]);
+        assert_eq!(error.exit_code(), 2);
+    }
 }
 
 #[test]
