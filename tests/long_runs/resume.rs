@@ -97,7 +97,7 @@ fn lines_of(case: &Case, folder: &str) -> Vec<String> {
 /// Returns a journal line in which a text is replaced and the checksum is corrected.
 fn forged(line: &str, old: &str, new: &str) -> String {
     let json = line.trim_end().split_once(' ').unwrap().1;
-    says(&json, &[old]);
+    says(json, &[old]);
     let json = json.replace(old, new);
     format!("{:08x} {json}\n", crc32(0, json.as_bytes()))
 }
@@ -261,7 +261,8 @@ fn a_program_that_starts_a_run_reads_json_lines_and_nothing_else() {
     let events = output
         .lines()
         .map(|line| serde_json::from_str(line).unwrap());
-    let last: serde_json::Value = events.last().unwrap();
+    let events: Vec<serde_json::Value> = events.collect();
+    let last = events.last().unwrap();
     assert_eq!(last["event"], "finished");
     for field in ["work_items", "finished_before"] {
         assert_eq!(last[field], 66);

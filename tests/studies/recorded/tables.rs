@@ -60,7 +60,7 @@ fn table(header: &str, line: &str) -> String {
         header => format!("{header}\n"),
     };
     for (touch, readings) in expected().outer_iter().enumerate() {
-        let cells = super::line(&readings).trim_end().to_owned();
+        let cells = super::line(readings).trim_end().to_owned();
         let (first, others) = cells.split_once(',').unwrap();
         let unequal = if touch < 12 {
             touch % 4
@@ -269,7 +269,7 @@ fn columns_of_several_kinds_are_refused_with_the_choice() {
     let alone = |name: &str, taxels: Range<usize>| {
         let readings = expected();
         let own = readings.slice(s![.., taxels]);
-        let lines = own.outer_iter().map(|readings| super::line(&readings));
+        let lines = own.outer_iter().map(|readings| super::line(readings));
         case.file(name, lines.collect::<String>());
     };
     alone("a.csv", 0..1);
