@@ -103,9 +103,10 @@ impl Simulation<'_> {
         check_pose(&key, &pose)?;
         match self.plan.objects[number].movement {
             Movement::Free { .. } => self.free.put(number, pose),
-            Movement::Imposed { carrier, .. } if carrier == Carrier::World => {
-                self.put[number] = Some(pose);
-            }
+            Movement::Imposed {
+                carrier: Carrier::World,
+                ..
+            } => self.put[number] = Some(pose),
             Movement::Imposed { .. } => {
                 let given = "an object that a robot carries";
                 return Err(Error::input(key, given, "the pose or joints of the robot"));
