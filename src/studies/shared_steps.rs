@@ -48,7 +48,8 @@ pub(super) fn grouped<'a, T, K: PartialEq>(
 
 /// Returns two tables for the rows of the same configurations: one with their results, one with their costs.
 pub(super) fn found_and_cost<C, F, T>(
-    (found, cost): (&File<(C, F)>, &File<(C, T)>),
+    found: &File<(C, F)>,
+    cost: &File<(C, T)>,
     rows: &[(C, F, T)],
 ) -> Result<[Table; 2]>
 where

@@ -237,7 +237,7 @@ fn a_fault_ends_with_exit_code_one_if_asked_for() {
     let case = with_recording();
     case.succeeds(&audit("skin --fail-on fault"));
     let of_class = |touch: usize| {
-        if touch % 7 == 0 {
+        if touch.is_multiple_of(7) {
             0
         } else {
             label(touch) as i64

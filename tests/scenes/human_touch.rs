@@ -272,6 +272,9 @@ fn a_grab_closes_its_fingers_around_the_arm_and_opens_them() {
     assert!(wider >= 16, "{wider} of 20 reach around the arm");
 }
 
+/// Change of the ranges from which a touch is drawn.
+type Change = fn(&mut TouchRanges);
+
 #[test]
 fn what_no_hand_can_do_is_refused_by_its_name() {
     let refused = |ranges: &TouchRanges, radius: f64, words: &str| {
@@ -280,7 +283,7 @@ fn what_no_hand_can_do_is_refused_by_its_name() {
         assert!(error.starts_with(words), "{error}");
     };
     #[allow(clippy::reversed_empty_ranges)]
-    let changes: [(fn(&mut TouchRanges), &str); 5] = [
+    let changes: [(Change, &str); 5] = [
         (
             |of| of.depth = 3e-3..=1e-3,
             "tap, range of depth: 0.003 to 0.001; ",

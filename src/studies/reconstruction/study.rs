@@ -115,7 +115,7 @@ impl Study for ReconstructionStudy {
 
     fn tables(&self, (rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {
         let pareto = pareto(&rows, &self.plan.noise);
-        let [configurations, timing] = found_and_cost((&CONFIGURATIONS, &TIMING), &rows)?;
+        let [configurations, timing] = found_and_cost(&CONFIGURATIONS, &TIMING, &rows)?;
         let ensembles = ISOMETRY.table(&statistics)?;
         let pareto = PARETO.table(&pareto)?;
         Ok(with_both(

@@ -84,7 +84,7 @@ impl Study for StabilityPlan {
                 rows.partition_point(|(configuration, ..)| configuration.part <= row.0.part);
             rows.insert(behind, row);
         }
-        let [configurations, timing] = found_and_cost((&CONFIGURATIONS, &TIMING), &rows)?;
+        let [configurations, timing] = found_and_cost(&CONFIGURATIONS, &TIMING, &rows)?;
         let summary = SUMMARY.table(&summary(&rows))?;
         let joints = JOINTS.table(&joints(&rows))?;
         with_common(vec![configurations, summary, timing, joints])

@@ -76,7 +76,7 @@ fn frames_of_every_type_and_file_are_the_same_touches() {
     let fortran = frames.t();
     let fortran = fortran.iter().flat_map(|n| n.to_le_bytes());
     write("fortran.npy", "<f8", fortran.collect());
-    let table: String = frames.outer_iter().map(|frame| line(frame)).collect();
+    let table: String = frames.outer_iter().map(line).collect();
     case.file("frames.csv", format!("# a comment\n{table}"));
     let names: Vec<String> = (0..64).map(|taxel| format!("taxel {taxel}")).collect();
     case.file("named.csv", names.join(",") + "\n" + &table);
@@ -252,7 +252,7 @@ fn each_taxel_may_rest_at_a_reading_of_its_own() {
     // The zeros as a list, and as a table of rows and columns.
     let list: Array1<f64> = zeros.iter().copied().collect();
     case.write_array("zero_list.npy", &list);
-    let rows: String = zeros.outer_iter().map(|row| line(row)).collect();
+    let rows: String = zeros.outer_iter().map(line).collect();
     case.file("zero.csv", rows);
     let own_keys = of_file("own.npy") + "full_scale = 64.0\n";
     for zero in ["zero.npy", "zero_list.npy", "zero.csv"] {

@@ -269,7 +269,7 @@ fn columns_of_several_kinds_are_refused_with_the_choice() {
     let alone = |name: &str, taxels: Range<usize>| {
         let readings = expected();
         let own = readings.slice(s![.., taxels]);
-        let lines = own.outer_iter().map(|readings| super::line(readings));
+        let lines = own.outer_iter().map(super::line);
         case.file(name, lines.collect::<String>());
     };
     alone("a.csv", 0..1);
