@@ -212,16 +212,24 @@ impl ElementType {
         let chunks = bytes.chunks_exact(self.size);
         match elements {
             Elements::Texts(texts) => texts.extend(chunks.map(|chunk| self.text(chunk))),
-            Elements::Numbers(numbers) => numbers.extend(chunks.map(|chunk| self.number(chunk))),
+            // The usual types are decoded without a look at each number's type.
+            Elements::Numbers(numbers) => match (self.letter, self.size, self.is_big_endian) {
+                ('f', 8, false) => numbers.extend(words(bytes).map(f64::from_le_bytes)),
+                ('f', 4, false) => {
+                    numbers.extend(words(bytes).map(|word| f64::from(f32::from_le_bytes(word))))
+                }
+                _ => numbers.extend(chunks.map(|chunk| self.number(chunk))),
+            },
         }
     }
 
     /// Returns the bits of a number or a letter of at most eight bytes.
     fn bits(&self, bytes: &[u8]) -> u64 {
         let mut bits = [0; 8];
-        bits[..bytes.len()].copy_from_slice(bytes);
+        let used = &mut bits[..bytes.len()];
+        used.copy_from_slice(bytes);
         if self.is_big_endian {
-            bits[..bytes.len()].reverse();
+            used.reverse();
         }
         u64::from_le_bytes(bits)
     }
@@ -255,6 +263,11 @@ impl ElementType {
         };
         text.trim_end_matches('\0').to_owned()
     }
+}
+
+/// Returns the words of `N` bytes each.
+fn words<const N: usize>(bytes: &[u8]) -> impl Iterator<Item = [u8; N]> {
+    bytes.as_chunks().0.iter().copied()
 }
 
 /// Converts an IEEE 754 binary16 number, given by its bits, to f64.

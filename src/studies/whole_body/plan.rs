@@ -239,8 +239,8 @@ impl WholeBodyPlan {
             robots: vec![covered],
             ..Reader::new(place, folder)
         };
-        let scenes = wanted.scenes.iter().enumerate();
-        let scenes = scenes
+        let scenes = (1..)
+            .zip(&wanted.scenes)
             .map(|(number, scene)| scene_plan(&reader, number, scene))
             .collect::<Result<Vec<_>>>()?;
         let robot = reader.robots[0].robot.clone();
@@ -283,6 +283,7 @@ impl WholeBodyPlan {
 /// Value of the key `robot` of an object, which refers to the robot that is covered with skin.
 const ROBOT: &str = "robot";
 
+/// Checks a scene of the study, given its number from 1.
 fn scene_plan(reader: &Reader, number: usize, scene: &BodySceneSpec) -> Result<ScenePlan> {
     let robot = &reader.robots[0].robot;
     let prefix = format!("whole_body.scenes[{number}]");
