@@ -74,10 +74,11 @@ fn add_values(whole: &Json, schema: &Json, default: &Json, found: &mut Vec<Value
         .flat_map(|x| [1.5 * x, x + 1.0, 0.5 * x]);
     let of_range = low.zip(high).map(|(low, high)| low + 0.4 * (high - low));
     let of_low = low.into_iter().flat_map(|low| [low + 1.0, low + 2.5]);
+    // Small numbers first: the study with the first number that acts is the only one that runs.
     let numbers = of_default
-        .chain(of_range)
         .chain(of_low)
-        .chain([0.5, 2.0, 3.0]);
+        .chain([0.5, 2.0, 3.0])
+        .chain(of_range);
     let is_inside = |x: &f64| low.is_none_or(|low| *x > low) && high.is_none_or(|high| *x < high);
     match schema["type"].as_str() {
         Some("number") => found.extend(numbers.filter(is_inside).map(Value::from)),

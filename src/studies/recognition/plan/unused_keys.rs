@@ -6,6 +6,7 @@ use crate::inputs::toml_value::{is_at, number, table_of, value_at};
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::signal::SensorError;
 use crate::studies::prelude::*;
+use crate::studies::recognition::plan::tested::TABLES;
 use crate::studies::recognition::spec::{DEFAULT_TEST_FRACTION, PoseSplit, STIFFNESS, key};
 use crate::world::{RestPoses, Spread};
 use toml::Table;
@@ -299,7 +300,7 @@ impl Check<'_> {
     }
 
     /// Checks that keys have an effect. One value of an axis that uses a key suffices. A key that training touches and test touches share has an effect if it has
-    /// one in either. A key of `[test]` must have an effect in test touches.
+    /// one in either; all other keys must have an effect with the training touches. A key of `[test]` must have an effect in test touches.
     pub(crate) fn unused_keys(&self, plan: &Plan) -> Result<()> {
         self.sticking_shear(plan)?;
         let axes = &plan.spec.axes;
@@ -310,7 +311,9 @@ impl Check<'_> {
             .collect();
         let each = USES.iter();
         for (key_use, key) in each.flat_map(|one| one.keys.iter().map(move |key| (one, key))) {
-            let unused = plans.iter().map(|(prefix, plan, table)| {
+            let is_of_touches = TABLES.iter().any(|table| is_at(key, table));
+            let n_plans = if is_of_touches { plans.len() } else { 1 };
+            let unused = plans[..n_plans].iter().map(|(prefix, plan, table)| {
                 let value = key_use.unused(key, (plan, table), (axes, prefix))?;
                 Some((format!("{prefix}{key}"), value))
             });
