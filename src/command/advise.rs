@@ -128,7 +128,8 @@ impl Args {
     fn requirement(&self) -> Requirement {
         match (self.wish.accuracy.or(self.wish.reach), self.wish.budget) {
             (Some(value), _) => Requirement::Value(value),
-            (None, most) => Requirement::Budget(most.unwrap_or(f64::INFINITY)),
+            (None, Some(most)) => Requirement::Budget(most),
+            (None, None) => Requirement::Best,
         }
     }
 

@@ -11,8 +11,10 @@ use std::collections::HashMap;
 pub enum Requirement {
     /// Minimum of the value: the cheapest choice that reaches at least this value is selected.
     Value(f64),
-    /// Maximum of the cost, positive; infinite without a maximum: the choice with the best value within this budget is selected.
+    /// Maximum of the cost, positive: the choice with the best value within this budget is selected.
     Budget(f64),
+    /// No requirement: the choice with the best value is selected at any cost.
+    Best,
 }
 
 /// Candidate for advice: a row of the table, with its value and its cost.
@@ -230,6 +232,7 @@ impl<'a> Candidates<'a> {
         let (place, column, wanted) = match requirement {
             Requirement::Value(wanted) => ("required value", self.value, wanted),
             Requirement::Budget(most) => ("budget", self.cost, most),
+            Requirement::Best => ("budget", self.cost, f64::INFINITY),
         };
         let refuse =
             |allowed: &str| Error::input(place, column.phrase(&Value::Number(wanted)), allowed);
@@ -239,7 +242,8 @@ impl<'a> Candidates<'a> {
                 (share > 0.0 && share <= 1.0, "more than 0, at most 1")
             }
             Requirement::Value(value) => (value.is_finite(), "a number"),
-            Requirement::Budget(most) => (most > 0.0, "a positive number"),
+            Requirement::Budget(most) => (most > 0.0 && most.is_finite(), "a positive number"),
+            Requirement::Best => (true, ""),
         };
         if !is_in_range {
             return Err(refuse(range));
@@ -248,15 +252,15 @@ impl<'a> Candidates<'a> {
         let front = self.front(&candidates);
         let is_enough = |value: f64| match requirement {
             Requirement::Value(wanted) => self.is_enough(value, wanted),
-            Requirement::Budget(_) => false,
+            Requirement::Budget(_) | Requirement::Best => false,
         };
         let (found, nearest, what) = match requirement {
             Requirement::Value(_) => {
                 let found = front.iter().position(|one| is_enough(one.value));
                 (found, front.len() - 1, "best")
             }
-            Requirement::Budget(most) => (
-                front.iter().rposition(|one| one.cost <= most),
+            Requirement::Budget(_) | Requirement::Best => (
+                front.iter().rposition(|one| one.cost <= wanted),
                 0,
                 "cheapest",
             ),
@@ -540,10 +544,7 @@ mod tests {
         let tables = table(&[setting("a", 5.0, 1.0, 0.0), setting("b", 4.0, 1.0, 0.0)]);
         let candidates = Candidates::new(&tables, &AdviceQuery::default()).unwrap();
         let advice = candidates
-            .advise(
-                &candidates.by_condition()[0],
-                Requirement::Budget(f64::INFINITY),
-            )
+            .advise(&candidates.by_condition()[0], Requirement::Best)
             .unwrap();
         assert_eq!(candidates.setting(&advice.choice), "design b");
     }
@@ -569,7 +570,9 @@ mod tests {
         for requirement in [Requirement::Value(0.0), Requirement::Value(1.1)] {
             assert!(text("accuracy", requirement).contains("at most 1"));
         }
-        assert!(text("accuracy", Requirement::Budget(f64::NAN)).contains("positive"));
+        for budget in [0.0, f64::NAN, f64::INFINITY] {
+            assert!(text("accuracy", Requirement::Budget(budget)).contains("positive"));
+        }
         let error = Candidates::new(&[], &AdviceQuery::default())
             .map(drop)
             .unwrap_err();
