@@ -115,8 +115,8 @@ pub fn read(place: &str, reader: &mut dyn Read, length: u64) -> Result<FileArray
         let block = &mut bytes[..BLOCK.min(n_left) * size];
         let cut = |_| refuse("a file that ends too early".to_owned());
         reader.read_exact(block).map_err(cut)?;
-        header.elements.decode(block, &mut elements);
         n_left -= block.len() / size;
+        header.elements.decode(block, &mut elements);
     }
     // At the end of a member, the archive reader compares the checksum.
     let at_end = reader.read(&mut [0]);
@@ -207,15 +207,27 @@ impl ElementType {
         }
     }
 
-    /// Decodes all elements that the bytes contain and appends them to `elements`.
-    fn decode(&self, bytes: &[u8], elements: &mut Elements) {
+    /// Returns the number of bytes that the byte order arranges: those of a number or of a letter.
+    fn word_size(&self) -> usize {
+        match (self.kind, self.letter) {
+            (ElementKind::Text, 'U') => 4,
+            (ElementKind::Text, _) => 1,
+            _ => self.size,
+        }
+    }
+
+    /// Decodes all elements that the bytes contain and appends them to `elements`. The bytes are in little-endian order afterwards.
+    fn decode(&self, bytes: &mut [u8], elements: &mut Elements) {
+        if self.is_big_endian {
+            let words = bytes.chunks_exact_mut(self.word_size());
+            words.for_each(<[u8]>::reverse);
+        }
         let chunks = bytes.chunks_exact(self.size);
         match elements {
             Elements::Texts(texts) => texts.extend(chunks.map(|chunk| self.text(chunk))),
-            // The usual types are decoded without a look at each number's type.
-            Elements::Numbers(numbers) => match (self.letter, self.size, self.is_big_endian) {
-                ('f', 8, false) => numbers.extend(words(bytes).map(f64::from_le_bytes)),
-                ('f', 4, false) => {
+            Elements::Numbers(numbers) => match (self.letter, self.size) {
+                ('f', 8) => numbers.extend(words(bytes).map(f64::from_le_bytes)),
+                ('f', 4) => {
                     numbers.extend(words(bytes).map(|word| f64::from(f32::from_le_bytes(word))))
                 }
                 _ => numbers.extend(chunks.map(|chunk| self.number(chunk))),
@@ -223,24 +235,11 @@ impl ElementType {
         }
     }
 
-    /// Returns the bits of a number or a letter of at most eight bytes.
-    fn bits(&self, bytes: &[u8]) -> u64 {
-        let mut bits = [0; 8];
-        let used = &mut bits[..bytes.len()];
-        used.copy_from_slice(bytes);
-        if self.is_big_endian {
-            used.reverse();
-        }
-        u64::from_le_bytes(bits)
-    }
-
-    /// Decodes a number.
+    /// Decodes a number of any other type than float32 and float64.
     fn number(&self, bytes: &[u8]) -> f64 {
-        let bits = self.bits(bytes);
+        let bits = bits(bytes);
         match (self.letter, self.size) {
-            ('f', 2) => half(bits as u16),
-            ('f', 4) => f64::from(f32::from_bits(bits as u32)),
-            ('f', _) => f64::from_bits(bits),
+            ('f', _) => half(bits as u16),
             ('i', size) => {
                 let n_unused = 64 - 8 * size;
                 ((bits << n_unused) as i64 >> n_unused) as f64
@@ -254,7 +253,7 @@ impl ElementType {
     fn text(&self, bytes: &[u8]) -> String {
         let text = match self.letter {
             'U' => {
-                let codes = bytes.chunks_exact(4).map(|chunk| self.bits(chunk) as u32);
+                let codes = bytes.chunks_exact(4).map(|chunk| bits(chunk) as u32);
                 let letters = codes.map(char::from_u32);
                 let letters = letters.map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER));
                 letters.collect()
@@ -263,6 +262,13 @@ impl ElementType {
         };
         text.trim_end_matches('\0').to_owned()
     }
+}
+
+/// Returns the bits of a number or a letter of at most eight bytes.
+fn bits(bytes: &[u8]) -> u64 {
+    let mut bits = [0; 8];
+    bits[..bytes.len()].copy_from_slice(bytes);
+    u64::from_le_bytes(bits)
 }
 
 /// Returns the words of `N` bytes each.
