@@ -1,7 +1,7 @@
 //! Descriptions of the keys of study files: range, axis, role, title, unit and scale of each key, from its declaration (the macro `params!`).
 
 use crate::inputs::range::Range;
-use crate::inputs::toml_value::{has_only, is_at, number_value};
+use crate::inputs::toml_value::{has_only, is_at};
 use crate::table::{Column, Role, Scale};
 
 /// Description of a key of study files, which also defines the key's table column and axis.
@@ -95,11 +95,7 @@ impl KeyAbout {
     pub fn usual_value(&self) -> Option<toml::Value> {
         match (self.usual, self.range) {
             (Some(usual), _) => Some(usual()),
-            (None, Range::Declared(parameter)) => {
-                let default = parameter.default_number()?;
-                Some(number_value(default, parameter.is_integer))
-            }
-            _ => None,
+            (None, range) => range.declared_default(),
         }
     }
 

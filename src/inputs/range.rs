@@ -1,5 +1,6 @@
 //! Ranges of the numbers that keys allow.
 
+use crate::inputs::toml_value::number_value;
 use crate::inputs::units::MAX_SIDE;
 use crate::signal::Strength;
 use crate::world::MAX_TOUCHES;
@@ -63,6 +64,17 @@ impl Range {
             _ => self
                 .bounds()
                 .is_none_or(|[low, high]| value.is_finite() && (low..=high).contains(&value)),
+        }
+    }
+
+    /// Returns the default that a classifier declares for a parameter; `None` for other ranges, and for defaults that are no numbers.
+    pub(crate) fn declared_default(self) -> Option<toml::Value> {
+        match self {
+            Self::Declared(parameter) => {
+                let default = parameter.default_number()?;
+                Some(number_value(default, parameter.is_integer))
+            }
+            _ => None,
         }
     }
 

@@ -48,6 +48,10 @@ pub(crate) struct SignalKey {
 /// Key of the smoothing.
 pub(crate) const SMOOTHING: &str = "smoothing_mm";
 
+/// Meaning of the key of the smoothing.
+pub(crate) const SMOOTHING_WORDS: &str =
+    "Standard deviation of the Gaussian smoothing over the array, mm.";
+
 /// Allowed noise standard deviations, as fractions of full scale. At the upper bound, nothing of the signal remains, and squares of features still fit into
 /// f32.
 const NOISE: Range = Range::ZeroOrBetween(1e-12, 1000.0, "0, or 1e-12 to 1000");
@@ -82,13 +86,12 @@ pub(crate) fn signal_keys() -> &'static [SignalKey] {
             noise.about.gives_way = gives_way;
             keys.push(noise);
         }
-        let words = "Standard deviation of the Gaussian smoothing over the array, mm. Default: no smoothing.";
         let mut smoothing = key(
             SMOOTHING,
             Role::Choice,
             Range::NotNegative,
             linear,
-            words.to_owned(),
+            format!("{SMOOTHING_WORDS} Default: no smoothing."),
         );
         smoothing.about.gives_way = Some(9);
         keys.push(smoothing);
@@ -197,7 +200,7 @@ pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
 ];
 
 /// Returns the description of the key that sets the noise standard deviation in this unit.
-pub(crate) fn noise_words(unit: NoiseUnit) -> String {
+fn noise_words(unit: NoiseUnit) -> String {
     let unit = match unit {
         NoiseUnit::FullScale => "as a fraction of the full scale",
         NoiseUnit::Mm => "mm of deflection",
@@ -207,7 +210,7 @@ pub(crate) fn noise_words(unit: NoiseUnit) -> String {
 }
 
 /// Returns the description of the key that sets a strength of a sensor error.
-pub(crate) fn strength_words(error: SensorError, strength: &Strength) -> String {
+fn strength_words(error: SensorError, strength: &Strength) -> String {
     let (step, allowed) = (error.about().step, strength.allowed);
     format!("Sensor error `{step}`: {}, {allowed}.", strength.words)
 }

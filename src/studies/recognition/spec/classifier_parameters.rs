@@ -5,7 +5,7 @@ use crate::inputs::params::{Described, key_schema, sentence};
 use crate::inputs::range::Range;
 use crate::inputs::toml_value::{number, number_value};
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::classifiers::parameters::{DefaultValue, Parameter, declared};
+use crate::learning::classifiers::parameters::{DefaultValue, declared};
 use crate::table::Role;
 use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -20,7 +20,8 @@ pub struct ClassifierParameters(BTreeMap<&'static str, toml::Value>);
 impl Default for ClassifierParameters {
     fn default() -> Self {
         let written = declared().filter(|parameter| parameter.is_always_written);
-        let values = written.filter_map(|one| Some((one.key, about(one).usual_value()?)));
+        let values =
+            written.filter_map(|one| Some((one.key, Range::Declared(one).declared_default()?)));
         Self(values.collect())
     }
 }
@@ -48,13 +49,6 @@ impl Serialize for ClassifierParameters {
     }
 }
 
-/// Returns the description of the key of a declared parameter.
-fn about(parameter: &'static Parameter) -> KeyAbout {
-    let path = format!("recognition.{}", parameter.key).leak();
-    let range = Range::Declared(parameter);
-    KeyAbout::new(path, AxisPlace::Axes, Role::Choice, range)
-}
-
 /// The table around the parameters reads their keys.
 impl<'de> Deserialize<'de> for ClassifierParameters {
     fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
@@ -74,9 +68,9 @@ impl Described for ClassifierParameters {
                 DefaultValue::Rule(rule, meaning) => format!("'{rule}', {meaning}"),
             };
             let words = format!("{}. Default: {default}.", sentence(parameter.words));
-            let about = about(parameter);
-            let mut key = key_schema(number, Some(about.range), &[&words]);
-            if let Some(default) = about.usual_value() {
+            let range = Range::Declared(parameter);
+            let mut key = key_schema(number, Some(range), &[&words]);
+            if let Some(default) = range.declared_default() {
                 key["default"] = json!(default);
             }
             (parameter.key.to_owned(), key)
@@ -89,7 +83,11 @@ impl Described for ClassifierParameters {
     }
 
     fn describe_keys(_: &str, keys: &mut Vec<KeyAbout>) {
-        keys.extend(declared().map(about));
+        keys.extend(declared().map(|parameter| {
+            let path = format!("recognition.{}", parameter.key).leak();
+            let range = Range::Declared(parameter);
+            KeyAbout::new(path, AxisPlace::Axes, Role::Choice, range)
+        }));
     }
 
     fn inner_names() -> &'static [&'static str] {
