@@ -1,5 +1,6 @@
 //! Plan of a recognition study: checked keys, converted to SI units.
 
+mod combinations;
 pub(crate) mod learning;
 pub mod listed_taxels;
 pub mod pose_groups;

@@ -1,10 +1,10 @@
 //! Plan of a recognition study: the keys of its [`StudySpec`], checked and converted to SI units.
 //!
-//! The checks are in `scene.rs` (arrays, taxels, placement), `sensed.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. The checks also convert
+//! The checks are in `scene.rs` (arrays, taxels, placement, human touches), `sensed.rs`, `signal.rs`, `learning.rs`, `combinations.rs` and `recorded.rs`. The checks also convert
 //! millimetres, degrees and fractions into metres, radians and absolute values. Later stages use SI units only.
 
 use crate::studies::prelude::*;
-use crate::studies::recognition::plan::unused_keys::{OF_LEARNING, OF_TOUCHES};
+use crate::studies::recognition::plan::combinations::{OF_LEARNING, OF_TOUCHES};
 use crate::studies::recognition::plan::{Condition, KeepTogether};
 use crate::studies::recognition::spec::SpreadSpec;
 use std::collections::HashSet;
