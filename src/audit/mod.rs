@@ -11,6 +11,7 @@ pub mod claim;
 mod context;
 mod data;
 mod finding;
+mod pictures;
 mod reader;
 pub mod readings;
 mod report;

@@ -4,7 +4,7 @@ use crate::audit::context::{AuditOptions, Context};
 use crate::audit::data::AuditData;
 use crate::audit::finding::{Finding, Verdict, by_verdict, decide};
 use crate::audit::tables::Results;
-use crate::audit::{claim, readings, report, sources, tables};
+use crate::audit::{claim, pictures, readings, sources, tables};
 use crate::error::Result;
 use crate::table::{ChartSpec, Table};
 
@@ -45,7 +45,7 @@ pub fn audit(data: AuditData, options: AuditOptions) -> Result<Audit> {
     };
     let tables = tables::tables(&context, &results)?;
     let charts = tables::charts(&context, &tables);
-    let pictures = report::pictures(&context, &claim, &states)?;
+    let pictures = pictures::pictures(&context, &claim, &states)?;
     Ok(Audit {
         sentences,
         findings,

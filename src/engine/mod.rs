@@ -7,6 +7,7 @@ pub(crate) mod at_once;
 pub mod axes;
 pub mod axis;
 pub mod journal;
+pub(crate) mod program;
 pub mod progress;
 pub mod provenance;
 pub mod shard;

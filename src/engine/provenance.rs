@@ -2,6 +2,7 @@
 
 use crate::contact::Instructions;
 use crate::engine::journal::identity::Identity;
+pub use crate::engine::program::{PROGRAM, SOURCE};
 use crate::error::{Error, Result};
 use chrono::{DateTime, SecondsFormat, Utc};
 use serde::{Deserialize, Serialize};
@@ -9,12 +10,6 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-
-/// Name and version of this program, such as `bubbletouch 0.1.0`.
-pub const PROGRAM: &str = concat!("bubbletouch ", env!("CARGO_PKG_VERSION"));
-
-/// Hash of the source code of this program. Programs with equal hashes compute equal results.
-pub const SOURCE: &str = env!("BUBBLETOUCH_SOURCE");
 
 /// Git commit of the program's source code: `…-changed` if sources were modified after the commit, `unknown` outside a repository.
 const COMMIT: &str = env!("BUBBLETOUCH_COMMIT");

@@ -5,8 +5,8 @@
 //! A manual step equals a step of the time loop bit by bit if its length, time and poses are equal. The manual step must then be
 //! observed where the time loop makes a frame.
 
-use super::carrier::Carrier;
 use super::plan_object::Movement;
+use super::planned::Carrier;
 use super::simulation::Simulation;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;

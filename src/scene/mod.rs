@@ -59,7 +59,6 @@
 //! ```
 
 mod by_hand;
-mod carrier;
 mod frame;
 mod free_objects;
 mod link_surface;
@@ -70,15 +69,16 @@ mod plan_patch;
 mod plan_robot;
 mod plan_signal;
 mod plan_taxels;
+mod planned;
 mod pressed_objects;
 mod reader;
+mod robot_state;
 mod simulation;
 mod skin_state;
 pub(crate) mod spec;
 pub(crate) mod spec_motion;
 mod spec_patch;
 
-pub use carrier::Carrier;
 pub use frame::{
     Frame, FrameSink, FrictionReading, ObjectReading, ObjectSummary, PatchPeaks, PatchReading,
     PoseControl, Summary,
@@ -86,9 +86,7 @@ pub use frame::{
 pub use link_surface::{LinkSurface, link_surface};
 pub use plan::ScenePlan;
 pub use plan_object::{Movement, PlannedObject, PlannedPress};
-pub use plan_patch::PlannedPatch;
-pub use plan_robot::PlannedRobot;
-pub use plan_signal::PlannedSignal;
+pub use planned::{Carrier, PlannedPatch, PlannedRobot, PlannedSignal};
 pub(crate) use reader::Reader;
 pub use simulation::{Simulation, Stepping};
 pub use spec::*;

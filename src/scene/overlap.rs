@@ -1,7 +1,8 @@
 //! Check for objects that overlap a free object at the start of a scene.
 
 use super::plan_object::{Movement, PlannedObject};
-use super::plan_robot::{PlannedRobot, RobotState};
+use super::planned::PlannedRobot;
+use super::robot_state::RobotState;
 use crate::contact::equilibrium;
 use crate::error::Result;
 use crate::geometry::Pose;

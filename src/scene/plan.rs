@@ -2,8 +2,7 @@
 
 use super::overlap::check_starts;
 use super::plan_object::{Movement, PlannedObject, PlannedPress};
-use super::plan_patch::PlannedPatch;
-use super::plan_robot::PlannedRobot;
+use super::planned::{PlannedPatch, PlannedRobot};
 use super::reader::Reader;
 use super::spec::{LayoutSpec, PlaneSpec, SceneSpec};
 use super::spec_motion::metres;

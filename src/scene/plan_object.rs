@@ -1,6 +1,6 @@
 //! Objects of an executable scene: contact models, motions and target forces.
 
-use super::carrier::Carrier;
+use super::planned::Carrier;
 use super::reader::Reader;
 use super::spec::{MOVEMENT_RULES, Numbers, ObjectSpec, PressSpec, SHAPE_KEYS, SHAPE_RULES};
 use super::spec_motion::metres;

@@ -1,54 +1,21 @@
 //! Patches of an executable scene: layouts, taxels and carriers.
 
-use super::carrier::Carrier;
 use super::link_surface::{LinkSurface, link_surface};
-use super::plan_robot::PlannedRobot;
-use super::plan_signal::PlannedSignal;
+use super::planned::{Carrier, PlannedPatch, PlannedRobot};
 use super::reader::Reader;
 use super::spec::{DrapedSpec, FileLayoutSpec, LayoutSpec, PatchSpec, RegionSpec};
 use super::spec_motion::metres;
 use super::spec_patch::{DRAPED_RULES, PATCH_RULES, REGION_RULES};
 use crate::error::Result;
-use crate::geometry::{Aabb, Pose};
+use crate::geometry::Aabb;
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::inputs::object_files::read_surface;
 use crate::inputs::units::MM;
 use crate::mesh::{LengthUnit, MeshFormat, SizeLimits, TriangleMesh, obj_group};
 use crate::random::Seed;
-use crate::world::{DrapeRegion, Grid, Layout, Patch, PerTaxel, Shears};
+use crate::world::{DrapeRegion, Grid, Layout, Patch, PerTaxel};
 use glam::DVec3;
 use std::path::Path;
-
-/// Patch of a scene, checked and ready for simulation.
-#[derive(Clone, Debug)]
-pub struct PlannedPatch {
-    /// Taxels and layout of the patch.
-    pub skin: Patch,
-    /// Body that carries the patch.
-    pub carrier: Carrier,
-    /// Pose of the patch on its carrier, `carrier_from_patch`.
-    pub at: Pose,
-    /// Tangential springs of the taxels; `None` if the patch has no friction.
-    pub shears: Option<Shears>,
-    /// Signal chain of the patch (conversion of deflections to sensor readings); `None` if it has no steps.
-    pub signal: Option<PlannedSignal>,
-    /// Notes on the layout file of the patch; empty for other layouts.
-    pub notes: Vec<String>,
-}
-
-impl PlannedPatch {
-    /// Returns whether the state of the patch depends on earlier steps, as with dampers or friction.
-    pub fn remembers(&self) -> bool {
-        let mut taxels = self.skin.taxels().all().iter();
-        self.shears.is_some() || taxels.any(|taxel| taxel.damping > 0.0)
-    }
-
-    /// Returns whether any taxel has a positive friction coefficient.
-    pub fn has_friction(&self) -> bool {
-        let shears = self.shears.iter().flat_map(|shears| shears.all());
-        shears.into_iter().any(|shear| shear.friction > 0.0)
-    }
-}
 
 impl LayoutSpec {
     /// Returns the distance between neighbouring taxels, mm; `None` for layouts that list single taxels.

@@ -1,39 +1,35 @@
-//! Robots of an executable scene: checked motions, and the state of a robot during a simulation.
+//! Robots of an executable scene: their files and motions, and the bodies that carry patches and objects.
 
+use super::planned::{Carrier, PlannedRobot};
 use super::reader::Reader;
 use super::spec::{JointsSpec, ROBOT_RULES, RobotSpec};
 use super::spec_motion::JOINTS_RULES;
 use crate::error::Result;
-use crate::geometry::Pose;
 use crate::spelling::nearest_names;
-use crate::world::{Joint, JointTrajectory, MeshFolders, Motion, Robot};
+use crate::world::{Joint, JointTrajectory, MeshFolders, Robot};
 use ndarray::Array2;
 use std::path::Path;
 
-/// Robot of a scene, checked and ready for simulation.
-#[derive(Clone, Debug)]
-pub struct PlannedRobot {
-    /// Name of the robot in the scene.
-    pub name: String,
-    /// Links and joints of the robot, read from its file.
-    pub robot: Robot,
-    /// Folders in which mesh files of the links are searched.
-    pub meshes: MeshFolders,
-    /// Motion of the robot's base.
-    pub base: Motion,
-    /// Motion of the joints; `None` if all joints stay at their rest positions.
-    pub joints: Option<JointTrajectory>,
-}
-
-impl PlannedRobot {
-    /// Returns the time at which the robot's motion ends, seconds.
-    pub fn end(&self) -> f64 {
-        let joints = self.joints.as_ref().map_or(0.0, JointTrajectory::end);
-        self.base.end().max(joints)
-    }
-}
-
 impl Reader<'_> {
+    /// Returns the carrier that is described by an optional robot name and an optional link name: the world without a robot, the base without a link.
+    pub fn carrier(
+        &self,
+        key: &str,
+        (robot, link): (Option<&str>, Option<&str>),
+    ) -> Result<Carrier> {
+        let Some(robot) = robot else {
+            return Ok(Carrier::World);
+        };
+        let names = self.robots.iter().map(|robot| robot.name.as_str());
+        let robot = self.known(&format!("{key}.robot"), robot, names)?;
+        let carrier = &self.robots[robot].robot;
+        let link = match link {
+            Some(link) => self.under(&format!("{key}.link"), carrier.link(link))?,
+            None => carrier.base(),
+        };
+        Ok(Carrier::Link { robot, link })
+    }
+
     /// Checks a robot of a scene file and reads the robot's file.
     pub fn robot(&self, spec: &RobotSpec) -> Result<PlannedRobot> {
         let key = &format!("robots.{}", spec.name);
@@ -172,48 +168,5 @@ fn stays(joint: &Joint, robot: &Robot) -> String {
                 )
             }
         },
-    }
-}
-
-/// Joint positions and link poses of a robot at one time.
-#[derive(Clone, Debug)]
-pub(super) struct RobotState<'p> {
-    robot: &'p PlannedRobot,
-    positions: Vec<f64>,
-    /// Whether a program has set the joint positions, which then no longer follow the scene file.
-    are_set: bool,
-    /// Pose of the base that a program has set, `world_from_base`; `None` if the base follows the scene file.
-    pub base: Option<Pose>,
-    /// Pose of each link, `world_from_link`.
-    pub world_from_link: Vec<Pose>,
-}
-
-impl<'p> RobotState<'p> {
-    /// Creates the state of a robot with its joints at their rest positions.
-    pub fn new(robot: &'p PlannedRobot) -> Self {
-        Self {
-            robot,
-            positions: robot.robot.rest_positions(),
-            are_set: false,
-            base: None,
-            world_from_link: vec![Pose::IDENTITY; robot.robot.links().len()],
-        }
-    }
-
-    /// Sets the joint positions from now on (rad or m, one number per coordinate), in place of the motion in the scene file.
-    pub fn set_positions(&mut self, positions: &[f64]) {
-        self.positions.copy_from_slice(positions);
-        self.are_set = true;
-    }
-
-    /// Computes the pose of each link at a time (seconds).
-    pub fn place(&mut self, time: f64) -> Result<()> {
-        let robot = self.robot;
-        if let (Some(joints), false) = (&robot.joints, self.are_set) {
-            joints.positions_into(time, &mut self.positions);
-        }
-        let base = self.base.unwrap_or_else(|| robot.base.pose_at(time));
-        let links = &mut self.world_from_link;
-        robot.robot.forward_into(&base, &self.positions, links)
     }
 }

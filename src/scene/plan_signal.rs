@@ -1,60 +1,17 @@
 //! Signal chain of a patch with checked steps; it converts deflections or forces to sensor output.
 
-use super::frame::PatchReading;
+use super::planned::PlannedSignal;
 use super::reader::Reader;
 use super::spec::SignalStepSpec;
 use crate::error::Result;
 use crate::inputs::range::Range;
-use crate::inputs::sensor_errors::{NOISES, all_strengths, noise_words, strength_words};
+use crate::inputs::sensor_errors::{NOISES, SMOOTHING, all_strengths, signal_keys};
 use crate::inputs::units::MM;
 use crate::random::Seed;
-use crate::signal::{Chain, Noise, Quantity, Recording, SignalStep, SignalWorkspace};
+use crate::signal::{Chain, Noise, Quantity, SignalStep};
 use crate::spelling::nearest_names;
 use crate::world::Patch;
 use std::collections::BTreeMap;
-
-/// Name of the smoothing step of a signal chain. All other step names belong to [noise](NOISES) or sensor errors.
-const SMOOTHING: &str = "smoothing_mm";
-
-/// Checked signal chain of a patch, which converts deflections to sensor readings.
-#[derive(Clone, Debug)]
-pub struct PlannedSignal {
-    chain: Chain,
-    /// Physical quantity that enters the signal chain: deflection or force.
-    begins: Quantity,
-}
-
-impl PlannedSignal {
-    /// Returns the physical quantity of the sensor readings: deflection or force.
-    pub fn quantity(&self) -> Quantity {
-        self.chain.quantity()
-    }
-
-    /// Computes the sensor readings of a patch and writes them to `reading`. The seed of the noise is `name`; `share` is the elapsed fraction of the scene's
-    /// duration, 0 to 1.
-    pub(super) fn read(
-        &self,
-        reading: &mut PatchReading,
-        name: &Seed,
-        share: f64,
-        scratch: &mut SignalWorkspace,
-    ) {
-        let felt = match self.begins {
-            Quantity::Deflection => &reading.deflection,
-            Quantity::Force => &reading.force,
-        };
-        let signal = reading.signal.get_or_insert_default();
-        signal.clone_from(felt);
-        let recording = Recording {
-            frames: signal,
-            rates: None,
-            n_before: 0,
-            interval: None,
-            time: Some(share),
-        };
-        self.chain.apply_recording(recording, name, scratch);
-    }
-}
 
 impl Reader<'_> {
     /// Checks the signal steps of a patch and returns its signal chain; `None` if there are no steps.
@@ -113,9 +70,7 @@ impl Reader<'_> {
             }
             None if noise.is_some() || first == SMOOTHING => vec![(first, Range::NotNegative)],
             None => {
-                let errors = all_strengths().map(|(_, strength)| strength.key);
-                let names = NOISES.iter().map(|(name, _)| *name);
-                let names = names.chain([SMOOTHING]).chain(errors);
+                let names = signal_keys().iter().map(|key| key.about.name());
                 let offered = nearest_names(first, names);
                 return self.refuse(key, format!("`{first}`"), offered);
             }
@@ -139,15 +94,4 @@ impl Reader<'_> {
             (None, None) => Ok(SignalStep::Smoothing { width: value * MM }),
         }
     }
-}
-
-/// Returns the keys and meanings of the steps that a patch of a scene allows. Steps that need earlier and later frames are omitted.
-pub(super) fn step_keys() -> impl Iterator<Item = (&'static str, String)> {
-    let noises = NOISES.iter().map(|(key, unit)| (*key, noise_words(*unit)));
-    let smoothing = "Standard deviation of the Gaussian smoothing over the array, mm.";
-    let errors = all_strengths().filter(|(error, _)| error.about().is_of_single_frames());
-    let errors = errors.map(|(error, strength)| (strength.key, strength_words(error, strength)));
-    noises
-        .chain([(SMOOTHING, smoothing.to_owned())])
-        .chain(errors)
 }

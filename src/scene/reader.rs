@@ -1,7 +1,6 @@
 //! Reading of a scene file for all parts of the plan: errors with file and key, names, motions, and files.
 
-use super::plan_patch::PlannedPatch;
-use super::plan_robot::PlannedRobot;
+use super::planned::{PlannedPatch, PlannedRobot};
 use super::spec::{MotionSpec, ObjectSpec, PoseSpec};
 use super::spec_motion::MOTION_RULES;
 use crate::error::Result;

@@ -4,9 +4,9 @@ use super::frame::{Frame, FrameSink, FrictionReading, ObjectReading, PatchReadin
 use super::free_objects::FreeObjects;
 use super::plan::ScenePlan;
 use super::plan_object::Movement;
-use super::plan_patch::PlannedPatch;
-use super::plan_robot::RobotState;
+use super::planned::PlannedPatch;
 use super::pressed_objects::PressedObjects;
+use super::robot_state::RobotState;
 use super::skin_state::{Detail, PlacedObjects, SkinState};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;

@@ -1,8 +1,7 @@
 //! State of a patch during a simulation: pose, contacts, dampers and friction.
 
-use super::carrier::Carrier;
 use super::frame::PatchReading;
-use super::plan_patch::PlannedPatch;
+use super::planned::{Carrier, PlannedPatch};
 use crate::contact::equilibrium::{TangentialSpring, TangentialSpringState, TaxelLoad};
 use crate::contact::{
     Contact, ContactModeCounts, DamperState, FrictionState, NormalForce, TaxelContact, Workspace,

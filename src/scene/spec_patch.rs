@@ -1,15 +1,15 @@
 //! Specification of skin patches: the tables `[[patches]]`.
 
-use super::plan_signal::step_keys;
 use crate::engine::axis::Axis;
 use crate::files::FilePath;
 use crate::inputs::check::Rule;
 use crate::inputs::params::{Described, named, params, variants, words};
 use crate::inputs::range::MIN_POSITIVE;
 use crate::inputs::range::Range::{self, AtLeastOne, Between, NotNegative, Positive};
+use crate::inputs::sensor_errors::{SMOOTHING, SMOOTHING_WORDS, SignalKey, signal_keys};
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::PoseSpec;
-use crate::signal::MAX_STRENGTHS;
+use crate::signal::{MAX_STRENGTHS, SensorError};
 use crate::world::{MissingTaxels, ShapeRole};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
@@ -130,6 +130,19 @@ impl Described for SignalStepSpec {
             ]
         })
     }
+}
+
+/// Returns the keys and meanings of the steps that a patch of a scene allows. Steps that need earlier and later frames are omitted.
+fn step_keys() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let is_of_single_frames = |key: &&SignalKey| {
+        let error = key.error.map(SensorError::about);
+        error.is_none_or(|about| about.is_of_single_frames())
+    };
+    let keys = signal_keys().iter().filter(is_of_single_frames);
+    keys.map(|key| match key.about.name() {
+        SMOOTHING => (SMOOTHING, SMOOTHING_WORDS),
+        name => (name, &key.words[..]),
+    })
 }
 
 variants! {

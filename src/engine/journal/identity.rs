@@ -1,6 +1,7 @@
 //! Identity of a study: all content on which its results depend.
 
 use super::line::Records;
+use crate::engine::program::{PROGRAM, SOURCE};
 use crate::engine::work_items::WorkItem;
 use crate::error::{Error, Result};
 use crate::inputs::toml_value::is_at;
@@ -29,8 +30,8 @@ impl Identity {
     /// Creates the identity of a study, which consists of the TOML text, the objects and this program.
     pub fn new(study: String, objects: BTreeMap<String, String>, items: Arc<[WorkItem]>) -> Self {
         Self {
-            program: crate::engine::provenance::PROGRAM.to_owned(),
-            source: crate::engine::provenance::SOURCE.to_owned(),
+            program: PROGRAM.to_owned(),
+            source: SOURCE.to_owned(),
             study,
             objects,
             items,

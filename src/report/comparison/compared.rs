@@ -3,7 +3,7 @@
 use super::changes::{ChangedColumn, ComparedTable, changes};
 use super::differences::Difference;
 use super::rank_agreement::RankAgreement;
-use crate::engine::provenance::PROGRAM;
+use crate::engine::program::PROGRAM;
 use crate::error::Result;
 use crate::report::page::StudyAbout;
 use crate::report::study_folder::Found;

@@ -7,6 +7,7 @@
 //! frames of training touches, which a simulation provides. These computations use no test touches.
 
 mod charts;
+mod frames;
 mod measured;
 mod plan;
 pub mod rows;

@@ -9,9 +9,9 @@ use crate::dynamics::{
 };
 use crate::studies::prelude::*;
 use crate::studies::shared_steps::median_s;
-use crate::studies::stability::plan::*;
 use crate::studies::stability::rows::*;
 use crate::studies::stability::scene::{ConfigurationScene, GRAVITY};
+use crate::studies::stability::spec::*;
 use crate::world::VelocityPlan;
 use glam::DVec3;
 use std::slice::from_ref;

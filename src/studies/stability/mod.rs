@@ -24,11 +24,12 @@ mod configuration;
 mod plan;
 pub mod rows;
 mod scene;
+mod spec;
 mod study;
 
-pub use crate::studies::stability::plan::{
-    ContactMethod, StabilityPartSpec, StabilityPlan, StabilityScene, StabilitySpec,
-    StabilityStudySpec,
-};
+pub use crate::studies::stability::plan::StabilityPlan;
 pub use crate::studies::stability::rows::{Outcome, TOLERANCE};
 pub use crate::studies::stability::scene::LEAST_STEPS;
+pub use crate::studies::stability::spec::{
+    ContactMethod, StabilityPartSpec, StabilityScene, StabilitySpec, StabilityStudySpec,
+};

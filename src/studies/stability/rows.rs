@@ -2,7 +2,7 @@
 
 use crate::engine::work_items::any_number;
 use crate::studies::prelude::*;
-use crate::studies::stability::plan::*;
+use crate::studies::stability::spec::*;
 
 /// Display names of the simulation methods.
 const METHODS: &[(&str, &str)] = &[

@@ -4,8 +4,8 @@ use crate::contact::equilibrium::HalfSpace;
 use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
 use crate::objects::{Sphere, SphereUnion};
 use crate::studies::prelude::*;
-use crate::studies::stability::plan::*;
 use crate::studies::stability::rows::*;
+use crate::studies::stability::spec::*;
 use crate::world::{Grid, Layout, Patch, Phase, Taxels, VelocityPlan};
 use glam::DVec3;
 
@@ -261,7 +261,7 @@ pub const LEAST_STEPS: f64 = 50.0;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studies::stability::plan::ContactMethod;
+    use crate::studies::stability::spec::ContactMethod;
 
     #[test]
     fn the_ball_meets_the_innermost_taxels_where_it_starts_and_all_within_a_quarter_of_the_stroke()

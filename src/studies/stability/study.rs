@@ -7,6 +7,7 @@ use crate::studies::stability::charts::{answers, charts, with_common};
 use crate::studies::stability::configuration::measure;
 use crate::studies::stability::plan::*;
 use crate::studies::stability::rows::*;
+use crate::studies::stability::spec::*;
 use crate::table::csv_place;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

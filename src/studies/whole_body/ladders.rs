@@ -5,6 +5,7 @@ use crate::studies::prelude::*;
 use crate::studies::whole_body::drive::{Drive, Posture, cushion};
 use crate::studies::whole_body::plan::*;
 use crate::studies::whole_body::rows::*;
+use crate::studies::whole_body::spec::*;
 use crate::whole_body::WholeBody;
 use crate::world::{Extrusion, Oscillation, Patch};
 use glam::{DQuat, DVec3};

@@ -17,9 +17,12 @@ mod ladders;
 mod plan;
 mod recognition;
 pub mod rows;
+mod spec;
+mod steps;
 mod study;
 
-pub use crate::studies::whole_body::plan::{
-    Aim, BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, ScenePlan,
-    WholeBodyPlan, WholeBodySpec, WholeBodyStudySpec,
+pub use crate::studies::whole_body::plan::{Aim, ScenePlan, WholeBodyPlan};
+pub use crate::studies::whole_body::spec::{
+    BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodySpec,
+    WholeBodyStudySpec,
 };

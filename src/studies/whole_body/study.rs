@@ -5,10 +5,11 @@ use crate::objects::SphereUnion;
 use crate::studies::prelude::*;
 use crate::studies::whole_body::charts::{answers, charts, picture_of_body};
 use crate::studies::whole_body::drive::{Drive, Posture, of_scene};
-use crate::studies::whole_body::ladders::climb;
+use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
 use crate::studies::whole_body::plan::*;
 use crate::studies::whole_body::recognition::learn;
 use crate::studies::whole_body::rows::*;
+use crate::studies::whole_body::spec::*;
 use crate::whole_body::{BodyState, CoveredRobot};
 use std::collections::BTreeMap;
 
@@ -80,7 +81,7 @@ impl Study for WholeBodyPlan {
             let name = format!("scene {}", scene.spec.name);
             WorkItem::of(name, 0, &(&shared, &self.compressions, &scene.spec))
         });
-        let rungs = self.rungs.iter().enumerate().map(|(number, rung)| {
+        let rungs = self.rungs().into_iter().enumerate().map(|(number, rung)| {
             let name = format!("ladder of {:?}, {}", rung.series, rung.name).to_lowercase();
             WorkItem::of(name, number + 1, &(&shared, rung))
         });
@@ -105,7 +106,7 @@ impl Study for WholeBodyPlan {
         let first_rung = n_compressions + self.scenes.len();
         left.stage(
             "scenes and ladders",
-            n_compressions..first_rung + self.rungs.len(),
+            n_compressions..first_rung + self.rungs().len(),
         );
         for (scene, number) in self.scenes.iter().zip(n_compressions..) {
             left.finish(number, || {
@@ -114,7 +115,7 @@ impl Study for WholeBodyPlan {
                 Ok((Vec::new(), vec![driven]))
             })?;
         }
-        for (rung, number) in self.rungs.iter().zip(first_rung..) {
+        for (rung, number) in self.rungs().iter().zip(first_rung..) {
             left.finish(number, || Ok((Vec::new(), vec![climb(self, rung)?])))?;
         }
         Ok(())
@@ -237,6 +238,12 @@ impl WholeBodyPlan {
             patches,
             links,
         })
+    }
+
+    /// Returns all sizes of the scaling series; empty without a table `[whole_body.ladders]`.
+    fn rungs(&self) -> Vec<ScalingPoint> {
+        let ladders = self.spec.whole_body.ladders.as_ref();
+        ladders.map_or_else(Vec::new, rungs)
     }
 
     /// Returns the object of a scene at the start of its path; error messages contain the name of the scene.
