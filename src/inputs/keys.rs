@@ -11,6 +11,8 @@ pub struct KeyAbout {
     pub path: &'static str,
     /// Place at which the key may have a list of values to sweep.
     pub axis: AxisPlace,
+    /// Whether a list in the table of the key is an axis as those of `[axes]`. Otherwise, the kind of study sweeps a list itself, or a list is one value.
+    pub is_swept_in_table: bool,
     /// Role that the key's column has in result tables.
     pub role: Role,
     /// Numbers that the key allows.
@@ -75,6 +77,7 @@ impl KeyAbout {
         Self {
             path,
             axis,
+            is_swept_in_table: false,
             role,
             range,
             usual: None,

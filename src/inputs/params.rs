@@ -8,7 +8,7 @@ use crate::engine::axis::Axis;
 use crate::files::{FilePath, SetName, file_path};
 use crate::inputs::check::Check;
 use crate::inputs::doc_comment::plain;
-use crate::inputs::keys::KeyAbout;
+use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::range::Range;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer, MapAccess};
@@ -31,8 +31,16 @@ pub trait Described: DeserializeOwned + 'static {
         Self::deserialize(deserializer)
     }
 
+    /// Whether a list may be a value.
+    const TAKES_LIST: bool = false;
+
     /// Returns the JSON Schema of the values.
     fn schema() -> Value;
+
+    /// Returns whether a list in the table of a key of this type is an axis, given the place of the key's axis.
+    fn is_swept_in_table(place: AxisPlace) -> bool {
+        place == AxisPlace::Table && !Self::TAKES_LIST
+    }
 
     /// Returns the value of a key without default that is not given; `None` if such a key is required.
     fn absent() -> Option<Self> {
@@ -177,6 +185,7 @@ macro_rules! params {
                     &[$($doc),+],
                     $crate::params!(@range $($range)?),
                     $crate::params!(@default $type $(, $default)?),
+                    $crate::params!(@swept $type $($(, $place)?)?),
                 );)*
                 table.schema()
             }
@@ -213,6 +222,8 @@ macro_rules! params {
     (@default $type:ty, $default:expr) => { Some::<$type>($default) };
     (@entry $table:ident, $key:ident, $number:ident, name $($other:ident)*) => { { let _ = $number; format!("{}.{}", $key, $table.name) } };
     (@entry $table:ident, $key:ident, $number:ident, $($other:ident)*) => { format!("{}[{}]", $key, $number) };
+    (@swept $type:ty) => { false };
+    (@swept $type:ty, $place:ident) => { <$type as $crate::inputs::params::Described>::is_swept_in_table($crate::inputs::keys::AxisPlace::$place) };
     (@range) => { None };
     (@range $range:expr) => { Some($range) };
     (@about $type:ty, $path:ident, $name:expr, $keys:ident, [$($default:expr)?]) => {
@@ -223,6 +234,7 @@ macro_rules! params {
         $keys.push($crate::inputs::keys::KeyAbout {
             $(usual: Some(|| $crate::inputs::params::usual_of::<$type>($default)),)?
             $($field: Some($value),)*
+            is_swept_in_table: $crate::params!(@swept $type, $place),
             ..$crate::inputs::keys::KeyAbout::new(
                 $crate::inputs::params::joined($path, $name).leak(),
                 $crate::inputs::keys::AxisPlace::$place,
@@ -509,15 +521,19 @@ impl TableSchema {
         }
     }
 
-    /// Adds a key: its name, doc comment, range, and the value that it has if it is not given.
+    /// Adds a key: its name, doc comment, range, the value that it has if it is not given, and whether it may have a list of values instead.
     pub fn add<T: Described + Serialize>(
         &mut self,
         name: &'static str,
         lines: &[&str],
         range: Option<Range>,
         absent: Option<T>,
+        is_swept: bool,
     ) {
         let mut schema = T::schema();
+        if is_swept {
+            schema = one_or_list(schema);
+        }
         self.order.extend(own_or_inner(name, T::inner_names()));
         if !T::inner_names().is_empty() {
             let inner = schema["properties"].take();
@@ -552,6 +568,11 @@ impl TableSchema {
         }
         schema
     }
+}
+
+/// Returns the schema of one value or a list of values to sweep, given the schema of a value.
+fn one_or_list(one: Value) -> Value {
+    json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1, "uniqueItems": true }] })
 }
 
 /// Returns the schema of a key, given the schema of its values, its range and its doc comment.
@@ -650,6 +671,8 @@ impl Described for PathBuf {
 }
 
 impl<T: Described> Described for Option<T> {
+    const TAKES_LIST: bool = T::TAKES_LIST;
+
     fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         T::read(deserializer).map(Some)
     }
@@ -673,6 +696,8 @@ impl<T: Described> Described for Option<T> {
 }
 
 impl<T: Described> Described for Box<T> {
+    const TAKES_LIST: bool = T::TAKES_LIST;
+
     fn schema() -> Value {
         T::schema()
     }
@@ -683,6 +708,8 @@ impl<T: Described> Described for Box<T> {
 }
 
 impl<T: Described> Described for Vec<T> {
+    const TAKES_LIST: bool = true;
+
     fn schema() -> Value {
         json!({ "type": "array", "items": T::schema() })
     }
@@ -701,6 +728,8 @@ impl<T: Described, const N: usize> Described for [T; N]
 where
     [T; N]: DeserializeOwned,
 {
+    const TAKES_LIST: bool = true;
+
     fn schema() -> Value {
         json!({ "type": "array", "items": T::schema(), "minItems": N, "maxItems": N })
     }
@@ -735,9 +764,10 @@ impl<T: Described> Described for BTreeMap<String, T> {
 }
 
 impl<T: Described> Described for Axis<T> {
+    const TAKES_LIST: bool = true;
+
     fn schema() -> Value {
-        let one = T::schema();
-        json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1, "uniqueItems": true }] })
+        one_or_list(T::schema())
     }
 }
 
@@ -816,7 +846,9 @@ mod tests {
         assert_eq!(keys_of::<Example>()[0].title(), "size");
         let schema = Example::schema();
         assert_eq!(schema["required"], json!(["inner"]));
-        let length = json!({ "type": "number", "exclusiveMinimum": 0, "default": 4.0, "description": "Length, mm. Default: 4." });
+        let one = json!({ "type": "number", "exclusiveMinimum": 0 });
+        let list = json!({ "type": "array", "items": one, "minItems": 1, "uniqueItems": true });
+        let length = json!({ "anyOf": [one, list], "default": 4.0, "description": "Length, mm. Default: 4." });
         assert_eq!(schema["properties"]["length_mm"], length);
         assert_eq!(
             schema["properties"]["inner"]["properties"]["form"]["default"],

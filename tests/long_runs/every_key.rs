@@ -18,8 +18,8 @@ const OF_NO_TABLE: [&str; 4] = [
 ];
 
 /// Keys that act only on other data than that of the small studies: unequal classes, open meshes, sparse codes of many atoms, times of a scan, cylinders with
-/// ends, objects within reach in the first scene, and taxels with dampers.
-const OF_OTHER_DATA: [&str; 8] = [
+/// ends, and objects within reach in the first scene.
+const OF_OTHER_DATA: [&str; 7] = [
     "recognition.class_weight",
     "objects.close_holes_mm",
     "reconstruction.most_atoms",
@@ -27,7 +27,6 @@ const OF_OTHER_DATA: [&str; 8] = [
     "whole_body.flat_ends",
     "whole_body.scenes.0.object.motion.oscillation.period_s",
     "whole_body.scenes.0.object.surface_error_mm",
-    "whole_body.stiffness_n_per_m",
 ];
 
 /// Values that equal the absent key.

@@ -6,7 +6,8 @@
 //! "skin.stiffness_n_per_m" = [500.0, 2000.0]
 //! ```
 //! A key in `[axes]` replaces the same key in its own table. Each combination of values is a study of its own and is checked as any other study. A key that
-//! accepts a list in its own table is also an axis there, and may be written in either place. `"touches.offset_{x,y}_mm"` sets two keys together.
+//! accepts a list in its own table is also an axis there, and may be written in either place. Such axes change fastest, in the order of the declarations of
+//! their keys. `"touches.offset_{x,y}_mm"` sets two keys together.
 //!
 //! With `combine = "one_at_a_time"`, the first configuration has the values of the study's own tables. In each further configuration, one axis alone takes
 //! another value. The keys may then also have values in their own tables.

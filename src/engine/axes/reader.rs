@@ -1,6 +1,6 @@
 //! Reader and writer of the table `[axes]` of a study file.
 
-use super::study_axes::{CombineSpec, StudyAxes, find, insert, table_at};
+use super::study_axes::{CombineSpec, StudyAxes, find, insert, table_at, take_list};
 use super::study_axis::StudyAxis;
 use crate::error::{Error, Result};
 use crate::inputs::keys::{AxisPlace, KeyAbout};
@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Reads a study file with its axes, after checking that it contains only allowed keys. In the returned study, each key of an axis has its first value; keys
-/// that accept lists have all values.
+/// Reads a study file with its axes, after checking that it contains only allowed keys. A list of a key that has one value is an axis, in `[axes]` and in the
+/// table of the key. In the returned study, each key of an axis has its first value; keys whose type takes a list have all values.
 ///
 /// # Errors
 /// If the study is invalid. If an axis has no values, a repeated value, a key that is also given elsewhere, or a key that cannot be an axis. The error names
@@ -46,18 +46,16 @@ pub fn read<S: DeserializeOwned>(
     };
     for (key, start, value) in found {
         let line = line_of(text, start);
-        let values = list(place, text, &value)?;
+        let values = list_of(place, text, &value)?;
         let axis = StudyAxis {
             line: Some(line),
             ..StudyAxis::new(key, values, keys)
         };
         axis.check(place, keys)?;
         if axes.combine == CombineSpec::OneAtATime {
-            let keys = axis.keys();
-            let has_value = |key: &String| {
-                find(table.get_ref(), key).is_some_and(|own| own.get_ref().as_array().is_none())
-            };
-            if axis.has_column && !keys.iter().all(has_value) {
+            let own = find(table.get_ref(), &axis.key);
+            let has_list = own.is_some_and(|own| own.get_ref().as_array().is_some());
+            if axis.table_key().is_some() && (has_list || axis.has_column && own.is_none()) {
                 let allowed =
                     "one value in its table, from which the axes are varied one at a time";
                 return Err(axis.error(place, "none or several values in its table", allowed));
@@ -65,8 +63,9 @@ pub fn read<S: DeserializeOwned>(
             axes.axes.push(axis);
             continue;
         }
+        let is_of_table = axis.table_key().is_some();
         let value = match value.into_inner() {
-            DeValue::Array(values) if !axis.has_column => values[0].clone(),
+            DeValue::Array(values) if !is_of_table => values[0].clone(),
             list => Spanned::new(0..0, list),
         };
         for key in axis.keys() {
@@ -75,9 +74,24 @@ pub fn read<S: DeserializeOwned>(
                 return Err(axis.error(place, given, "one of the two"));
             }
         }
-        if !axis.has_column {
+        if !is_of_table {
             axes.axes.push(axis);
         }
+    }
+    for about in keys.iter().filter(|about| about.is_swept_in_table) {
+        let Some((start, list)) = take_list(table.get_mut(), about.path) else {
+            continue;
+        };
+        let axis = StudyAxis {
+            line: Some(line_of(text, start)),
+            is_of_table: true,
+            ..StudyAxis::new(about.path.to_owned(), list_of(place, text, &list)?, keys)
+        };
+        axis.check(place, keys)?;
+        if let DeValue::Array(values) = list.into_inner() {
+            insert(table.get_mut(), about.path, (start, values[0].clone()));
+        }
+        axes.axes.push(axis);
     }
     let study = S::deserialize(toml::Deserializer::from(table));
     let study = study.map_err(|error| {
@@ -93,20 +107,28 @@ pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
         return toml::to_string(study).expect(HAS_FORM);
     }
     let mut table = toml::Table::try_from(study).expect(HAS_FORM);
-    let mut lines = "\n[axes]\n".to_owned();
+    let mut lines = String::new();
+    if axes.has_own_table() {
+        lines.push_str("\n[axes]\n");
+    }
     if axes.combine == CombineSpec::OneAtATime {
         lines.push_str("combine = \"one_at_a_time\"\n");
     }
     for axis in &axes.axes {
+        let values = toml::Value::Array(axis.values.clone());
         for key in axis.keys() {
-            if axes.combine == CombineSpec::All
-                && let Some((inner, last)) = table_at(&mut table, &key)
-            {
+            let Some((inner, last)) = table_at(&mut table, &key) else {
+                continue;
+            };
+            if axis.is_of_table {
+                inner.insert(last.to_owned(), values.clone());
+            } else if axes.combine == CombineSpec::All {
                 inner.remove(last);
             }
         }
-        let values = toml::Value::Array(axis.values.clone());
-        lines.push_str(&format!("{:?} = {values}\n", axis.key));
+        if !axis.is_of_table {
+            lines.push_str(&format!("{:?} = {values}\n", axis.key));
+        }
     }
     toml::to_string(&table).expect(HAS_FORM) + &lines
 }
@@ -179,7 +201,7 @@ fn take_combine(
 }
 
 /// Returns the values of a TOML list, or an empty list for any other value.
-fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::Value>> {
+fn list_of(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::Value>> {
     let DeValue::Array(values) = value.get_ref() else {
         return Ok(Vec::new());
     };
@@ -203,6 +225,8 @@ mod tests {
             seed: u64;
             /// Swept key.
             ratio: Vec<f64> = Vec::new() => Any, Choice, Table;
+            /// Swept key with one value.
+            zone_mm: f64 = 0.0 => Any, Choice, Table;
             /// Table.
             skin: Skin;
             /// Key that is no axis.
@@ -259,6 +283,47 @@ mod tests {
                 .collect()
         };
         assert_eq!((again, keys(&same)), (study, keys(&axes)), "{text}");
+    }
+
+    #[test]
+    fn a_list_in_a_table_is_an_axis_that_changes_fastest() {
+        let read = |text: &str| read::<Study>("s.toml", text, keys_of::<Study>()).unwrap();
+        let pairs = |text: &str| -> Vec<(f64, f64)> {
+            let (study, axes) = read(text);
+            let variants = axes.variants("s.toml", &study).unwrap();
+            assert!(axes.n_combinations() >= variants.len() as f64);
+            let variants = variants.iter();
+            variants
+                .map(|(_, study)| (study.skin.stroke_mm, study.zone_mm))
+                .collect()
+        };
+        let in_table = "zone_mm = [0.0, 2.0]\nseed = 1\n[axes]\n\"skin.stroke_mm\" = [5.0, 1.0]";
+        let in_axes = "seed = 1\n[axes]\nzone_mm = [0.0, 2.0]\n\"skin.stroke_mm\" = [5.0, 1.0]";
+        let all = [(5.0, 0.0), (5.0, 2.0), (1.0, 0.0), (1.0, 2.0)];
+        for text in [in_table, in_axes] {
+            assert_eq!(pairs(text), all);
+            let (study, axes) = read(text);
+            let written = to_toml(&study, &axes);
+            assert!(written.contains("zone_mm = [0.0, 2.0]\n"), "{written}");
+            assert_eq!(pairs(&written), all);
+        }
+        let alone = in_table.replace("[axes]", "[axes]\ncombine = \"one_at_a_time\"");
+        let alone = alone + "\n[skin]\nstroke_mm = 5.0";
+        assert_eq!(pairs(&alone), all);
+        for (zones, wanted) in [
+            (
+                "[0.0, 0.0]",
+                "s.toml:1, key zone_mm: 0.0 twice; each value once",
+            ),
+            ("[]", "s.toml:1, key zone_mm: no list of values"),
+            (
+                "[0.0, \"a\"]",
+                "s.toml:1, key zone_mm: zone_mm = \"a\"; invalid type",
+            ),
+        ] {
+            let said = said(&in_table.replace("[0.0, 2.0]", zones));
+            assert!(said.contains(wanted), "{said}\nis not\n{wanted}");
+        }
     }
 
     #[test]

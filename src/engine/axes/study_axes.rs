@@ -23,12 +23,12 @@ words! {
     }
 }
 
-/// Axes of a study that its table `[axes]` declares; the last axis changes fastest.
+/// Axes of a study; the last axis changes fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudyAxes {
-    /// Axes in the order in which they are written in the study file.
+    /// Axes of the table `[axes]` in the order in which they are written, followed by lists in other tables, in the order of the declarations of their keys.
     pub axes: Vec<StudyAxis>,
-    /// Rule that selects the combinations of axis values that become configurations.
+    /// Rule that combines the axes of the table `[axes]`. Lists in other tables are combined with all of them.
     pub combine: CombineSpec,
 }
 
@@ -91,6 +91,11 @@ impl StudyAxes {
         self.axes.is_empty()
     }
 
+    /// Returns whether some axes are in the table `[axes]`.
+    pub fn has_own_table(&self) -> bool {
+        self.axes.iter().any(|axis| !axis.is_of_table)
+    }
+
     /// Returns whether an axis varies the given key.
     pub fn has(&self, key: &str) -> bool {
         let mut axes = self.axes.iter();
@@ -110,30 +115,37 @@ impl StudyAxes {
 
     /// Returns the number of combinations of axis values that become configurations.
     pub fn n_combinations(&self) -> f64 {
-        let lengths = self.axes.iter().map(|axis| axis.values.len() as f64);
-        match self.combine {
+        let (of_tables, of_axes): (Vec<_>, Vec<_>) =
+            self.axes.iter().partition(|axis| axis.is_of_table);
+        let lengths = of_axes.iter().map(|axis| axis.values.len() as f64);
+        let n_first: f64 = match self.combine {
             CombineSpec::All => lengths.product(),
             CombineSpec::OneAtATime => 1.0 + lengths.sum::<f64>(),
-        }
+        };
+        let of_tables = of_tables.iter().map(|axis| axis.values.len() as f64);
+        n_first * of_tables.product::<f64>()
     }
 
     /// Returns all combinations of axis values that become configurations; the last axis changes fastest. An entry of `None` means that the axis keeps its
     /// value in `study`.
     fn combinations(&self, study: &toml::Table) -> Vec<Vec<Option<toml::Value>>> {
+        let mut all = vec![Vec::new()];
+        let mut combined = &self.axes[..];
         if self.combine == CombineSpec::OneAtATime {
-            let mut all = vec![vec![None; self.axes.len()]];
-            for (place, axis) in self.axes.iter().enumerate() {
+            let n_alone = combined.partition_point(|axis| !axis.is_of_table);
+            let (alone, others) = combined.split_at(n_alone);
+            combined = others;
+            all = vec![vec![None; n_alone]];
+            for (place, axis) in alone.iter().enumerate() {
                 let others = axis.values.iter().filter(|value| !axis.is_at(study, value));
                 all.extend(others.map(|value| {
-                    let mut values = vec![None; self.axes.len()];
+                    let mut values = vec![None; n_alone];
                     values[place] = Some(value.clone());
                     values
                 }));
             }
-            return all;
         }
-        let mut all = vec![Vec::new()];
-        for axis in &self.axes {
+        for axis in combined {
             let longer = all.iter().flat_map(|values: &Vec<Option<toml::Value>>| {
                 let with = |value: &toml::Value| [&values[..], &[Some(value.clone())]].concat();
                 axis.values.iter().map(with)
@@ -176,7 +188,7 @@ impl StudyAxes {
     }
 
     /// Returns the error about a combination of axis values that the study's checks reject. The error names the axes whose keys the message `said` mentions, or
-    /// all axes.
+    /// all axes of the table `[axes]`.
     pub fn refused(&self, place: &str, values: &[Option<toml::Value>], said: &str) -> Error {
         let all = || {
             let axes = self.axes.iter().zip(values);
@@ -185,7 +197,7 @@ impl StudyAxes {
         let names = |axis: &StudyAxis| axis.keys().iter().any(|key| said.contains(key));
         let mut named: Vec<_> = all().filter(|(axis, _)| names(axis)).collect();
         if named.is_empty() {
-            named = all().collect();
+            named = all().filter(|(axis, _)| !axis.is_of_table).collect();
         }
         let given = |(axis, value): &(&StudyAxis, &toml::Value)| format!("{} = {value}", axis.key);
         let given: Vec<String> = named.iter().map(given).collect();
@@ -235,6 +247,22 @@ pub(super) fn find<'t, 'i>(table: &'t DeTable<'i>, key: &str) -> Option<&'t Span
         None => table.get(key),
         Some((first, rest)) => find(table.get(first)?.get_ref().as_table()?, rest),
     }
+}
+
+/// Removes the list at a dotted key path, and returns it with the position of its key in the text. Returns `None` if the key has no list.
+pub(super) fn take_list<'i>(
+    table: &mut DeTable<'i>,
+    key: &str,
+) -> Option<(usize, Spanned<DeValue<'i>>)> {
+    if let Some((first, rest)) = key.split_once('.') {
+        return match table.get_mut(first)?.get_mut() {
+            DeValue::Table(inner) => take_list(inner, rest),
+            _ => None,
+        };
+    }
+    table.get(key)?.get_ref().as_array()?;
+    let (name, list) = table.remove_entry(key)?;
+    Some((name.span().start, list))
 }
 
 /// Inserts a TOML value at a dotted key path, with `start` as its position in the text. Returns `None` if the path already has a value or a part of it is not a

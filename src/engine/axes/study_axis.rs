@@ -22,6 +22,8 @@ pub struct StudyAxis {
     pub about: Vec<&'static KeyAbout>,
     /// Whether result tables already contain a column with the values of this key.
     pub has_column: bool,
+    /// Whether the list of values is in the table of the key, not in `[axes]`.
+    pub is_of_table: bool,
     /// Distinct values of the axis, at least one.
     pub values: Vec<toml::Value>,
     /// Line number of the key in the study file; `None` if the axis does not come from a file.
@@ -35,23 +37,32 @@ impl StudyAxis {
             key,
             about: Vec::new(),
             has_column: false,
+            is_of_table: false,
             values,
             line: None,
         };
         let keys = axis.keys();
         let about = keys.iter().map(|key| find_key(known, without_test(key)));
         axis.about = about.collect::<Option<_>>().unwrap_or_default();
-        let mut about = axis.about.iter();
-        axis.has_column =
-            about.any(|about| about.axis == AxisPlace::Table && about.path == axis.key);
+        let own = axis.table_key();
+        axis.has_column = own.is_some_and(|about| !about.is_swept_in_table);
         axis
+    }
+
+    /// Returns the key of the axis if its values may also be a list in its own table.
+    pub(super) fn table_key(&self) -> Option<&'static KeyAbout> {
+        let mut about = self.about.iter().copied();
+        about.find(|about| about.axis == AxisPlace::Table && about.path == self.key)
     }
 
     /// Returns an error about an axis, with file, line and key of the axis.
     pub(super) fn error(&self, place: &str, given: impl ToString, allowed: impl ToString) -> Error {
         let line = self.line.map_or(String::new(), |line| format!(":{line}"));
-        let place = format!("{place}{line}, axes.{:?}", self.key);
-        Error::input(place, given, allowed)
+        let key = match self.is_of_table {
+            true => format!("key {}", self.key),
+            false => format!("axes.{:?}", self.key),
+        };
+        Error::input(format!("{place}{line}, {key}"), given, allowed)
     }
 
     pub(super) fn check(&self, place: &str, known: &[KeyAbout]) -> Result<()> {

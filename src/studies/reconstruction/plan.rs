@@ -112,7 +112,8 @@ impl ReconstructionPlan {
         check.used_springs(of_touches, reads_force, of_force)?;
         check.sensing(&spec.sensing, std::slice::from_ref(&array))?;
         check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
-        check.selection(&spec.sensing)?;
+        let allowed = "no such key: drawn ensembles select no taxels";
+        check.absent(("sensing", &spec.sensing), &["selection"], allowed)?;
         if let Some(rate) = spec.sensing.readings_per_s {
             let allowed = "no such key: only studies of recognition state the time to read a frame";
             return Err(check.error("sensing.readings_per_s", rate, allowed));

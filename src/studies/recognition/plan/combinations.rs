@@ -2,7 +2,7 @@
 
 use crate::signal::SensorError;
 use crate::studies::prelude::*;
-use crate::studies::recognition::spec::{DEFAULT_TEST_FRACTION, PoseSplit};
+use crate::studies::recognition::spec::PoseSplit;
 use crate::world::RestPoses;
 
 /// Combination of keys that a study refuses.
@@ -62,9 +62,6 @@ refusals! {
         => "given", SPLIT_BY_POSE;
     "recognition.folds" if |spec| splits_by_pose(spec) && spec.recognition.folds.is_some()
         => "given", SPLIT_BY_POSE;
-    // If the split is an axis, `test_fraction` describes the random split among its values.
-    "recognition.test_fraction" if |spec| splits_by_pose(spec) && spec.recognition.test_share() != DEFAULT_TEST_FRACTION && !spec.axes.has("recognition.split")
-        => "given", SPLIT_BY_POSE;
     "recognition.split" if |spec| splits_by_pose(spec) && !spec.places_objects()
         => spec.recognition.split.word(), "\"random\": only touches that a study places have a known pose";
     "recognition.next_touch" if |spec| chooses_touches(spec) && !spec.places_objects()
@@ -82,6 +79,8 @@ refusals! {
     "trials" if |spec| !(spec.trials / n_projections(spec)).is_multiple_of(n_folds(spec))
         => format!("{} splits of {} projections each", spec.trials / n_projections(spec), n_projections(spec)),
            format!("a multiple of recognition.folds = {} splits", n_folds(spec));
+    "skin.sensed" if |spec| spec.recorded.is_none() && reads_shear(spec) && rubs(spec) && spec.skin.friction.is_none()
+        => "shear", "skin.friction beside it";
 }
 
 pub(super) fn is_curved(spec: &StudySpec) -> bool {
@@ -95,6 +94,11 @@ pub(super) fn senses_force(spec: &StudySpec) -> bool {
 
 pub(super) fn slides(spec: &StudySpec) -> bool {
     spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)
+}
+
+/// Returns whether taxels move along the object. On a flat array that is pressed straight on, no taxel does.
+pub(super) fn rubs(spec: &StudySpec) -> bool {
+    slides(spec) || is_curved(spec)
 }
 
 pub(super) fn reads_shear(spec: &StudySpec) -> bool {

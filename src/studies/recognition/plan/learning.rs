@@ -1,14 +1,13 @@
 //! Checks of `[sensing]` and `[recognition]`: compression, features, classifiers and splits.
 
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::classifiers::parameters;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::studies::prelude::*;
 use crate::studies::recognition::plan::KeepTogether;
 use crate::studies::recognition::spec::{
     DEFAULT_C, DEFAULT_CV_FOLDS, DEFAULT_TEST_FRACTION, DEFAULT_TILT_DEG, RecognitionSpec,
-    SensingSpec, key,
+    SensingSpec,
 };
 
 impl Check<'_> {
@@ -49,23 +48,6 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the key `sensing.selection`: an ensemble must select taxels.
-    pub(crate) fn selection(&self, sensing: &SensingSpec) -> Result<()> {
-        let ensembles = sensing.ensemble.values();
-        let mut methods = ensembles
-            .iter()
-            .flat_map(|&ensemble| sensing.selections(ensemble));
-        let mut selections = sensing.selection.iter().flat_map(Axis::values);
-        if selections.any(|selection| selection != Selection::default())
-            && !methods.any(|method| method.is_some())
-        {
-            let given = "given, but no ensemble of the study selects taxels";
-            let allowed = "\"selected\" among sensing.ensemble, or no such key";
-            return Err(self.error("sensing.selection", given, allowed));
-        }
-        Ok(())
-    }
-
     /// Returns an error if an ensemble must be learned from frames but the study has no training frames.
     ///
     /// # Errors
@@ -82,26 +64,14 @@ impl Check<'_> {
         }
     }
 
-    /// Checks `[recognition]`: keys must be in range, each parameter of classifiers must be used by at least one classifier, and the solver must be able to train
-    /// every SVM.
+    /// Checks `[recognition]`: keys must be in range, and the solver must be able to train every SVM.
     pub(crate) fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
-        let mut changed = self.table("recognition", recognition)?;
-        changed.retain(|name, value| !key(&format!("recognition.{name}")).is_usual(value));
+        self.table("recognition", recognition)?;
         let kinds = recognition.kinds();
         self.list(
             "recognition.classifier",
             kinds.iter().map(|kind| kind.about().words).collect(),
         )?;
-        for key in parameters::keys() {
-            if let Some(value) = changed.get(key)
-                && !kinds.iter().any(|kind| kind.uses(key))
-            {
-                let given = format!("{value}, but no classifier of the study uses it");
-                let users = parameters::users(key);
-                let allowed = format!("{users} among recognition.classifier, or no such key");
-                return Err(self.error(&format!("recognition.{key}"), given, allowed));
-            }
-        }
         let features = recognition.all_features();
         let of_classifiers = kinds.iter().filter_map(|kind| match kind {
             ClassifierKind::Foreign(own) => {

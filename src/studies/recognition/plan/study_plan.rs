@@ -48,8 +48,8 @@ impl Plan {
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub fn new(place: &str, spec: StudySpec) -> Result<Self> {
         let plan = Self::with_any_keys(place, spec)?;
-        Check { place }.unused_keys(&plan)?;
-        Ok(plan)
+        let unused = Check { place }.unused_key([&plan]);
+        unused.map_or(Ok(plan), |(_, error)| Err(error))
     }
 
     /// Creates the plan of a study. In contrast to `new`, keys without effect are accepted.
@@ -90,7 +90,6 @@ impl Plan {
         };
         check.steps(&spec.signal)?;
         check.sensing(&spec.sensing, &arrays)?;
-        check.selection(&spec.sensing)?;
         let frames = match (&spec.human_touch, &spec.recorded) {
             (Some(human), _) => vec![human.n_frames()],
             (_, Some(_)) => touches.frames.values(),
@@ -138,19 +137,31 @@ impl Plan {
         let check = Check { place };
         check.configurations(spec.axes.n_combinations())?;
         let (axes, columns) = (spec.axes.clone(), spec.axis_columns());
-        let variants = axes.variants(place, &spec)?.into_iter().enumerate();
-        let plans = variants.map(|(number, (values, study))| {
+        let refused = |values: &[_], error: Error| match axes.has_own_table() {
+            true => axes.refused(place, values, &error.to_string()),
+            false => error,
+        };
+        let variants = axes.variants(place, &spec)?.into_iter();
+        let plans = variants.map(|(values, study)| {
             let study = StudySpec {
                 axes: axes.clone(),
                 ..study
             };
-            let plan = Self::new(place, study);
-            let plan = plan.map_err(|error| axes.refused(place, &values, &error.to_string()))?;
-            Ok((AxisValues::new(number, (&axes, &columns), &values), plan))
+            let plan = Self::with_any_keys(place, study);
+            let plan = plan.map_err(|error| refused(&values, error))?;
+            Ok((values, plan))
         });
         let plans = plans.collect::<Result<Vec<_>>>()?;
+        if let Some((number, error)) = check.unused_key(plans.iter().map(|(_, plan)| plan)) {
+            return Err(refused(&plans[number].0, error));
+        }
         check.configurations(plans.iter().map(|(_, plan)| plan.n_configurations()).sum())?;
-        Ok(plans)
+        let plans = plans.into_iter().enumerate();
+        let plans = plans.map(|(number, (values, plan))| {
+            let values = AxisValues::new(number, (&axes, &columns), &values);
+            (values, plan)
+        });
+        Ok(plans.collect())
     }
 
     /// Returns an upper bound of the number of configurations. The actual number is smaller if values of m are equal, or if several values of C are given for a
