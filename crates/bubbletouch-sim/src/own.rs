@@ -1,5 +1,5 @@
-//! Parts from outside of this crate: descriptions of sensor errors and ensembles that a program registers before it reads a study. A registered part is used
-//! like a part of this crate.
+//! Parts from outside of this crate: descriptions of sensor errors and ensembles that a program registers before it reads a study, and features that it provides
+//! while it runs a study. Such a part is used like a part of this crate.
 
 use crate::error::{Error, Result};
 use serde::{Serialize, Serializer};
@@ -17,7 +17,7 @@ pub(crate) fn is_word(text: &str) -> bool {
     (1..=MAX_LETTERS).contains(&text.len()) && text.chars().all(is_letter)
 }
 
-/// Registered part with its name, its version and its description of the type `A`. Results of equal names and versions are interchangeable.
+/// Part with its name, its version and its description of the type `A`. Results of equal names and versions are interchangeable.
 pub struct Own<A: 'static>(&'static Part<A>);
 
 struct Part<A> {
@@ -69,12 +69,7 @@ impl<A: Send + Sync> Registry<A> {
             let allowed = "a registration before the first study is read";
             return Err(Error::input(place, "registered too late", allowed));
         }
-        let part = Part {
-            name,
-            version,
-            about,
-        };
-        let own = Own(Box::leak(Box::new(part)));
+        let own = Own::leak(name, version, about);
         registered.push(own);
         Ok(own)
     }
@@ -99,6 +94,15 @@ impl<A: Send + Sync> Registry<A> {
 }
 
 impl<A> Own<A> {
+    /// Creates a part that is never removed.
+    pub(crate) fn leak(name: &'static str, version: &'static str, about: A) -> Self {
+        Self(Box::leak(Box::new(Part {
+            name,
+            version,
+            about,
+        })))
+    }
+
     /// Name of the part in studies.
     pub const fn name(&self) -> &'static str {
         self.0.name
@@ -133,13 +137,13 @@ impl<A> Eq for Own<A> {}
 
 impl<A> Hash for Own<A> {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        self.name().hash(state);
+        (self.name(), self.version()).hash(state);
     }
 }
 
 impl<A> Ord for Own<A> {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.name().cmp(other.name())
+        (self.name(), self.version()).cmp(&(other.name(), other.version()))
     }
 }
 

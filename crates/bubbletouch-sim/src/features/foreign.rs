@@ -5,14 +5,11 @@
 
 use super::Features;
 use crate::error::{Error, Result};
-use crate::own::is_word;
+use crate::own::{Own, is_word};
 use ndarray::{Array2, ArrayView2};
 use serde_json::{Map, Value};
 use std::cell::RefCell;
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
-use std::fmt;
-use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -41,13 +38,11 @@ pub trait ForeignFeatures: Send + Sync {
     }
 }
 
-/// Identity of features from outside of this crate: their name and their version. Results of equal identities are interchangeable.
-#[derive(Clone, Copy)]
-pub struct Foreign(&'static ForeignAbout);
+/// Identity of features from outside of this crate: their name in tables and charts, and their version. Results of equal identities are interchangeable.
+pub type Foreign = Own<ForeignCode>;
 
-struct ForeignAbout {
-    name: String,
-    version: String,
+/// Code of features from outside of this crate, while a program provides it.
+pub struct ForeignCode {
     /// Features of which these are a copy with other values of parameters, and these values; `None` for features that a program provides.
     parameters: Option<(Foreign, ForeignParameters)>,
     provided: Mutex<Vec<Arc<dyn ForeignFeatures>>>,
@@ -101,13 +96,12 @@ impl Foreign {
         if let Some(found) = found {
             return *found;
         }
-        let new = Self(Box::leak(Box::new(ForeignAbout {
-            name: name.to_owned(),
-            version: version.to_owned(),
+        let code = ForeignCode {
             parameters,
             provided: Mutex::default(),
             n_values: Mutex::default(),
-        })));
+        };
+        let new = Self::leak(name.to_owned().leak(), version.to_owned().leak(), code);
         known.push(new);
         new
     }
@@ -131,23 +125,13 @@ impl Foreign {
     /// Provides the code of these features until the returned value is dropped. Studies that this thread loads meanwhile may use the name alone.
     #[must_use = "the features are provided until the value is dropped"]
     pub fn provide(self, features: Arc<dyn ForeignFeatures>) -> CodeGuard {
-        lock(&self.0.provided).push(features.clone());
+        lock(&self.about().provided).push(features.clone());
         GIVEN.with_borrow_mut(|given| given.push(self));
         CodeGuard {
             foreign: self,
             features,
             of_thread: PhantomData,
         }
-    }
-
-    /// Name of the features in tables and charts.
-    pub fn name(&self) -> &'static str {
-        &self.0.name
-    }
-
-    /// Version of the features. Results of different versions are kept apart.
-    pub fn version(&self) -> &'static str {
-        &self.0.version
     }
 
     /// Returns the features (n × k) of n frames of m measurements (n × m).
@@ -163,7 +147,9 @@ impl Foreign {
         };
         let made = code.compute(frames)?;
         let (n, k) = made.dim();
-        let known = *lock(&self.0.n_values).entry(frames.ncols()).or_insert(k);
+        let known = *lock(&self.about().n_values)
+            .entry(frames.ncols())
+            .or_insert(k);
         if n != frames.nrows() || k == 0 || k != known {
             let given = format!("shape ({n}, {k}) for {} frames", frames.nrows());
             let allowed = format!("({}, {})", frames.nrows(), known.max(1));
@@ -180,8 +166,8 @@ impl Foreign {
 
     /// Returns the code of these features; `None` if no program provides it.
     fn code(self) -> Result<Option<Arc<dyn ForeignFeatures>>> {
-        match &self.0.parameters {
-            None => Ok(lock(&self.0.provided).last().cloned()),
+        match &self.about().parameters {
+            None => Ok(lock(&self.about().provided).last().cloned()),
             Some((of, parameters)) => of.code()?.map(|code| code.with(parameters)).transpose(),
         }
     }
@@ -199,50 +185,10 @@ impl Foreign {
     /// # Errors
     /// If [`compute`](Self::compute) fails.
     pub fn n_values(self, m: usize) -> Result<usize> {
-        if let Some(known) = lock(&self.0.n_values).get(&m) {
+        if let Some(known) = lock(&self.about().n_values).get(&m) {
             return Ok(*known);
         }
         Ok(self.compute(Array2::zeros((1, m)).view())?.ncols())
-    }
-}
-
-impl PartialEq for Foreign {
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.0, other.0)
-    }
-}
-
-impl Eq for Foreign {}
-
-impl Hash for Foreign {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        (self.name(), self.version()).hash(state);
-    }
-}
-
-impl Ord for Foreign {
-    fn cmp(&self, other: &Self) -> Ordering {
-        (self.name(), self.version()).cmp(&(other.name(), other.version()))
-    }
-}
-
-impl PartialOrd for Foreign {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-/// Writes the name and the version, as in the names of work items: `Foreign(mine@1)`.
-impl fmt::Debug for Foreign {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{self}")
-    }
-}
-
-/// Writes the name and the version, as in a study file: `mine@1`.
-impl fmt::Display for Foreign {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}@{}", self.name(), self.version())
     }
 }
 
@@ -256,7 +202,7 @@ pub struct CodeGuard {
 
 impl Drop for CodeGuard {
     fn drop(&mut self) {
-        let mut provided = lock(&self.foreign.0.provided);
+        let mut provided = lock(&self.foreign.about().provided);
         let place = provided
             .iter()
             .rposition(|one| Arc::ptr_eq(one, &self.features));
