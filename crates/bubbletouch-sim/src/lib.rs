@@ -20,7 +20,7 @@
 //! | module | contents |
 //! |---|---|
 //! | [`geometry`], [`random`], [`error`] | poses and boxes; named random streams; errors |
-//! | [`statistics`] | quantiles, confidence intervals |
+//! | [`statistics`], `linalg` | quantiles, confidence intervals; factorisations of matrices |
 //!
 //! # A touch
 //!
@@ -106,6 +106,7 @@ pub mod files;
 #[doc(hidden)]
 pub mod frame_coding;
 pub mod geometry;
+mod linalg;
 pub mod mesh;
 pub mod objects;
 pub mod own;

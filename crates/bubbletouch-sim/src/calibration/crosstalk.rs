@@ -8,8 +8,9 @@
 
 use super::gain::Gains;
 use super::robust::{jackknife, mode};
+use super::saturation::CLIPPED;
 use super::{Estimate, RecordedSkin};
-use crate::signal::Crosstalk;
+use crate::signal::{Crosstalk, Effect};
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
 
@@ -19,8 +20,6 @@ const N_FRAMES: usize = 1000;
 const PRESSED: [f64; 2] = [0.15, 60.0];
 /// Maximum reading of an unpressed taxel: as a fraction of the full scale, and in standard deviations of the noise.
 const QUIET: [f64; 2] = [0.01, 3.0];
-/// Largest reading that counts as not clipped, as a fraction of the full scale.
-const CLIPPED: f64 = 0.97;
 /// Minimum number of taxels beside an edge of contact that an estimate needs.
 const FEWEST: usize = 200;
 /// Number of fixed-point iterations that estimate the leaked fraction.
@@ -111,14 +110,12 @@ fn shares_of(skin: &RecordedSkin, frame: &Array1<f64>, leak: f64, noise: f64) ->
 fn sharpened(skin: &RecordedSkin, frame: &[f64], leak: f64) -> Vec<f64> {
     let (ny, nx) = skin.shape;
     let grid = Grid { nx, ny, pitch: 1.0 };
+    let crosstalk = Crosstalk::new(leak, &grid);
     let mut felt = frame.to_vec();
-    let Ok(crosstalk) = Crosstalk::new(leak, &grid) else {
-        return felt;
-    };
     let (mut read, mut scratch) = (felt.clone(), felt.clone());
     for _ in 0..N_STEPS {
         read.copy_from_slice(&felt);
-        crosstalk.spread(&mut read, &mut scratch);
+        crosstalk.apply_to_frame(&mut read, &mut scratch);
         for ((felt, x), read) in felt.iter_mut().zip(frame).zip(&read) {
             *felt += x - read;
         }

@@ -9,15 +9,16 @@
 //! extended downwards by the effect of this mean, Var z̄ E[1/x]².
 
 use super::robust::{jackknife, mean, median};
+use super::saturation::CLIPPED;
 use super::touched::Errors;
 use super::{Estimate, RecordedSkin};
-use crate::signal::Smoothing;
+use crate::signal::{Effect, Smoothing};
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
+use std::ops::Range;
 
-/// Range of the readings of a well-pressed taxel, relative to the full scale. Noise and edges of contacts affect lower readings, and clipping affects higher
-/// readings.
-const PRESSED: [f64; 2] = [0.05, 0.97];
+/// Smallest reading of a well-pressed taxel, relative to the full scale. Noise and edges of contacts affect lower readings.
+const PRESSED: f64 = 0.05;
 /// Minimum reading of a well-pressed taxel, in standard deviations of the noise.
 const ABOVE_NOISE: f64 = 10.0;
 /// Minimum number of even frames, and of odd frames, in which a taxel and its neighbours are well pressed.
@@ -44,9 +45,9 @@ impl Gains {
         touched: &Array2<f64>,
         (errors, width): (&Errors, f64),
     ) -> Self {
-        let pressed = [PRESSED[0].max(ABOVE_NOISE * errors.total()), PRESSED[1]];
+        let pressed = PRESSED.max(ABOVE_NOISE * errors.total())..CLIPPED;
         let found: Vec<Option<Halves>> = (0..skin.n_taxels())
-            .map(|taxel| halves(skin, touched, taxel, pressed))
+            .map(|taxel| halves(skin, touched, taxel, &pressed))
             .collect();
         let inverse = mean(found.iter().flatten().map(|halves| halves.inverse));
         let halves: Vec<Option<[f64; 2]>> = found
@@ -92,14 +93,14 @@ fn halves(
     skin: &RecordedSkin,
     touched: &Array2<f64>,
     taxel: usize,
-    [least, most]: [f64; 2],
+    pressed: &Range<f64>,
 ) -> Option<Halves> {
     let near = skin.neighbours(taxel)?;
     let five = [taxel, near[0], near[1], near[2], near[3]];
     let (mut halves, mut inverses) = ([Vec::new(), Vec::new()], Vec::new());
     for (frame, readings) in touched.outer_iter().enumerate() {
         let five = five.map(|taxel| readings[taxel]);
-        if five.iter().all(|reading| (least..most).contains(reading)) {
+        if five.iter().all(|reading| pressed.contains(reading)) {
             let around = five[1..].iter().map(|reading| reading.ln());
             halves[frame % 2].push(five[0].ln() - 0.25 * around.sum::<f64>());
             inverses.push(1.0 / five[0]);
@@ -133,9 +134,8 @@ fn operator_norm((rows, columns): (usize, usize), width: f64) -> f64 {
     for near in [middle - 1, middle + 1, middle - columns, middle + columns] {
         response[near] = -0.25;
     }
-    if let Ok(smoothing) = Smoothing::new(width, &grid) {
-        smoothing.apply(&mut response, &mut vec![0.0; smoothing.scratch_len()]);
-    }
+    let smoothing = Smoothing::new(width, &grid).expect("the width is an estimate");
+    smoothing.apply_to_frame(&mut response, &mut vec![0.0; smoothing.scratch_len()]);
     response.iter().map(|r| r * r).sum()
 }
 

@@ -2,6 +2,10 @@
 
 use statrs::distribution::{Binomial, DiscreteCDF};
 
+/// Largest reading that certainly is not clipped, as a fraction of the full scale; a taxel above it may be at the end of its stroke. If larger, clipped readings
+/// bias estimates; if smaller, estimates use fewer readings.
+pub(super) const CLIPPED: f64 = 0.97;
+
 /// Minimum number of frames in which a plateau (a largest reading that many frames share) occurs; `MIN_SHARE` is the minimum fraction of all frames.
 const MIN_FRAMES: usize = 3;
 const MIN_SHARE: f64 = 0.01;

@@ -7,7 +7,7 @@ use super::estimate::NONE;
 use super::robust::jackknife;
 use super::untouched::{Untouched, Zero};
 use super::{Estimate, RecordedSkin};
-use crate::signal::Smoothing;
+use crate::signal::{Effect, Smoothing};
 use crate::world::Grid;
 use std::f64::consts::FRAC_PI_2;
 
@@ -57,19 +57,13 @@ impl Line {
             ny: 1,
             pitch: 1.0,
         };
-        let Ok(smoothing) = Smoothing::new(width, &grid) else {
-            return Self {
-                own: 1.0,
-                of_pairs: 1.0,
-                neighbours: 0.0,
-            };
-        };
+        let smoothing = Smoothing::new(width, &grid).expect("the width is within the array");
         let mut scratch = vec![0.0; smoothing.scratch_len()];
         let (mut own, mut of_pairs, mut neighbours) = (0.0, 0.0, 0.0);
         for impulse in 0..n {
             let mut response = vec![0.0; n];
             response[impulse] = 1.0;
-            smoothing.apply(&mut response, &mut scratch);
+            smoothing.apply_to_frame(&mut response, &mut scratch);
             own += response.iter().map(|r| r * r).sum::<f64>();
             for pair in response.windows(2) {
                 of_pairs += 0.5 * (pair[0] * pair[0] + pair[1] * pair[1]);

@@ -4,11 +4,10 @@
 //! taxels does not cancel, so only readings well above the noise are counted.
 
 use super::robust::{jackknife, median};
+use super::saturation::CLIPPED;
 use super::{Estimate, RecordedSkin};
 use ndarray::Array2;
 
-/// Smallest reading, as a fraction of the full scale, at which a taxel may be at the end of its stroke. There, the force exceeds the spring force.
-const CLIPPED: f64 = 0.97;
 /// Minimum number of frames for an estimate of the stiffness.
 const MIN_FRAMES: usize = 40;
 /// Smallest reading that the estimate uses if readings are clipped at zero, in standard deviations of the noise.
@@ -37,6 +36,7 @@ pub(super) fn estimate(
     }
     let counts = |reading: &f64| clipped_noise.is_none() || *reading > ABOVE_NOISE * noise;
     let frames = touched.outer_iter().zip(forces);
+    // At the end of a stroke, the force exceeds the spring force.
     let frames = frames.filter(|(frame, _)| !frame.iter().any(|&reading| reading >= CLIPPED));
     let sums = frames.map(|(frame, force)| {
         let filled = skin.filled(frame).into_iter();

@@ -90,15 +90,27 @@ impl Chart {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::shape;
     use super::*;
     use crate::world::{ArrayLayout, Grid};
+
+    /// Returns the places of n × n taxels of a layout with pitch 1.
+    fn places(layout: ArrayLayout, n: usize) -> Vec<DVec2> {
+        let grid = Grid {
+            nx: n,
+            ny: n,
+            pitch: 1.0,
+        };
+        let taxels = layout.taxels(&grid, 0.0).unwrap();
+        taxels.centers().iter().map(|c| c.truncate()).collect()
+    }
 
     #[test]
     fn the_image_of_a_square_grid_is_the_grid() {
         let places: Vec<DVec2> = (0..12)
             .map(|k| DVec2::new(f64::from(k % 4) - 1.5, f64::from(k / 4) - 1.0) * 2e-3)
             .collect();
-        let chart = Chart::new(&places, 2e-3, (ImageShape { ny: 3, nx: 4 }, 2e-3));
+        let chart = Chart::new(&places, 2e-3, (shape(3, 4), 2e-3));
         let frames = Array2::from_shape_fn((5, 12), |(i, j)| (7 * i + j) as f64);
         let difference = chart.images(frames.view()) - &frames;
         assert!(difference.iter().all(|d| d.abs() < 1e-12));
@@ -106,16 +118,10 @@ mod tests {
 
     #[test]
     fn the_image_of_a_foveated_grid_has_no_holes() {
-        let grid = Grid {
-            nx: 24,
-            ny: 24,
-            pitch: 1.0,
-        };
         let layout = ArrayLayout::Foveated;
-        let taxels = layout.taxels(&grid, 0.0).unwrap();
-        let places: Vec<DVec2> = taxels.centers().iter().map(|c| c.truncate()).collect();
+        let places = places(layout, 24);
         let half = places.iter().map(|place| place.x).fold(0.0, f64::max);
-        let image = (ImageShape { ny: 24, nx: 24 }, (2.0 * half + 1.0) / 24.0);
+        let image = (shape(24, 24), (2.0 * half + 1.0) / 24.0);
         let ones = Array2::ones((1, 576));
         let chart = Chart::with_gaps(&places, (1.0, layout.widest_pitches()), image);
         let found = chart.images(ones.view());
@@ -127,15 +133,8 @@ mod tests {
 
     #[test]
     fn a_constant_stays_and_a_slope_is_followed_wherever_the_patch_is() {
-        let grid = Grid {
-            nx: 16,
-            ny: 16,
-            pitch: 1.0,
-        };
-        let hexagonal = ArrayLayout::Hexagonal.taxels(&grid, 0.0).unwrap();
-        let centers = hexagonal.centers().iter();
-        let places: Vec<DVec2> = centers.map(|center| center.truncate()).collect();
-        let chart = Chart::new(&places, 1.0, (ImageShape { ny: 30, nx: 30 }, 1.0));
+        let places = places(ArrayLayout::Hexagonal, 16);
+        let chart = Chart::new(&places, 1.0, (shape(30, 30), 1.0));
         let slope = DVec2::new(0.3, -0.2);
         let values = |of: &dyn Fn(&DVec2) -> f64| {
             let frame: Vec<f64> = places.iter().map(of).collect();

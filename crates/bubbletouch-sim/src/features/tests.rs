@@ -5,6 +5,10 @@ use crate::random::Seed;
 use crate::world::ImageShape;
 use rand::Rng;
 
+pub(super) fn shape(ny: usize, nx: usize) -> ImageShape {
+    ImageShape { ny, nx }
+}
+
 /// Returns a test frame with an irregular blob with holes in the middle third of an array; values are between 0 and 1.
 pub(super) fn frame(ImageShape { ny, nx }: ImageShape) -> Vec<f64> {
     let mut rng = Seed::new(7).named("frame").rng();
@@ -19,22 +23,20 @@ pub(super) fn frame(ImageShape { ny, nx }: ImageShape) -> Vec<f64> {
 /// Returns the features of a noise-free frame of full scale 1.
 pub(super) fn features_of(feature: ImageFeature, shape: ImageShape, frame: &[f64]) -> Vec<f64> {
     let join = Join::new(&[feature]).unwrap();
-    written(join, shape, frame, 0.0)
+    written(join, shape, frame, Cut::default())
 }
 
-fn written(join: Join, shape: ImageShape, frame: &[f64], level: f64) -> Vec<f64> {
-    let cut = Cut {
-        level,
-        foremost: None,
-    };
-    cut_off(join, shape, frame, cut)
-}
-
-fn cut_off(join: Join, shape: ImageShape, frame: &[f64], cut: Cut) -> Vec<f64> {
+fn written(join: Join, shape: ImageShape, frame: &[f64], cut: Cut) -> Vec<f64> {
     let features = ImageFeatures::new(join, shape, 1.0, cut);
     let mut out = vec![f64::NAN; join.n_values(shape)];
     features.write(frame, &mut FeatureWorkspace::default(), &mut out);
     out
+}
+
+/// Returns all features of a frame of which some parts are omitted.
+fn all(shape: ImageShape, frame: &[f64], level: f64, foremost: Option<f64>) -> Vec<f64> {
+    let join = Join::new(ImageFeature::ALL).unwrap();
+    written(join, shape, frame, Cut { level, foremost })
 }
 
 /// Returns the frame shifted cyclically by whole taxels.
@@ -66,68 +68,53 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 /// Tolerance for rounding errors of numbers from 1 to 10, and of square roots of numbers that are 0 except for rounding.
 const ROUNDING: f64 = 1e-7;
 
-#[test]
-fn a_shift_on_the_array_changes_no_feature() {
-    for shape in [(30, 30), (24, 36), (31, 27)].map(|(ny, nx)| ImageShape { ny, nx }) {
-        let frame = frame(shape);
-        for &feature in ImageFeature::ALL {
-            let found = features_of(feature, shape, &frame);
-            assert!(found.iter().any(|&value| value > 0.1), "{feature:?}");
-            for by in [(0, 1), (3, 0), (5, 7)] {
-                let moved = features_of(feature, shape, &shifted(&frame, shape, by));
-                let difference = largest_difference(&found, &moved);
-                assert!(difference < ROUNDING, "{feature:?} {by:?}: {difference}");
-            }
-        }
+/// Asserts that exactly the features `same` are equal for two frames.
+fn assert_same(grid: ImageShape, a: &[f64], b: &[f64], same: &[ImageFeature]) {
+    for feature in ImageFeature::ALL {
+        let [before, after] = [a, b].map(|frame| features_of(*feature, grid, frame));
+        assert!(before.iter().any(|&value| value > 0.1), "{feature:?}");
+        let difference = largest_difference(&before, &after);
+        let is_same = difference < ROUNDING;
+        assert_eq!(is_same, same.contains(feature), "{feature:?}: {difference}");
     }
 }
 
 #[test]
-fn a_shift_around_the_edge_changes_no_fourier_magnitude_but_the_others() {
-    let shape = ImageShape { ny: 24, nx: 24 };
-    let frame = frame(shape);
-    let moved = shifted(&frame, shape, (12, 5));
-    for &feature in ImageFeature::ALL {
-        let [before, after] = [&frame, &moved].map(|frame| features_of(feature, shape, frame));
-        let is_cyclic = matches!(
-            feature,
-            ImageFeature::FourierMagnitude | ImageFeature::FourierMellin
-        );
-        let is_same = largest_difference(&before, &after) < ROUNDING;
-        assert_eq!(is_same, is_cyclic, "{feature:?}");
+fn a_shift_on_the_array_changes_no_feature_and_one_around_the_edge_no_fourier_magnitude() {
+    for grid in [(30, 30), (24, 36), (31, 27)].map(|(ny, nx)| shape(ny, nx)) {
+        let frame = frame(grid);
+        for by in [(0, 1), (3, 0), (5, 7)] {
+            assert_same(grid, &frame, &shifted(&frame, grid, by), ImageFeature::ALL);
+        }
     }
+    let grid = shape(24, 24);
+    let (frame, cyclic) = (
+        frame(grid),
+        [ImageFeature::FourierMagnitude, ImageFeature::FourierMellin],
+    );
+    assert_same(grid, &frame, &shifted(&frame, grid, (12, 5)), &cyclic);
 }
 
 #[test]
 fn a_quarter_turn_changes_none_but_the_fourier_magnitude() {
     for side in [24, 31] {
-        let frame = frame(ImageShape { ny: side, nx: side });
+        let frame = frame(shape(side, side));
         let turned = turned(&frame, side);
-        for &feature in ImageFeature::ALL {
-            let [before, after] = [&frame, &turned]
-                .map(|frame| features_of(feature, ImageShape { ny: side, nx: side }, frame));
-            let difference = largest_difference(&before, &after);
-            let is_turned = feature == ImageFeature::FourierMagnitude;
-            assert_eq!(
-                difference > ROUNDING,
-                is_turned,
-                "{feature:?}: {difference}"
-            );
-        }
+        assert_same(shape(side, side), &frame, &turned, &ImageFeature::ALL[1..]);
     }
 }
 
 #[test]
 fn a_mirror_image_has_the_same_harmonics_and_the_descriptors_but_three() {
-    let shape = ImageShape { ny: 24, nx: 24 };
-    let frame = frame(shape);
+    let grid = shape(24, 24);
+    let frame = frame(grid);
     let mirrored = mirrored(&frame, 24);
     for (feature, n_changed) in [
         (ImageFeature::FourierMellin, 0),
         (ImageFeature::PolarHarmonics, 0),
         (ImageFeature::Descriptors, 3),
     ] {
-        let [before, after] = [&frame, &mirrored].map(|frame| features_of(feature, shape, frame));
+        let [before, after] = [&frame, &mirrored].map(|frame| features_of(feature, grid, frame));
         let pairs = before.iter().zip(&after);
         let changed: Vec<_> = pairs.filter(|(a, b)| (*a - *b).abs() > ROUNDING).collect();
         assert_eq!(changed.len(), n_changed, "{feature:?}");
@@ -137,8 +124,8 @@ fn a_mirror_image_has_the_same_harmonics_and_the_descriptors_but_three() {
 
 #[test]
 fn more_pressure_multiplies_roots_and_the_aligned_image() {
-    let shape = ImageShape { ny: 20, nx: 20 };
-    let frame = frame(shape);
+    let grid = shape(20, 20);
+    let frame = frame(grid);
     let more: Vec<f64> = frame.iter().map(|value| 4.0 * value).collect();
     for (feature, factor) in [
         (ImageFeature::FourierMagnitude, 2.0),
@@ -146,70 +133,55 @@ fn more_pressure_multiplies_roots_and_the_aligned_image() {
         (ImageFeature::PolarHarmonics, 2.0),
         (ImageFeature::Aligned, 4.0),
     ] {
-        let found = features_of(feature, shape, &frame);
+        let found = features_of(feature, grid, &frame);
         let scaled: Vec<f64> = found.iter().map(|value| factor * value).collect();
-        let difference = largest_difference(&scaled, &features_of(feature, shape, &more));
+        let difference = largest_difference(&scaled, &features_of(feature, grid, &more));
         assert!(difference < ROUNDING, "{feature:?}: {difference}");
     }
 }
 
 #[test]
 fn what_is_below_the_level_counts_as_nothing() {
-    let shape = ImageShape { ny: 18, nx: 21 };
-    let frame = frame(shape);
-    let kept = |value: f64| if value >= 0.4 { value } else { 0.0 };
-    let above: Vec<f64> = frame.iter().map(|&value| kept(value)).collect();
-    let noisy: Vec<f64> = frame
-        .iter()
-        .enumerate()
-        .map(|(i, &value)| match value >= 0.4 {
-            true => value,
-            false => [-3.0, 0.39, f64::NAN][i % 3],
-        })
-        .collect();
-    let all = Join::new(ImageFeature::ALL).unwrap();
-    let [noisy, of_above] =
-        [(&noisy, 0.4), (&above, 0.0)].map(|(frame, level)| written(all, shape, frame, level));
-    assert!(noisy == of_above);
-    assert!(of_above != written(all, shape, &frame, 0.0));
+    let grid = shape(18, 21);
+    let frame = frame(grid);
+    let changed = |below: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let values = frame.iter().enumerate();
+        let value = |(i, &value)| if value >= 0.4 { value } else { below(i) };
+        values.map(value).collect()
+    };
+    let of_above = all(grid, &changed(&|_| 0.0), 0.0, None);
+    let noisy = changed(&|i| [-3.0, 0.39, f64::NAN][i % 3]);
+    assert!(all(grid, &noisy, 0.4, None) == of_above);
+    assert!(all(grid, &frame, 0.0, None) != of_above);
 }
 
 #[test]
 fn nothing_has_no_features_and_any_array_has_finite_ones() {
-    for shape in
-        [(1, 1), (1, 5), (5, 1), (2, 2), (3, 3), (7, 4)].map(|(ny, nx)| ImageShape { ny, nx })
-    {
-        let n = shape.ny * shape.nx;
-        let all = Join::new(ImageFeature::ALL).unwrap();
-        assert!(
-            written(all, shape, &vec![0.0; n], 0.0)
-                .iter()
-                .all(|&v| v == 0.0)
-        );
-        for frame in [
-            vec![0.5; n],
-            (0..n).map(|i| i as f64).collect(),
-            vec![1e100; n],
-        ] {
-            let found = written(all, shape, &frame, 0.0);
-            assert!(found.iter().all(|v| !v.is_nan()), "{shape:?}");
+    for grid in [(1, 1), (1, 5), (5, 1), (2, 2), (3, 3), (7, 4)].map(|(ny, nx)| shape(ny, nx)) {
+        let of = |value: &dyn Fn(usize) -> f64| {
+            let frame: Vec<f64> = (0..grid.n_values()).map(value).collect();
+            all(grid, &frame, 0.0, None)
+        };
+        assert!(of(&|_| 0.0).iter().all(|&v| v == 0.0));
+        for found in [of(&|_| 0.5), of(&|i| i as f64), of(&|_| 1e100)] {
+            assert!(found.iter().all(|v| !v.is_nan()), "{grid:?}");
         }
     }
 }
 
 #[test]
 fn a_join_is_its_features_one_after_the_other_in_whatever_order_it_is_written() {
-    let shape = ImageShape { ny: 16, nx: 16 };
-    let frame = frame(shape);
+    let grid = shape(16, 16);
+    let frame = frame(grid);
     let features = Features::try_from("descriptors + fourier_mellin".to_owned()).unwrap();
     assert_eq!(String::from(features), "fourier_mellin+descriptors");
     let parts = [ImageFeature::FourierMellin, ImageFeature::Descriptors];
     let expected = parts
-        .map(|feature| features_of(feature, shape, &frame))
+        .map(|feature| features_of(feature, grid, &frame))
         .concat();
     let join = features.of_image().unwrap();
-    assert_eq!(features.n_values(3, shape), expected.len());
-    assert_eq!(written(join, shape, &frame, 0.0), expected);
+    assert_eq!(features.n_values(3, grid), expected.len());
+    assert_eq!(written(join, grid, &frame, Cut::default()), expected);
 }
 
 #[test]
@@ -242,20 +214,13 @@ fn every_name_reads_back_and_others_are_told_what_there_is() {
 /// and touches more taxels.
 #[test]
 fn what_is_behind_the_foremost_point_does_not_change_with_depth() {
-    let shape = ImageShape { ny: 32, nx: 32 };
+    let grid = shape(32, 32);
     let pressed = |depth: f64| -> Vec<f64> {
         let away = |i: usize| ((i % 32) as f64 - 15.0).powi(2) + ((i / 32) as f64 - 14.0).powi(2);
         let surface = |i: usize| away(i) / 301.7 + 0.02 * ((i % 7) as f64).sin().abs();
         (0..1024).map(|i| (depth - surface(i)).max(0.0)).collect()
     };
-    let all = Join::new(ImageFeature::ALL).unwrap();
-    let found = |depth, foremost| {
-        let cut = Cut {
-            level: 0.0,
-            foremost,
-        };
-        cut_off(all, shape, &pressed(depth), cut)
-    };
+    let found = |depth, foremost| all(grid, &pressed(depth), 0.0, foremost);
     let [shallow, deep] = [0.4, 0.75].map(|depth| found(depth, Some(0.3)));
     assert!(largest_difference(&shallow, &deep) < ROUNDING);
     let [shallow, deep] = [0.4, 0.75].map(|depth| found(depth, None));

@@ -8,11 +8,11 @@ const BLOCK: usize = 64;
 
 /// Lower triangular Cholesky factor L of a symmetric matrix A = L Lᵀ.
 #[derive(Clone, Debug)]
-pub(super) struct Cholesky(Array2<f64>);
+pub(crate) struct Cholesky(Array2<f64>);
 
 impl Cholesky {
     /// Factorises a symmetric matrix A, of which only the lower triangle is used. Returns `None` if A is not positive definite.
-    pub(super) fn new(mut a: Array2<f64>) -> Option<Self> {
+    pub(crate) fn new(mut a: Array2<f64>) -> Option<Self> {
         let n = a.nrows();
         for start in (0..n).step_by(BLOCK) {
             let end = (start + BLOCK).min(n);
@@ -44,7 +44,7 @@ impl Cholesky {
     }
 
     /// Returns the solution X of A X = B, where A is the factorised matrix; B has shape (n, number of right-hand sides).
-    pub(super) fn solve(&self, b: ArrayView2<f64>) -> Array2<f64> {
+    pub(crate) fn solve(&self, b: ArrayView2<f64>) -> Array2<f64> {
         let mut x = b.as_standard_layout().into_owned();
         let n = self.0.nrows();
         let starts: Vec<usize> = (0..n).step_by(BLOCK).collect();
@@ -116,18 +116,8 @@ mod tests {
     }
 
     #[test]
-    fn the_factor_times_its_transpose_is_the_matrix() {
-        for n in [1, 2, 63, 64, 65, 150] {
-            let a = positive(n);
-            let factor = Cholesky::new(a.clone()).unwrap().0;
-            let error = factor.dot(&factor.t()) - &a;
-            assert!(error.iter().all(|e| e.abs() < 1e-10), "{n}");
-        }
-    }
-
-    #[test]
     fn the_solution_solves_the_system() {
-        for n in [1, 5, 64, 65, 150] {
+        for n in [1, 2, 5, 63, 64, 65, 150] {
             let a = positive(n);
             let b = Array2::from_shape_fn((n, 4), |(i, j)| (i as f64 - j as f64).cos());
             let x = Cholesky::new(a.clone()).unwrap().solve(b.view());

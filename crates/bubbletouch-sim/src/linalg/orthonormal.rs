@@ -1,6 +1,41 @@
-//! Pivots of the QR factorisation with column pivoting (Businger and Golub 1965).
+//! Orthonormal bases by Gram–Schmidt, and pivots of the QR factorisation with column pivoting (Businger and Golub 1965).
 
-use ndarray::{Array2, Axis};
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array2, Axis, s};
+
+/// Smallest norm of a row after orthogonalisation; a row with a smaller norm is linearly dependent on earlier rows.
+const DEPENDENT: f64 = 1e-10;
+
+/// Orthonormalises rows by Gram–Schmidt, applied twice for accuracy; rows that depend on earlier rows are omitted.
+///
+/// Rows are made orthogonal to all earlier blocks by matrix products, then to each other within their block.
+pub(crate) fn orthonormal_rows(mut rows: Array2<f64>) -> Array2<f64> {
+    const BLOCK: usize = 32;
+    let before = rows.map_axis(Axis(1), |row| row.dot(&row).sqrt());
+    let mut basis: Array2<f64> = Array2::zeros(rows.dim());
+    let mut n_kept = 0;
+    for (block, mut rows) in rows.axis_chunks_iter_mut(Axis(0), BLOCK).enumerate() {
+        let earlier = n_kept;
+        for _ in 0..2 {
+            let kept = basis.slice(s![..earlier, ..]);
+            let along = rows.dot(&kept.t());
+            general_mat_mul(-1.0, &along, &kept, 1.0, &mut rows);
+        }
+        for (number, mut row) in rows.outer_iter_mut().enumerate() {
+            for _ in 0..2 {
+                for kept in basis.slice(s![earlier..n_kept, ..]).outer_iter() {
+                    row.scaled_add(-row.dot(&kept), &kept);
+                }
+            }
+            let after = row.dot(&row).sqrt();
+            if after > DEPENDENT * before[block * BLOCK + number] {
+                basis.row_mut(n_kept).assign(&(&row / after));
+                n_kept += 1;
+            }
+        }
+    }
+    basis.slice_move(s![..n_kept, ..])
+}
 
 /// Returns the indices of the first k pivot columns of a matrix, shape (k, n), k ≤ n.
 ///

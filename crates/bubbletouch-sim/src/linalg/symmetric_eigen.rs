@@ -9,7 +9,7 @@ use ndarray::{Array1, Array2, ArrayView2};
 const MAX_STEPS: usize = 60;
 
 /// Returns the eigenvalues of a symmetric matrix, ascending, and the orthonormal eigenvectors, one per row in this order.
-pub(super) fn symmetric_eigen(a: ArrayView2<f64>) -> (Array1<f64>, Array2<f64>) {
+pub(crate) fn symmetric_eigen(a: ArrayView2<f64>) -> (Array1<f64>, Array2<f64>) {
     let mut vectors = a.as_standard_layout().into_owned();
     let (mut diagonal, mut beside) = tridiagonalise(&mut vectors);
     diagonalise(&mut diagonal, &mut beside, &mut vectors);

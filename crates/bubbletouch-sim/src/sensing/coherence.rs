@@ -10,8 +10,8 @@
 //!   times. The largest deviation found is a **lower bound** on δₛ, and the distribution describes typical supports.
 
 use super::SensedDictionary;
-use super::symmetric_eigen::symmetric_eigen;
 use crate::error::{Error, Result};
+use crate::linalg::symmetric_eigen;
 use crate::random::Seed;
 use ndarray::Array2;
 

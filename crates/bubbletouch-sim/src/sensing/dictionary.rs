@@ -1,13 +1,15 @@
 //! Dictionaries: bases in which frames are sparse or approximately sparse.
 
-use super::cosine::{self, cosines};
+use super::cosine::Cosine;
 use super::pca::Pca;
 use super::wavelet::Wavelet;
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::world::ImageShape;
-use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, ArrayViewMut2, Axis, s};
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
+use std::sync::Arc;
 
 /// Default number of components of a PCA dictionary.
 pub const PCA_ATOMS: usize = 256;
@@ -62,12 +64,19 @@ pub struct Energy {
 /// Method that computes the coefficients of frames in a dictionary.
 #[derive(Clone, Debug)]
 enum Form {
-    /// Cosine transforms along y and x, and the indices of the coefficients that belong to the dictionary.
-    Cosine([Array2<f64>; 2], Vec<usize>),
-    /// Wavelet pyramid, and the indices of the coefficients that belong to the dictionary.
-    Wavelet(Wavelet, Vec<usize>),
+    /// Fast transform, and the indices of the coefficients that belong to the dictionary.
+    Fast(Arc<dyn Transform>, Vec<usize>),
     /// Stored atoms, one per row, shape (number of atoms, number of taxels).
     Stored(Array2<f64>),
+}
+
+/// Orthonormal transform of ny × nx arrays to as many coefficients, in place.
+pub(super) trait Transform: Debug + Send + Sync {
+    /// Replaces a frame by its coefficients.
+    fn analyse(&self, frame: ArrayViewMut2<f64>);
+
+    /// Replaces coefficients by their frame; the function inverts `analyse`.
+    fn synthesise(&self, frame: ArrayViewMut2<f64>);
 }
 
 impl Dictionary {
@@ -76,33 +85,27 @@ impl Dictionary {
     /// # Errors
     /// If the basis is PCA (which needs training frames), a wavelet basis has sides that are not powers of two, or there are no taxels.
     pub fn complete(basis: Basis, grid: ImageShape) -> Result<Self> {
-        let n = grid.ny * grid.nx;
+        let n = grid.n_values();
         if n == 0 {
             return Err(Error::input("dictionary", "no taxels", "at least one"));
         }
-        let all = (0..n).collect();
-        let form = match basis {
-            Basis::Dct => Form::Cosine([cosines(grid.ny), cosines(grid.nx)], all),
-            Basis::Haar | Basis::Daubechies4 => {
-                Wavelet::check(grid)?;
-                let wavelet = match basis {
-                    Basis::Haar => Wavelet::haar(),
-                    _ => Wavelet::daubechies4(),
-                };
-                Form::Wavelet(wavelet, all)
-            }
+        let transform: Arc<dyn Transform> = match basis {
+            Basis::Dct => Arc::new(Cosine::new(grid)),
+            Basis::Haar => Arc::new(Wavelet::haar(grid)?),
+            Basis::Daubechies4 => Arc::new(Wavelet::daubechies4(grid)?),
             Basis::Pca => {
+                let allowed = "a fixed basis, or a dictionary learned from frames";
                 return Err(Error::input(
                     "dictionary",
                     "pca without training frames",
-                    "a fixed basis, or a dictionary learned from frames",
+                    allowed,
                 ));
             }
         };
         Ok(Self {
             basis,
             grid,
-            form,
+            form: Form::Fast(transform, (0..n).collect()),
             origin: Array1::zeros(n),
             energy: None,
         })
@@ -140,15 +143,14 @@ impl Dictionary {
             of_atoms,
             rest: if order.len() == n { 0.0 } else { rest },
         });
-        match &mut dictionary.form {
-            Form::Cosine(_, chosen) | Form::Wavelet(_, chosen) => *chosen = order,
-            Form::Stored(_) => {}
+        if let Form::Fast(_, chosen) = &mut dictionary.form {
+            *chosen = order;
         }
         Ok(dictionary)
     }
 
     pub(super) fn of_components(grid: ImageShape, pca: Pca) -> Self {
-        let rest = (pca.total_variance - pca.variance.sum()) / pca.mean.len() as f64;
+        let rest = pca.rest();
         Self {
             basis: Basis::Pca,
             grid,
@@ -156,7 +158,7 @@ impl Dictionary {
             origin: pca.mean,
             energy: Some(Energy {
                 of_atoms: pca.variance,
-                rest: rest.max(0.0),
+                rest,
             }),
         }
     }
@@ -174,7 +176,7 @@ impl Dictionary {
     /// Returns the number k of atoms, at most the number of taxels.
     pub fn n_atoms(&self) -> usize {
         match &self.form {
-            Form::Cosine(_, chosen) | Form::Wavelet(_, chosen) => chosen.len(),
+            Form::Fast(_, chosen) => chosen.len(),
             Form::Stored(atoms) => atoms.nrows(),
         }
     }
@@ -196,23 +198,18 @@ impl Dictionary {
     /// If a frame does not have n values.
     pub fn analyse(&self, frames: ArrayView2<f64>) -> Array2<f64> {
         assert_eq!(frames.ncols(), self.n_taxels(), "taxels in a frame");
-        if let Form::Stored(atoms) = &self.form {
-            return (&frames - &self.origin).dot(&atoms.t());
-        }
+        let (transform, chosen) = match &self.form {
+            Form::Stored(atoms) => return (&frames - &self.origin).dot(&atoms.t()),
+            Form::Fast(transform, chosen) => (transform, chosen),
+        };
         let mut coefficients = Array2::zeros((frames.nrows(), self.n_atoms()));
-        let mut all = Array1::zeros(self.n_taxels());
-        for (frame, row) in frames.outer_iter().zip(coefficients.outer_iter_mut()) {
-            all.assign(&frame);
-            match &self.form {
-                Form::Cosine([wy, wx], chosen) => {
-                    let found = cosine::analyse(self.as_grid(&mut all).view(), wy, wx);
-                    pick(found.iter().copied(), chosen, row);
-                }
-                Form::Wavelet(wavelet, chosen) => {
-                    wavelet.analyse(self.as_grid(&mut all));
-                    pick(all.iter().copied(), chosen, row);
-                }
-                Form::Stored(_) => {}
+        let mut all = Array2::zeros((self.grid.ny, self.grid.nx));
+        for (frame, mut row) in frames.outer_iter().zip(coefficients.outer_iter_mut()) {
+            all.iter_mut().zip(frame).for_each(|(to, from)| *to = *from);
+            transform.analyse(all.view_mut());
+            let all = all.as_slice().expect("rows in order");
+            for (to, &place) in row.iter_mut().zip(chosen) {
+                *to = all[place];
             }
         }
         coefficients
@@ -234,28 +231,17 @@ impl Dictionary {
     /// Returns the linear combinations of the atoms for rows of coefficients, without the origin of the dictionary.
     pub(super) fn combine(&self, coefficients: ArrayView2<f64>) -> Array2<f64> {
         assert_eq!(coefficients.ncols(), self.n_atoms(), "atoms in a row");
-        if let Form::Stored(atoms) = &self.form {
-            return coefficients.dot(atoms);
-        }
+        let (transform, chosen) = match &self.form {
+            Form::Stored(atoms) => return coefficients.dot(atoms),
+            Form::Fast(transform, chosen) => (transform, chosen),
+        };
         let mut frames = Array2::zeros((coefficients.nrows(), self.n_taxels()));
         for (row, mut frame) in coefficients.outer_iter().zip(frames.outer_iter_mut()) {
-            let (Form::Cosine(_, chosen) | Form::Wavelet(_, chosen)) = &self.form else {
-                continue;
-            };
             for (&place, &value) in chosen.iter().zip(row) {
                 frame[place] = value;
             }
-            let mut grid = frame
-                .into_shape_with_order((self.grid.ny, self.grid.nx))
-                .expect("a row of n values");
-            match &self.form {
-                Form::Cosine([wy, wx], _) => {
-                    let found = cosine::synthesise(grid.view(), wy, wx);
-                    grid.assign(&found);
-                }
-                Form::Wavelet(wavelet, _) => wavelet.synthesise(grid),
-                Form::Stored(_) => {}
-            }
+            let grid = frame.into_shape_with_order((self.grid.ny, self.grid.nx));
+            transform.synthesise(grid.expect("a row of n values"));
         }
         frames
     }
@@ -269,22 +255,6 @@ impl Dictionary {
         units.slice_mut(s![.., range]).diag_mut().fill(1.0);
         self.combine(units.view())
     }
-
-    fn as_grid<'a>(&self, frame: &'a mut Array1<f64>) -> ArrayViewMut2<'a, f64> {
-        let view = frame
-            .view_mut()
-            .into_shape_with_order((self.grid.ny, self.grid.nx));
-        view.expect("n values in order")
-    }
-}
-
-fn pick(all: impl Iterator<Item = f64>, chosen: &[usize], mut row: ArrayViewMut1<f64>) {
-    let mut places = chosen.iter().zip(row.iter_mut()).peekable();
-    for (place, value) in all.enumerate() {
-        if let Some((_, to)) = places.next_if(|(wanted, _)| **wanted == place) {
-            *to = value;
-        }
-    }
 }
 
 pub(super) fn check_training(
@@ -292,7 +262,7 @@ pub(super) fn check_training(
     frames: ArrayView2<f64>,
     n_atoms: Option<usize>,
 ) -> Result<()> {
-    let n = grid.ny * grid.nx;
+    let n = grid.n_values();
     if frames.nrows() == 0 || frames.ncols() != n || n == 0 {
         return Err(Error::input(
             "training frames",

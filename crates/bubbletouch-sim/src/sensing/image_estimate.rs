@@ -17,10 +17,10 @@
 //!
 //! The estimate of a complete frame is the frame itself.
 
-use super::cholesky::Cholesky;
 use super::image_prior::ImagePrior;
 use super::{Lmmse, Projection, SensedDictionary};
 use crate::error::Result;
+use crate::linalg::Cholesky;
 use ndarray::{Array2, ArrayView2};
 
 /// Estimator of images (frames) from compressed measurements, prepared for any number of frames.
@@ -124,7 +124,7 @@ pub(super) mod tests {
         frames
     }
 
-    fn noise(n: usize, name: &str, std: f64) -> Array2<f64> {
+    pub(in crate::sensing) fn noise(n: usize, name: &str, std: f64) -> Array2<f64> {
         let mut rng = Seed::new(4).named(name).rng();
         Array2::from_shape_fn((n, 144), |_| std * rng.sample::<f64, _>(StandardNormal))
     }

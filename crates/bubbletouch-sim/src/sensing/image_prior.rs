@@ -50,7 +50,7 @@ impl ImagePrior {
         n_frames: usize,
         seed: &Seed,
     ) -> Result<Self> {
-        let k = N_COMPONENTS.min(grid.ny * grid.nx);
+        let k = N_COMPONENTS.min(grid.n_values());
         let training = with_copies(readings.training, grid, n_frames, seed);
         check_training(grid, training.view(), Some(k))?;
         let dictionary = Dictionary::of_components(grid, Pca::new(training, k, seed));

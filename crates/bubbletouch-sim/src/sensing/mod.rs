@@ -56,9 +56,7 @@
 //! | `sensed`, `coherence` | Φ and Ψ → A = ΦΨ, and its coherence |
 //! | `reconstruction` | measurements → frames ([`Reconstructor`]) |
 //! | `image_prior`, `image_estimate` | measurements → linear estimates of images ([`ImageEstimate`]) |
-//! | `cholesky`, `symmetric_eigen` | matrices → factors |
 
-mod cholesky;
 mod coherence;
 mod columns;
 mod cosine;
@@ -72,15 +70,12 @@ mod reconstruction;
 mod selection;
 mod sensed;
 mod several_images;
-mod symmetric_eigen;
 mod wavelet;
 
 pub use coherence::{Coherence, Extremes};
 pub use columns::Columns;
 pub use dictionary::{Basis, Dictionary, Energy, PCA_ATOMS};
-pub use ensembles::{
-    Adapt, Draw, Ensemble, EnsembleAbout, Learn, Operator, Source, TrainingFrames,
-};
+pub use ensembles::{Draw, Ensemble, EnsembleAbout, Learn, Operator, Source, TrainingFrames};
 pub use image_estimate::{ImageEstimate, N_STEPS};
 pub use image_prior::{ImagePrior, N_COMPONENTS, Readings};
 pub use projection::Projection;

@@ -4,10 +4,9 @@
 //! step diagonalises the frames in the computed subspace exactly. If the number of directions is at least the rank of the frames, the result equals the
 //! full eigendecomposition.
 
-use super::symmetric_eigen::symmetric_eigen;
+use crate::linalg::{orthonormal_rows, symmetric_eigen};
 use crate::random::Seed;
-use ndarray::linalg::general_mat_mul;
-use ndarray::{Array1, Array2, ArrayViewMut1, Axis, s};
+use ndarray::{Array1, Array2, ArrayViewMut1, Axis};
 use ndarray_rand::RandomExt;
 use rand_distr::StandardNormal;
 
@@ -18,8 +17,6 @@ const OVERSAMPLING: usize = 16;
 const ITERATIONS: usize = 3;
 /// Smallest variance of a component relative to the largest variance; smaller variances are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-12;
-/// Smallest norm of a row after orthogonalisation; a row with a smaller norm is linearly dependent on earlier rows.
-const DEPENDENT: f64 = 1e-10;
 
 /// Mean frame and principal components.
 #[derive(Clone, Debug)]
@@ -72,6 +69,14 @@ impl Pca {
     }
 }
 
+impl Pca {
+    /// Returns the mean square, per taxel, of the part of the frames that the components cannot represent.
+    pub(super) fn rest(&self) -> f64 {
+        let rest = (self.total_variance - self.variance.sum()) / self.mean.len() as f64;
+        rest.max(0.0)
+    }
+}
+
 /// Flips a direction so that its largest entry is positive, because the sign of a component is arbitrary.
 fn point_up(mut row: ArrayViewMut1<f64>) {
     let largest = row
@@ -80,37 +85,6 @@ fn point_up(mut row: ArrayViewMut1<f64>) {
     if largest < 0.0 {
         row.mapv_inplace(|v| -v);
     }
-}
-
-/// Orthonormalises rows by Gram–Schmidt, applied twice for accuracy; rows that depend on earlier rows are omitted.
-///
-/// Rows are made orthogonal to all earlier blocks by matrix products, then to each other within their block.
-fn orthonormal_rows(mut rows: Array2<f64>) -> Array2<f64> {
-    const BLOCK: usize = 32;
-    let before = rows.map_axis(Axis(1), |row| row.dot(&row).sqrt());
-    let mut basis: Array2<f64> = Array2::zeros(rows.dim());
-    let mut n_kept = 0;
-    for (block, mut rows) in rows.axis_chunks_iter_mut(Axis(0), BLOCK).enumerate() {
-        let earlier = n_kept;
-        for _ in 0..2 {
-            let kept = basis.slice(s![..earlier, ..]);
-            let along = rows.dot(&kept.t());
-            general_mat_mul(-1.0, &along, &kept, 1.0, &mut rows);
-        }
-        for (number, mut row) in rows.outer_iter_mut().enumerate() {
-            for _ in 0..2 {
-                for kept in basis.slice(s![earlier..n_kept, ..]).outer_iter() {
-                    row.scaled_add(-row.dot(&kept), &kept);
-                }
-            }
-            let after = row.dot(&row).sqrt();
-            if after > DEPENDENT * before[block * BLOCK + number] {
-                basis.row_mut(n_kept).assign(&(&row / after));
-                n_kept += 1;
-            }
-        }
-    }
-    basis.slice_move(s![..n_kept, ..])
 }
 
 #[cfg(test)]

@@ -41,21 +41,23 @@ impl Projection {
     /// # Errors
     /// If the array has no taxels, if m = 0 or m > n, or if the ensemble is learned.
     pub fn new(ensemble: Ensemble, grid: ImageShape, m: usize, seed: &Seed) -> Result<Self> {
-        let n = check_size(grid, m)?;
-        let operator = match ensemble.about().source {
-            Source::Drawn(draw) => draw(grid, m, seed),
-            Source::Adaptive(adapt) => adapt(grid, m),
-            Source::Learned(_) | Source::LearnedAdaptive(_) => {
+        check_size(grid, m)?;
+        match ensemble.about().source {
+            Source::Drawn(draw) => Ok(Self::of(ensemble, grid, m, draw(grid, m, seed))),
+            Source::Learned(_) => {
                 let given = format!("{}, which are learned from touches", ensemble.about().words);
-                return Err(Error::input("ensemble", given, "an ensemble that is drawn"));
+                Err(Error::input("ensemble", given, "an ensemble that is drawn"))
             }
-        };
-        Ok(Self {
+        }
+    }
+
+    fn of(ensemble: Ensemble, grid: ImageShape, m: usize, operator: Box<dyn Operator>) -> Self {
+        Self {
             ensemble: Some(ensemble),
-            n_taxels: n,
-            n_measurements: ensemble.n_measurements(m, n),
+            n_taxels: grid.n_values(),
+            n_measurements: ensemble.n_measurements(m, grid.n_values()),
             operator: operator.into(),
-        })
+        }
     }
 
     /// Prepares the projection of any ensemble. Learned ensembles use the frames of training touches (n_frames × n_taxels) with their labels.
@@ -71,24 +73,14 @@ impl Projection {
         m: usize,
         (training, seed): (impl Into<TrainingFrames<'a>>, &Seed),
     ) -> Result<Self> {
-        let source = ensemble.about().source;
-        if matches!(source, Source::Drawn(_) | Source::Adaptive(_)) {
+        let Source::Learned(learn) = ensemble.about().source else {
             return Self::new(ensemble, grid, m, seed);
-        }
+        };
         let n = check_size(grid, m)?;
         let training = training.into();
         assert_eq!(training.frames.ncols(), n, "taxels in a frame");
-        let operator = match source {
-            Source::Learned(learn) => learn(&training, m, seed)?,
-            Source::LearnedAdaptive(learn) => learn(&training, grid, m, seed)?,
-            Source::Drawn(_) | Source::Adaptive(_) => unreachable!("returned above"),
-        };
-        Ok(Self {
-            ensemble: Some(ensemble),
-            n_taxels: n,
-            n_measurements: ensemble.n_measurements(m, n),
-            operator: operator.into(),
-        })
+        let operator = learn(&training, grid, m, seed)?;
+        Ok(Self::of(ensemble, grid, m, operator))
     }
 
     /// Prepares the scrambled block Hadamard ensemble with blocks of `block` taxels. Block size 32 is used in \[SBHE\] and by the constructor `new`.
@@ -104,12 +96,7 @@ impl Projection {
             return Err(Error::input("Hadamard block", block, "a power of two"));
         }
         let hadamard = ScrambledHadamard::new(m, n, block, &seed.named("sbhe"));
-        Ok(Self {
-            ensemble: Some(Ensemble::Sbhe),
-            n_taxels: n,
-            n_measurements: m,
-            operator: Arc::new(hadamard),
-        })
+        Ok(Self::of(Ensemble::Sbhe, grid, m, Box::new(hadamard)))
     }
 
     /// Creates the projection of an operator from outside of this crate. The operator maps frames of `n_taxels` values to `n_measurements` values.
@@ -237,7 +224,7 @@ impl Projection {
 
 /// Returns the number of taxels of the grid, or an error if the grid is empty or m is not from 1 to this number.
 fn check_size(grid: ImageShape, m: usize) -> Result<usize> {
-    let n = grid.ny * grid.nx;
+    let n = grid.n_values();
     if n == 0 || m == 0 || m > n {
         return Err(Error::input(
             "number of measurements",

@@ -30,7 +30,7 @@ impl Projection {
         m: usize,
         (training, seed): (impl Into<TrainingFrames<'a>>, &Seed),
     ) -> Result<Self> {
-        let (training, n) = (training.into(), grid.ny * grid.nx);
+        let (training, n) = (training.into(), grid.n_values());
         if k == 1 {
             return Self::learned(ensemble, grid, m, (training, seed));
         }
@@ -48,10 +48,7 @@ impl Projection {
             ensemble: Some(ensemble),
             n_taxels: k * n,
             n_measurements: images.iter().map(Self::n_measurements).sum(),
-            operator: Arc::new(SeveralImages {
-                images,
-                is_nested: ensemble.is_prefix_nested(),
-            }),
+            operator: Arc::new(SeveralImages::new(images, ensemble.is_prefix_nested())),
         })
     }
 }
@@ -62,53 +59,51 @@ impl Projection {
 /// image follow those of the previous images.
 #[derive(Debug)]
 struct SeveralImages {
-    images: Vec<Projection>,
-    is_nested: bool,
+    /// Projection of each image, with the index of its first measurement.
+    images: Vec<(usize, Projection)>,
+    /// Distance between two successive measurements of an image.
+    step: usize,
 }
 
 impl SeveralImages {
-    /// Returns the index of the first measurement of each image, with its projection.
-    fn starts(&self) -> impl Iterator<Item = (usize, &Projection)> {
+    fn new(images: Vec<Projection>, is_nested: bool) -> Self {
+        let step = if is_nested { images.len() } else { 1 };
         let mut before = 0;
-        self.images
-            .iter()
-            .enumerate()
-            .map(move |(image, projection)| {
-                let start = if self.is_nested { image } else { before };
-                before += projection.n_measurements();
-                (start, projection)
-            })
-    }
-
-    /// Returns the distance between two successive measurements of an image.
-    fn step(&self) -> usize {
-        if self.is_nested { self.images.len() } else { 1 }
+        let place = |(image, projection): (usize, Projection)| {
+            let start = if is_nested { image } else { before };
+            before += projection.n_measurements();
+            (start, projection)
+        };
+        Self {
+            images: images.into_iter().enumerate().map(place).collect(),
+            step,
+        }
     }
 }
 
 impl Operator for SeveralImages {
     fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
         let n_taxels = frames.ncols() / self.images.len();
-        for (image, (start, projection)) in self.starts().enumerate() {
+        for (image, (start, projection)) in self.images.iter().enumerate() {
             let own = frames.slice(s![.., image * n_taxels..(image + 1) * n_taxels]);
-            let end = start + (projection.n_measurements() - 1) * self.step() + 1;
-            let mut out = out.slice_mut(s![.., start..end; self.step()]);
+            let end = start + (projection.n_measurements() - 1) * self.step + 1;
+            let mut out = out.slice_mut(s![.., *start..end; self.step]);
             out.assign(&projection.measure(own));
         }
     }
 
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
-        for (image, (start, projection)) in self.starts().enumerate() {
+        for (image, (start, projection)) in self.images.iter().enumerate() {
             projection.each_entry(|measurement, taxel, value| {
                 let taxel = image * projection.n_taxels() + taxel;
-                visit(start + measurement * self.step(), taxel, value);
+                visit(start + measurement * self.step, taxel, value);
             });
         }
     }
 
     fn row_norm(&self) -> f64 {
         let (mut squares, mut n) = (0.0, 0.0);
-        for projection in &self.images {
+        for (_, projection) in &self.images {
             let m = projection.n_measurements() as f64;
             squares += m * projection.row_norm().powi(2);
             n += m;

@@ -1,5 +1,6 @@
 //! Orthonormal wavelet pyramids of arrays whose sides are powers of two: Haar, and Daubechies' wavelet with four taps.
 
+use super::dictionary::Transform;
 use crate::error::{Error, Result};
 use crate::world::ImageShape;
 use ndarray::{Array1, ArrayViewMut1, ArrayViewMut2, Axis, s};
@@ -12,68 +13,32 @@ pub(super) struct Wavelet {
 }
 
 impl Wavelet {
-    /// Returns the Haar wavelet: averages and differences of neighbours.
-    pub(super) fn haar() -> Self {
+    /// Returns the Haar wavelet for ny × nx arrays: averages and differences of neighbours.
+    pub(super) fn haar(grid: ImageShape) -> Result<Self> {
         let h = std::f64::consts::FRAC_1_SQRT_2;
-        Self::from_low(vec![h, h])
+        Self::new(vec![h, h], grid)
     }
 
-    /// Returns Daubechies' wavelet with two vanishing moments (1988), periodic at the edges.
-    pub(super) fn daubechies4() -> Self {
+    /// Returns Daubechies' wavelet with two vanishing moments (1988) for ny × nx arrays, periodic at the edges.
+    pub(super) fn daubechies4(grid: ImageShape) -> Result<Self> {
         let (root, scale) = (3f64.sqrt(), 1.0 / (4.0 * 2f64.sqrt()));
         let taps = [1.0 + root, 3.0 + root, 3.0 - root, 1.0 - root];
-        Self::from_low(taps.iter().map(|tap| tap * scale).collect())
+        Self::new(taps.iter().map(|tap| tap * scale).collect(), grid)
     }
 
-    fn from_low(low: Vec<f64>) -> Self {
+    /// Returns the wavelet with this low-pass filter, or an error if a side of the array is no power of two.
+    fn new(low: Vec<f64>, ImageShape { ny, nx }: ImageShape) -> Result<Self> {
+        if !(ny.is_power_of_two() && nx.is_power_of_two()) {
+            let allowed = "a power of two along each side (or the dct or pca dictionary)";
+            let given = format!("{nx} × {ny} taxels");
+            return Err(Error::input("wavelet dictionary", given, allowed));
+        }
         let signs = [1.0, -1.0].into_iter().cycle();
         let high = low.iter().rev().zip(signs).map(|(h, sign)| h * sign);
-        Self {
+        Ok(Self {
             high: high.collect(),
             low,
-        }
-    }
-
-    /// Checks that both sides of an ny × nx array are powers of two.
-    pub(super) fn check(ImageShape { ny, nx }: ImageShape) -> Result<()> {
-        if ny.is_power_of_two() && nx.is_power_of_two() {
-            return Ok(());
-        }
-        Err(Error::input(
-            "wavelet dictionary",
-            format!("{nx} × {ny} taxels"),
-            "a power of two along each side (or the dct or pca dictionary)",
-        ))
-    }
-
-    /// Computes the wavelet pyramid of a frame in place: averages and details. Each level of the pyramid halves every side that is longer than one taxel.
-    pub(super) fn analyse(&self, mut frame: ArrayViewMut2<f64>) {
-        for (ny, nx) in levels(frame.dim()) {
-            let mut corner = frame.slice_mut(s![..ny, ..nx]);
-            for (axis, length) in [(Axis(1), nx), (Axis(0), ny)] {
-                if length > 1 {
-                    corner
-                        .lanes_mut(axis)
-                        .into_iter()
-                        .for_each(|lane| self.split(lane));
-                }
-            }
-        }
-    }
-
-    /// Computes the frame from its wavelet pyramid in place; the function inverts `analyse`.
-    pub(super) fn synthesise(&self, mut frame: ArrayViewMut2<f64>) {
-        for (ny, nx) in levels(frame.dim()).into_iter().rev() {
-            let mut corner = frame.slice_mut(s![..ny, ..nx]);
-            for (axis, length) in [(Axis(0), ny), (Axis(1), nx)] {
-                if length > 1 {
-                    corner
-                        .lanes_mut(axis)
-                        .into_iter()
-                        .for_each(|lane| self.join(lane));
-                }
-            }
-        }
+        })
     }
 
     /// Replaces a row or column of even length by its averages, followed by its details.
@@ -99,6 +64,35 @@ impl Wavelet {
             }
         }
         lane.assign(&whole);
+    }
+}
+
+/// Each level of the pyramid halves every side that is longer than one taxel.
+impl Transform for Wavelet {
+    fn analyse(&self, mut frame: ArrayViewMut2<f64>) {
+        for (ny, nx) in levels(frame.dim()) {
+            let mut corner = frame.slice_mut(s![..ny, ..nx]);
+            for (axis, _) in [(Axis(1), nx), (Axis(0), ny)]
+                .iter()
+                .filter(|side| side.1 > 1)
+            {
+                let lanes = corner.lanes_mut(*axis).into_iter();
+                lanes.for_each(|lane| self.split(lane));
+            }
+        }
+    }
+
+    fn synthesise(&self, mut frame: ArrayViewMut2<f64>) {
+        for (ny, nx) in levels(frame.dim()).into_iter().rev() {
+            let mut corner = frame.slice_mut(s![..ny, ..nx]);
+            for (axis, _) in [(Axis(0), ny), (Axis(1), nx)]
+                .iter()
+                .filter(|side| side.1 > 1)
+            {
+                let lanes = corner.lanes_mut(*axis).into_iter();
+                lanes.for_each(|lane| self.join(lane));
+            }
+        }
     }
 }
 

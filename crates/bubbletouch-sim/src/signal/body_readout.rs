@@ -7,16 +7,15 @@
 //! Steps and strengths have the same meaning and distributions as in a chain, but different random draws. A sensor error is supported
 //! if its description has `by_taxel`.
 
-use super::noise::NoiseByNumber;
+use super::noise;
 use super::step::seed_of_repetition;
 use super::taxel_effect::{CHUNK, Chunk, TaxelEffect};
-use super::{MAX_STRENGTHS, Moment, Quantity, SensorError, SignalStep};
+use super::{Moment, Quantity, SensorError, SignalStep};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::whole_body::{BodyState, WholeBody};
 use crate::world::Taxel;
 use rayon::prelude::*;
-use std::sync::Arc;
 
 /// Minimum number of taxels for which several threads compute a reading. With fewer taxels, starting a second thread takes longer than the computation.
 pub const WORTH_THREADS: usize = 4 * CHUNK;
@@ -62,7 +61,7 @@ pub const WORTH_THREADS: usize = 4 * CHUNK;
 pub struct BodyReadout {
     begins: Quantity,
     /// Prepared signal steps, one list per patch, in the order of application.
-    steps: Vec<Vec<Arc<dyn TaxelEffect>>>,
+    steps: Vec<Vec<TaxelEffect>>,
     /// Index of the first taxel of each patch, followed by the total number of taxels.
     firsts: Vec<usize>,
 }
@@ -220,17 +219,17 @@ fn prepare(
     steps: &[SignalStep],
     quantity: Quantity,
     taxel: &Taxel,
-    noise: &Seed,
-) -> Result<Vec<Arc<dyn TaxelEffect>>> {
-    let mut prepared: Vec<Arc<dyn TaxelEffect>> = Vec::new();
+    seed: &Seed,
+) -> Result<Vec<TaxelEffect>> {
+    let mut prepared = Vec::new();
     for (place, step) in steps.iter().enumerate() {
         let repetition = step.repetition(&steps[..place]);
         match step {
             SignalStep::Noise(of) => {
                 let std = of.std_of(quantity, taxel)?;
-                let key = noise.named("noise").numbered(repetition + 1).counter_key();
+                let key = seed.named("noise").numbered(repetition + 1).counter_key();
                 if std > 0.0 {
-                    prepared.push(Arc::new(NoiseByNumber { key, std }));
+                    prepared.push(noise::by_taxel(std, key));
                 }
             }
             SignalStep::Error {
@@ -241,7 +240,13 @@ fn prepare(
                 if strengths.iter().any(|&strength| strength != 0.0) {
                     let full_scale = quantity.full_scale(taxel);
                     let skin = seed_of_repetition(skin, repetition);
-                    prepared.push(taxel_effect(*error, strengths, full_scale, &skin)?);
+                    let about = error.about();
+                    about.check(strengths)?;
+                    let by_taxel = about
+                        .by_taxel
+                        .ok_or_else(|| refused(about.step, OF_OTHERS))?;
+                    let key = skin.named(about.step).counter_key();
+                    prepared.push(by_taxel(strengths, full_scale, key));
                 }
             }
             SignalStep::Force => return Err(refused("force", "after another step")),
@@ -263,23 +268,4 @@ fn refused(step: &str, why: &str) -> Error {
         format!("{step}, {why}"),
         format!("force first, then noise, {}", words.join(", ")),
     )
-}
-
-fn taxel_effect(
-    error: SensorError,
-    strengths: &[f64; MAX_STRENGTHS],
-    full_scale: f64,
-    skin: &Seed,
-) -> Result<Arc<dyn TaxelEffect>> {
-    let about = error.about();
-    for (strength, &value) in about.strengths.iter().zip(strengths) {
-        if !strength.is_allowed(value) {
-            return Err(Error::input(strength.key, value, strength.allowed));
-        }
-    }
-    let prepare = about
-        .by_taxel
-        .ok_or_else(|| refused(about.step, OF_OTHERS))?;
-    let key = skin.named(about.step).counter_key();
-    Ok(prepare(strengths, full_scale, key)?.into())
 }

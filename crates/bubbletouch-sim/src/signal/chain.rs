@@ -1,8 +1,10 @@
 //! Signal chain: prepared signal steps, applied in the order in which the study lists them.
 
+use super::force::Force;
+use super::noise::NoiseOfFrames;
 use super::step::seed_of_repetition;
 use super::surface_smoothing::SurfaceSmoothing;
-use super::{Effect, Quantity, SignalStep, Skin, Smoothing, TouchRead, force, noise};
+use super::{Effect, Quantity, SignalStep, Skin, Smoothing, TouchRead};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::world::{Patch, Taxel};
@@ -34,8 +36,6 @@ pub struct Chain {
     n_taxels: usize,
     taxel: Taxel,
     quantity: Quantity,
-    /// Whether the values of a frame can be negative, as shear forces can; otherwise they are zero or positive.
-    is_signed: bool,
     scratch_len: usize,
 }
 
@@ -61,17 +61,10 @@ pub struct SignalWorkspace(Vec<f64>);
 
 /// Signal step, prepared for one patch: units are resolved and weights are computed.
 #[derive(Clone, Debug)]
-enum Prepared {
-    Force,
-    Noise {
-        std: f64,
-        place: u64,
-    },
-    /// Smoothing or a sensor error; `repetition` counts the earlier steps of the same error.
-    Effect {
-        effect: Arc<dyn Effect>,
-        repetition: u64,
-    },
+struct Prepared {
+    effect: Arc<dyn Effect>,
+    /// Number of earlier steps of the same sensor error; `None` for force and noise.
+    repetition: Option<u64>,
 }
 
 impl Chain {
@@ -129,14 +122,10 @@ impl Chain {
     /// # Ok::<(), bubbletouch_sim::Error>(())
     /// ```
     pub fn then(mut self, effect: impl Effect + 'static) -> Self {
-        let is_effect = |step: &&Prepared| matches!(step, Prepared::Effect { .. });
-        let n_effects = self.steps.iter().filter(is_effect).count() as u64;
+        let is_error = |step: &&Prepared| step.repetition.is_some();
+        let n_errors = self.steps.iter().filter(is_error).count() as u64;
         let remembers = effect.remembers();
-        let step = self.prepare_effect(Box::new(effect), n_effects);
-        self.steps.push(step);
-        if remembers {
-            self.n_remembering = self.steps.len();
-        }
+        self.push(Box::new(effect), Some(n_errors), remembers);
         self
     }
 
@@ -157,19 +146,61 @@ impl Chain {
             n_taxels: patch.n_taxels(),
             taxel: read_alike(patch)?,
             quantity,
-            is_signed,
             scratch_len: 0,
         };
         for (place, step) in steps.iter().enumerate() {
             let repetition = step.repetition(&steps[..place]);
-            let n_before = chain.steps.len();
-            let prepared = chain.prepare(step, repetition, patch)?;
-            chain.steps.extend(prepared);
-            if chain.steps.len() > n_before && step.remembers() {
-                chain.n_remembering = chain.steps.len();
+            let remembers = step.remembers();
+            match step {
+                SignalStep::Force if chain.quantity == Quantity::Force => {
+                    let allowed = "force at most once";
+                    return Err(Error::input("signal steps", "force twice", allowed));
+                }
+                SignalStep::Force => {
+                    chain.quantity = Quantity::Force;
+                    chain.push(Box::new(Force(chain.taxel)), None, remembers);
+                }
+                SignalStep::Noise(noise) => {
+                    let std = noise.std_of(chain.quantity, &chain.taxel)?;
+                    let place = repetition + 1;
+                    chain.push(Box::new(NoiseOfFrames { std, place }), None, remembers);
+                }
+                SignalStep::Smoothing { width } => {
+                    chain.push(smoothing(*width, patch)?, Some(0), remembers);
+                }
+                SignalStep::Error { strengths, .. } if strengths.iter().all(|&s| s == 0.0) => {}
+                SignalStep::Error {
+                    error,
+                    strengths,
+                    skin: name,
+                } => {
+                    let full_scale = chain.full_scale();
+                    let skin = Skin {
+                        patch,
+                        full_scale,
+                        least: if is_signed { -full_scale } else { 0.0 },
+                        name: seed_of_repetition(name, repetition),
+                    };
+                    let about = error.about();
+                    about.check(strengths)?;
+                    let effect = (about.prepare)(strengths, &skin)?;
+                    chain.push(effect, Some(repetition), remembers);
+                }
             }
         }
         Ok(chain)
+    }
+
+    /// Adds a step. `remembers` states whether the step also processes the frames before a touch.
+    fn push(&mut self, effect: Box<dyn Effect>, repetition: Option<u64>, remembers: bool) {
+        self.scratch_len = self.scratch_len.max(effect.scratch_len());
+        self.steps.push(Prepared {
+            effect: effect.into(),
+            repetition,
+        });
+        if remembers {
+            self.n_remembering = self.steps.len();
+        }
     }
 
     /// Returns the physical quantity of the output frames: deflection or force.
@@ -221,9 +252,10 @@ impl Chain {
         scratch: &mut SignalWorkspace,
     ) {
         let Recording { frames, rates, .. } = recording;
-        let first = recording.n_before * self.n_taxels();
+        let n_taxels = self.n_taxels;
+        let first = recording.n_before * n_taxels;
         assert!(
-            frames.len() > first && frames.len().is_multiple_of(self.n_taxels()),
+            frames.len() > first && frames.len().is_multiple_of(n_taxels),
             "one value for each taxel"
         );
         if scratch.0.len() < self.scratch_len {
@@ -232,42 +264,16 @@ impl Chain {
         for (place, step) in self.steps.iter().enumerate() {
             // The history is not needed after the last step that depends on it.
             let from = if place < self.n_remembering { 0 } else { first };
-            let rates = rates.map(|rates| &rates[from..]);
-            let n_before = (first - from) / self.n_taxels();
-            let recording = Recording {
-                frames: &mut frames[from..],
-                rates,
-                n_before,
-                ..recording
+            let touch = TouchRead {
+                n_taxels,
+                rates: rates.map(|rates| &rates[from..]),
+                n_before: (first - from) / n_taxels,
+                interval: recording.interval,
+                time: recording.time,
+                seed: &seed_of_repetition(touch, step.repetition.unwrap_or(0)),
             };
-            self.apply_step(step, recording, touch, &mut scratch.0);
-        }
-    }
-
-    fn apply_step(&self, step: &Prepared, recording: Recording, touch: &Seed, scratch: &mut [f64]) {
-        let n_taxels = self.n_taxels();
-        let frames = recording.frames;
-        match step {
-            Prepared::Force => force(frames, recording.rates, &self.taxel),
-            Prepared::Noise { std, place } => {
-                let frames = &mut frames[recording.n_before * n_taxels..];
-                let n_frames = frames.len() / n_taxels;
-                for (frame, values) in frames.chunks_exact_mut(n_taxels).enumerate() {
-                    let seed = frame_seed(touch, frame, n_frames);
-                    noise::add_normal(values, *std, &seed.named("noise").numbered(*place));
-                }
-            }
-            Prepared::Effect { effect, repetition } => {
-                let seed = seed_of_repetition(touch, *repetition);
-                let touch = TouchRead {
-                    n_taxels,
-                    n_before: recording.n_before,
-                    interval: recording.interval,
-                    time: recording.time,
-                    seed: &seed,
-                };
-                effect.apply(frames, &touch, scratch);
-            }
+            step.effect
+                .apply(&mut frames[from..], &touch, &mut scratch.0);
         }
     }
 
@@ -275,68 +281,14 @@ impl Chain {
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
+}
 
-    /// Prepares one signal step for the current quantity of the frames. Returns `None` if all strengths of the step are zero.
-    fn prepare(
-        &mut self,
-        step: &SignalStep,
-        repetition: u64,
-        patch: &Patch,
-    ) -> Result<Option<Prepared>> {
-        Ok(Some(match step {
-            SignalStep::Force => self.prepare_force()?,
-            SignalStep::Noise(noise) => Prepared::Noise {
-                std: noise.std_of(self.quantity, &self.taxel)?,
-                place: repetition + 1,
-            },
-            SignalStep::Smoothing { width } => self.prepare_smoothing(*width, patch)?,
-            SignalStep::Error { strengths, .. } if strengths.iter().all(|&s| s == 0.0) => {
-                return Ok(None);
-            }
-            SignalStep::Error {
-                error,
-                strengths,
-                skin: name,
-            } => {
-                let full_scale = self.quantity.full_scale(&self.taxel);
-                let skin = Skin {
-                    patch,
-                    full_scale,
-                    least: if self.is_signed { -full_scale } else { 0.0 },
-                    name: seed_of_repetition(name, repetition),
-                };
-                self.prepare_effect((error.about().prepare)(strengths, &skin)?, repetition)
-            }
-        }))
-    }
-
-    fn prepare_force(&mut self) -> Result<Prepared> {
-        if self.quantity == Quantity::Force {
-            return Err(Error::input(
-                "signal steps",
-                "force twice",
-                "force at most once",
-            ));
-        }
-        self.quantity = Quantity::Force;
-        Ok(Prepared::Force)
-    }
-
-    fn prepare_smoothing(&mut self, width: f64, patch: &Patch) -> Result<Prepared> {
-        let smoothing: Box<dyn Effect> = match patch.whole_grid() {
-            Some(grid) => Box::new(Smoothing::new(width, grid)?),
-            None => Box::new(SurfaceSmoothing::new(width, patch)?),
-        };
-        Ok(self.prepare_effect(smoothing, 0))
-    }
-
-    fn prepare_effect(&mut self, effect: Box<dyn Effect>, repetition: u64) -> Prepared {
-        self.scratch_len = self.scratch_len.max(effect.scratch_len());
-        Prepared::Effect {
-            effect: effect.into(),
-            repetition,
-        }
-    }
+/// Prepares smoothing along the rows and columns of a grid, or along the surface of another layout.
+fn smoothing(width: f64, patch: &Patch) -> Result<Box<dyn Effect>> {
+    Ok(match patch.whole_grid() {
+        Some(grid) => Box::new(Smoothing::new(width, grid)?),
+        None => Box::new(SurfaceSmoothing::new(width, patch)?),
+    })
 }
 
 /// Returns the stroke, stiffness and damping that all taxels of a patch have in common; the radii may differ.
@@ -354,13 +306,5 @@ fn read_alike(patch: &Patch) -> Result<Taxel> {
             "taxels of unlike stroke, stiffness or damping",
             "taxels that read alike",
         )),
-    }
-}
-
-/// Returns the seed of one frame of a touch; the last frame has the seed of the touch.
-fn frame_seed(touch: &Seed, frame: usize, n_frames: usize) -> Seed {
-    match frame + 1 == n_frames {
-        true => *touch,
-        false => touch.named("frame").numbered(frame as u64 + 1),
     }
 }

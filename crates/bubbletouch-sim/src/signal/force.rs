@@ -1,6 +1,17 @@
 //! Normal forces from deflections and their rates.
 
+use super::{Effect, TouchRead};
 use crate::world::Taxel;
+
+/// Step that converts deflections of these taxels to forces.
+#[derive(Debug)]
+pub(super) struct Force(pub Taxel);
+
+impl Effect for Force {
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, _: &mut [f64]) {
+        force(frames, touch.rates, &self.0);
+    }
+}
 
 /// Replaces deflections (metres) by normal forces (newtons): f = max(0, k δ + c δ̇) where δ > 0, otherwise 0 \[BT\].
 ///
@@ -10,7 +21,7 @@ use crate::world::Taxel;
 ///
 /// # Panics
 /// If `rate` and `frame` differ in length.
-pub fn force(frame: &mut [f64], rate: Option<&[f64]>, taxel: &Taxel) {
+fn force(frame: &mut [f64], rate: Option<&[f64]>, taxel: &Taxel) {
     let Some(rate) = rate else {
         for value in frame {
             *value = (taxel.stiffness * *value).max(0.0);

@@ -13,14 +13,13 @@
 //!
 //! \[DA\] D'Alessio, *Measurement errors in the scanning of piezoresistive sensors arrays*, Sensors and Actuators A 72, 1999.
 
-use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use crate::error::{Error, Result};
-use crate::text::in_range::not_negative;
-use crate::world::Grid;
+use super::sensor_error::{Effect, ErrorAbout, Strength};
+use crate::error::Error;
+use crate::linalg::RowCholesky;
 
 /// Readout of a grid through its row and column lines, for one line resistance, one grid and one full scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MatrixReadout {
+struct MatrixReadout {
     nx: usize,
     ny: usize,
     /// Resistance of a line, relative to the resistance of a fully pressed taxel.
@@ -29,26 +28,12 @@ pub struct MatrixReadout {
     full_scale: f64,
 }
 
-impl MatrixReadout {
-    /// Prepares a readout. `resistance` is the resistance of a line, zero or more, relative to the resistance of a fully pressed taxel. `full_scale` is in
-    /// the unit of the frames.
-    ///
-    /// # Errors
-    /// If the resistance is negative or not finite.
-    pub fn new(resistance: f64, full_scale: f64, grid: &Grid) -> Result<Self> {
-        Ok(Self {
-            nx: grid.nx,
-            ny: grid.ny,
-            resistance: not_negative("line resistance", resistance, "")?,
-            full_scale,
-        })
+impl Effect for MatrixReadout {
+    fn scratch_len(&self) -> usize {
+        self.nx * (self.nx + 2)
     }
 
-    /// Replaces the true values of a frame of ny × nx taxels by the readings through the lines, in place.
-    ///
-    /// # Panics
-    /// If the frame has another size, or the scratch has fewer than nx (nx + 2) numbers.
-    pub fn read(&self, frame: &mut [f64], scratch: &mut [f64]) {
+    fn apply_to_frame(&self, frame: &mut [f64], scratch: &mut [f64]) {
         assert_eq!(frame.len(), self.nx * self.ny, "one value for each taxel");
         if self.resistance == 0.0 {
             return;
@@ -78,7 +63,7 @@ impl MatrixReadout {
         for (a, current) in currents.iter().enumerate() {
             schur[a * self.nx + a] += line + current;
         }
-        factorise(schur, self.nx);
+        let schur = RowCholesky::new(schur, self.nx);
         for values in frame.chunks_exact_mut(self.nx) {
             let total: f64 = values.iter().map(conductance).sum();
             if total == 0.0 {
@@ -87,45 +72,12 @@ impl MatrixReadout {
             for (entry, value) in row.iter_mut().zip(values.iter()) {
                 *entry = conductance(value) / (line + total);
             }
-            solve(schur, row);
+            schur.solve(row);
             for (value, voltage) in values.iter_mut().zip(row.iter()) {
                 *value = value.min(0.0) + self.full_scale * line * line * voltage;
             }
         }
     }
-}
-
-/// Computes the Cholesky factor L of a symmetric, diagonally dominant n × n matrix, in place of its lower triangle. There is one nx × nx matrix per frame, so
-/// a linear-algebra crate is not needed.
-fn factorise(matrix: &mut [f64], n: usize) {
-    for a in 0..n {
-        let (above, row) = matrix.split_at_mut(a * n);
-        for b in 0..a {
-            let other = &above[b * n..=b * n + b];
-            row[b] = (row[b] - dot(&row[..b], other)) / other[b];
-        }
-        row[a] = (row[a] - dot(&row[..a], &row[..a])).sqrt();
-    }
-}
-
-/// Solves L Lᵀ x = b in place, where L is the Cholesky factor `factor`.
-fn solve(factor: &[f64], b: &mut [f64]) {
-    let n = b.len();
-    for a in 0..n {
-        let row = &factor[a * n..=a * n + a];
-        b[a] = (b[a] - dot(&b[..a], row)) / row[a];
-    }
-    for a in (0..n).rev() {
-        let row = &factor[a * n..=a * n + a];
-        b[a] /= row[a];
-        let x = b[a];
-        b[..a].iter_mut().zip(row).for_each(|(b, l)| *b -= l * x);
-    }
-}
-
-/// Returns the dot product of two slices over the length of the shorter slice.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
@@ -150,22 +102,15 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
                 let allowed = "forces along the axes: a resistance has no sign";
                 return Err(Error::input("matrix readout", "shear", allowed));
             }
-            let readout = MatrixReadout::new(resistance, skin.full_scale, grid)?;
-            Ok(Box::new(readout))
+            Ok(Box::new(MatrixReadout {
+                nx: grid.nx,
+                ny: grid.ny,
+                resistance,
+                full_scale: skin.full_scale,
+            }))
         },
     )
 };
-
-impl Effect for MatrixReadout {
-    fn scratch_len(&self) -> usize {
-        self.nx * (self.nx + 2)
-    }
-
-    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
-        let frames = frames.chunks_exact_mut(touch.n_taxels);
-        frames.for_each(|frame| self.read(frame, scratch));
-    }
-}
 
 #[cfg(test)]
 mod tests {
@@ -176,10 +121,14 @@ mod tests {
     const FULL_SCALE: f64 = 5e-3;
 
     fn read(frame: &[f64], (nx, ny): (usize, usize), resistance: f64) -> Vec<f64> {
-        let pitch = 2e-3;
-        let readout = MatrixReadout::new(resistance, FULL_SCALE, &Grid { nx, ny, pitch }).unwrap();
+        let readout = MatrixReadout {
+            nx,
+            ny,
+            resistance,
+            full_scale: FULL_SCALE,
+        };
         let mut out = frame.to_vec();
-        readout.read(&mut out, &mut vec![f64::NAN; nx * (nx + 2) + 5]);
+        readout.apply_to_frame(&mut out, &mut vec![f64::NAN; nx * (nx + 2) + 5]);
         out
     }
 
@@ -269,32 +218,5 @@ mod tests {
         assert!((0.005..0.1).contains(&ghost), "{ghost}");
         // The shared line of two taxels carries more current, so both read less.
         assert!(out[16] < out[6] && out[18] > out[16]);
-    }
-
-    #[test]
-    fn rows_and_columns_may_change_places() {
-        let (nx, ny) = (6, 3);
-        let frame = pressed(nx * ny, 8);
-        let transposed: Vec<f64> = (0..nx * ny).map(|k| frame[k % ny * nx + k / ny]).collect();
-        let (out, other) = (
-            read(&frame, (nx, ny), 0.2),
-            read(&transposed, (ny, nx), 0.2),
-        );
-        for (k, value) in other.iter().enumerate() {
-            assert!((value - out[k % ny * nx + k / ny]).abs() < 1e-17);
-        }
-    }
-
-    #[test]
-    fn a_resistance_below_zero_is_refused() {
-        let grid = Grid {
-            nx: 2,
-            ny: 2,
-            pitch: 1e-3,
-        };
-        for resistance in [-0.1, f64::NAN, f64::INFINITY] {
-            let error = MatrixReadout::new(resistance, 1.0, &grid).unwrap_err();
-            assert!(error.to_string().starts_with("line resistance"), "{error}");
-        }
     }
 }

@@ -8,16 +8,16 @@
 //! |---|---|---|
 //! | [`Force`](SignalStep::Force) | fᵢ = max(0, k δᵢ + c δ̇ᵢ) where δᵢ > 0, else 0 \[BT\] | k N/m, c N·s/m, δ m, δ̇ m/s |
 //! | [`Noise`] | xᵢ ← xᵢ + σ zᵢ, zᵢ ~ N(0, 1), independent | σ in the frame's unit |
-//! | [`Smoothing`] | x ← G_w ∗ x along y, then along x | w metres |
+//! | [`Smoothing`](SignalStep::Smoothing) | x ← G_w ∗ x along y, then along x | w metres |
 //! | [`Hysteresis`](SensorError::Hysteresis) | x ← (1 − 4w) x + w Σⱼ Pⱼ\[x\], Pⱼ play operators over time | w of the full scale |
-//! | [`Crosstalk`] | xᵢ ← (1 − κ) xᵢ + κ/4 Σ xⱼ over four neighbours | κ a fraction |
+//! | [`Crosstalk`](SensorError::Crosstalk) | xᵢ ← (1 − κ) xᵢ + κ/4 Σ xⱼ over four neighbours | κ a fraction |
 //! | [`MatrixReadout`](SensorError::MatrixReadout) | xᵢⱼ ← X t² (A⁻¹)ᵢⱼ, A the network of taxels and lines, t = 1/ε \[DA\] | ε of a fully pressed taxel's resistance |
 //! | [`Scan`](SensorError::Scan) | xᵢ(t) ← xᵢ(t + T i/n), n taxels read one after another | T seconds |
 //! | [`Gain`](SensorError::Gain) | xᵢ ← gᵢ xᵢ, g log-normal of mean 1 | std of g |
 //! | [`Drift`](SensorError::Drift) | xᵢ ← xᵢ + σ Wᵢ(t), W a Wiener process, t the touch's time | σ of the full scale |
 //! | [`Faults`](SensorError::Faults) | xᵢ ← 0 (dead) or a level of its own (stuck) | fractions of taxels |
 //! | [`PinkNoise`](SensorError::PinkNoise) | xᵢ ← xᵢ + σ pᵢ, p of a 1/f spectrum in the order of reading | σ of the full scale |
-//! | [`Quantisation`] | x ← q round(x / q), clipped to the full scale | b bits |
+//! | [`Quantisation`](SensorError::Quantisation) | x ← q round(x / q), clipped to the full scale | b bits |
 //!
 //! Smoothing is a filter. The steps below it are sensor errors of real skins: mismatching, drift, hysteresis and crosstalk \[SD\], and errors of the readout
 //! electronics. A step of zero strength has no effect. The table has the physical order: first the material, then the readout of each taxel, then the
@@ -65,13 +65,11 @@ sensor_errors! {
 
 pub use body_readout::{BodyReading, BodyReadout, WORTH_THREADS};
 pub use chain::{Chain, Recording, SignalWorkspace};
-pub use crosstalk::Crosstalk;
-pub use force::force;
+pub(crate) use crosstalk::Crosstalk;
 pub use noise::{Noise, NoiseUnit};
-pub use quantisation::Quantisation;
 pub use quantity::Quantity;
 pub use resampling::{resample, resampled_instant};
 pub use sensor_error::{Effect, ErrorAbout, MAX_STRENGTHS, Prepare, Skin, Strength, TouchRead};
-pub use smoothing::Smoothing;
+pub(crate) use smoothing::Smoothing;
 pub use step::{MAX_OWN_STRENGTHS, SignalStep};
 pub use taxel_effect::Moment;

@@ -12,7 +12,6 @@
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::random::Seed;
-use crate::text::in_range::not_negative;
 use rand::Rng;
 use rand_distr::StandardNormal;
 
@@ -31,7 +30,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             "zero or a positive fraction of the full scale",
         )],
         |&[std, _], skin| {
-            let std = not_negative("pink noise std", std, "")? * skin.full_scale;
+            let std = std * skin.full_scale;
             Ok(Box::new(PinkNoise { std }))
         },
     )
@@ -81,6 +80,7 @@ mod tests {
         let seed = Seed::new(5).numbered(touch);
         let touch = TouchRead {
             n_taxels: n_readings,
+            rates: None,
             n_before: 0,
             interval: None,
             time: None,

@@ -3,16 +3,15 @@
 //! The operation is x ← q round(min(max(x, 0), X) / q) with q = X / (2ᵇ − 1). There are 2ᵇ codes from 0 to the full scale X, both included, or from −X to X if
 //! values have a sign. Values outside the range are clipped to its nearest end.
 
-use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
-use super::taxel_effect::{Chunk, Moment, TaxelEffect};
-use crate::error::{Error, Result};
+use super::sensor_error::{Effect, ErrorAbout, Strength};
+use super::taxel_effect::TaxelEffect;
 
 /// Maximum number of bits of an analogue-to-digital converter. A finer step would be smaller than any effect of a touch.
 const MAX_BITS: u32 = 24;
 
 /// Model of an analogue-to-digital converter, for frames whose values lie in one range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quantisation {
+struct Quantisation {
     least: f64,
     span: f64,
     /// Largest code of the converter, 2ᵇ − 1 for b bits.
@@ -21,24 +20,16 @@ pub struct Quantisation {
 
 impl Quantisation {
     /// Prepares a converter of 1 to 24 bits. `least` and `largest` are the limits of the input range, in the unit of the frames.
-    ///
-    /// # Errors
-    /// If the number of bits is not from 1 to 24.
-    pub fn new(bits: u32, [least, largest]: [f64; 2]) -> Result<Self> {
-        if !(1..=MAX_BITS).contains(&bits) {
-            let allowed = format!("1 to {MAX_BITS}, or 0 for no converter");
-            return Err(Error::input("converter bits", bits, allowed));
-        }
-        let last = f64::from((1u32 << bits) - 1);
-        Ok(Self {
+    fn new(bits: u32, [least, largest]: [f64; 2]) -> Self {
+        Self {
             least,
             span: largest - least,
-            last,
-        })
+            last: f64::from((1u32 << bits) - 1),
+        }
     }
 
     /// Clips each value to the range of the converter and rounds it to the nearest code.
-    pub fn convert(&self, frame: &mut [f64]) {
+    fn convert(&self, frame: &mut [f64]) {
         for value in frame {
             let share = (*value - self.least) / self.span;
             let code = (share.clamp(0.0, 1.0) * self.last).round();
@@ -49,7 +40,8 @@ impl Quantisation {
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     by_taxel: Some(|&[bits, _], full_scale, _| {
-        Ok(Box::new(Quantisation::new(bits as u32, [0.0, full_scale])?))
+        let converter = Quantisation::new(bits as u32, [0.0, full_scale]);
+        TaxelEffect::new(move |_, _, values| converter.convert(values))
     }),
     ..ErrorAbout::new(
         "quantisation",
@@ -64,20 +56,14 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
         }],
         |&[bits, _], skin| {
             let range = [skin.least, skin.full_scale];
-            Ok(Box::new(Quantisation::new(bits as u32, range)?))
+            Ok(Box::new(Quantisation::new(bits as u32, range)))
         },
     )
 };
 
 impl Effect for Quantisation {
-    fn apply(&self, frames: &mut [f64], _: &TouchRead, _: &mut [f64]) {
-        self.convert(frames);
-    }
-}
-
-impl TaxelEffect for Quantisation {
-    fn apply(&self, _: &mut Chunk, _: Moment, values: &mut [f64]) {
-        self.convert(values);
+    fn apply_to_frame(&self, frame: &mut [f64], _: &mut [f64]) {
+        self.convert(frame);
     }
 }
 
@@ -88,7 +74,7 @@ mod tests {
     fn converted(bits: u32, frame: &[f64]) -> Vec<f64> {
         let mut out = frame.to_vec();
         let converter = Quantisation::new(bits, [0.0, 5e-3]);
-        converter.unwrap().convert(&mut out);
+        converter.convert(&mut out);
         out
     }
 
@@ -123,20 +109,11 @@ mod tests {
     fn values_with_a_sign_have_as_many_codes_over_twice_the_range() {
         let mut frame: Vec<f64> = (-120..=120).map(|i| f64::from(i) * 1e-2).collect();
         let felt = frame.clone();
-        let converter = Quantisation::new(4, [-1.0, 1.0]).unwrap();
-        converter.convert(&mut frame);
+        Quantisation::new(4, [-1.0, 1.0]).convert(&mut frame);
         for (out, value) in frame.iter().zip(&felt) {
             assert!((out - value.clamp(-1.0, 1.0)).abs() <= 1.0 / 15.0 + 1e-12);
         }
         frame.dedup();
         assert_eq!((frame[0], frame[15], frame.len()), (-1.0, 1.0, 16));
-    }
-
-    #[test]
-    fn no_bits_and_too_many_are_refused() {
-        for bits in [0, 25, u32::MAX] {
-            let error = Quantisation::new(bits, [0.0, 1.0]).unwrap_err();
-            assert!(error.to_string().starts_with("converter bits"), "{error}");
-        }
     }
 }

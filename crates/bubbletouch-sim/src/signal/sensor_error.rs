@@ -1,7 +1,7 @@
 //! Description of a sensor error: its signal step, strengths, dependencies and constructor.
 
 use super::taxel_effect::TaxelEffect;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::random::{CounterKey, Seed};
 use crate::world::Patch;
 use std::fmt::Debug;
@@ -25,13 +25,12 @@ pub struct Strength {
     pub names: &'static [(&'static str, &'static str)],
 }
 
-/// Constructor of a sensor error. The function checks the strengths (at least one of them is nonzero) and prepares the effect for a skin.
+/// Constructor of a sensor error. The function prepares the effect for a skin; the strengths are allowed, and at least one of them is nonzero.
 pub type Prepare = fn(&[f64; MAX_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>;
 
 /// Constructor of a sensor error for the taxels of a whole body. Its arguments are allowed strengths (at least one of them nonzero), the full scale in metres
 /// or newtons, and the key of the random draws.
-pub type PrepareByTaxel =
-    fn(&[f64; MAX_STRENGTHS], f64, CounterKey) -> Result<Box<dyn TaxelEffect>>;
+pub type PrepareByTaxel = fn(&[f64; MAX_STRENGTHS], f64, CounterKey) -> TaxelEffect;
 
 /// Description of a sensor error: strengths, dependencies, and constructors.
 #[derive(Debug)]
@@ -52,7 +51,7 @@ pub struct ErrorAbout {
     pub needs_motion: bool,
     /// Whether the sensor error depends on the positions of the taxels: on their neighbours, or on rows and columns.
     pub needs_places: bool,
-    /// Constructor of the error for whole frames: checks the strengths (at least one of them is nonzero) and prepares the effect.
+    /// Constructor of the error for whole frames.
     pub prepare: Prepare,
     /// Constructor of the error for a `BodyReadout`; `None` if the error depends on other taxels or on other frames.
     pub by_taxel: Option<PrepareByTaxel>,
@@ -86,8 +85,15 @@ pub trait Effect: Debug + Send + Sync {
         false
     }
 
-    /// Applies the effect to frames of n_taxels values each, in the order of time, without allocating memory.
-    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]);
+    /// Applies the effect to frames of n_taxels values each, in the order of time, without allocating memory. By default, each frame is read by itself.
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
+        for frame in frames.chunks_exact_mut(touch.n_taxels) {
+            self.apply_to_frame(frame, scratch);
+        }
+    }
+
+    /// Applies an effect that needs neither other frames nor the touch to one frame. Effects that implement `apply` do not use this function.
+    fn apply_to_frame(&self, _: &mut [f64], _: &mut [f64]) {}
 }
 
 /// Metadata of a touch that affect the readings of its frames.
@@ -95,6 +101,8 @@ pub trait Effect: Debug + Send + Sync {
 pub struct TouchRead<'a> {
     /// Number of values in a frame.
     pub n_taxels: usize,
+    /// Rates of deflection δ̇, m/s, one per value of the frames; `None` if the patch does not move.
+    pub rates: Option<&'a [f64]>,
     /// Number of leading frames recorded before the touch.
     pub n_before: usize,
     /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
@@ -127,6 +135,29 @@ impl ErrorAbout {
             prepare,
             by_taxel: None,
         }
+    }
+
+    /// Checks the values of the strengths.
+    ///
+    /// # Errors
+    /// If a value is not allowed, or the sum of two fractions exceeds 1.
+    pub(super) fn check(&self, values: &[f64; MAX_STRENGTHS]) -> Result<()> {
+        for (strength, &value) in self.strengths.iter().zip(values) {
+            if !strength.is_allowed(value) {
+                return Err(Error::input(strength.key, value, strength.allowed));
+            }
+        }
+        if let ([first, second], [a, b]) = (self.strengths, values)
+            && a + b > 1.0
+        {
+            let keys = format!("{} and {}", first.key, second.key);
+            return Err(Error::input(
+                keys,
+                format!("{a} and {b}"),
+                "at most 1 together",
+            ));
+        }
+        Ok(())
     }
 
     /// Returns whether the error of each frame of a touch is independent of the other frames.

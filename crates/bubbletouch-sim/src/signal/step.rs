@@ -119,22 +119,19 @@ impl SensorError {
             let allowed = format!("{MAX_OWN_STRENGTHS} strengths of all registered errors");
             return Err(Error::input(format!("sensor error {name}"), given, allowed));
         }
+        let words = |about: &'static ErrorAbout| {
+            let keys = about.strengths.iter().map(|one| one.key);
+            keys.chain([about.step])
+        };
         let built_in = SENSOR_ERRORS.iter().map(|error| error.about());
         let others = built_in.chain(registered.iter().map(|own| own.about()));
-        let words = |about: &'static ErrorAbout| {
-            [about.step]
-                .into_iter()
-                .chain(about.strengths.iter().map(|one| one.key))
-        };
-        let mut taken: Vec<&str> = others.flat_map(words).chain(RESERVED).collect();
-        let is_taken = [name]
-            .into_iter()
-            .chain(strengths.iter().map(|one| one.key))
-            .any(|word| {
-                let is_taken = taken.contains(&word);
-                taken.push(word);
-                is_taken
-            });
+        let taken: Vec<&str> = others.flat_map(words).chain(RESERVED).collect();
+        let keys = strengths.iter().map(|one| one.key);
+        let own: Vec<&str> = keys.chain([name]).collect();
+        let is_taken = own
+            .iter()
+            .enumerate()
+            .any(|(place, word)| taken.contains(word) || own[..place].contains(word));
         OWN.register(name, version, about, is_taken).map(Self::Own)
     }
 

@@ -3,7 +3,7 @@
 //! xᵢ ← Σⱼ wᵢⱼ xⱼ / Σⱼ wᵢⱼ, wᵢⱼ = exp(−½ (dᵢⱼ / w)²), over all taxels whose distance d along the surface ([`Neighbours`]) is at most 4 w. w is the width (σ) in
 //! metres, as on a grid. Taxels beyond an edge have no weight; a uniform frame is unchanged.
 
-use super::sensor_error::{Effect, TouchRead};
+use super::sensor_error::Effect;
 use crate::error::{Error, Result};
 use crate::world::{Neighbours, Patch};
 
@@ -67,20 +67,15 @@ impl Effect for SurfaceSmoothing {
         self.starts.len() - 1
     }
 
-    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
-        for frame in frames.chunks_exact_mut(touch.n_taxels) {
-            let felt = &mut scratch[..frame.len()];
-            felt.copy_from_slice(frame);
-            for (out, ends) in frame.iter_mut().zip(self.starts.windows(2)) {
-                let (taxels, weights) = (
-                    &self.taxels[ends[0]..ends[1]],
-                    &self.weights[ends[0]..ends[1]],
-                );
-                let parts = taxels.iter().zip(weights);
-                *out = parts
-                    .map(|(&other, weight)| weight * felt[other as usize])
-                    .sum();
-            }
+    fn apply_to_frame(&self, frame: &mut [f64], scratch: &mut [f64]) {
+        let felt = &mut scratch[..frame.len()];
+        felt.copy_from_slice(frame);
+        for (out, ends) in frame.iter_mut().zip(self.starts.windows(2)) {
+            let own = ends[0]..ends[1];
+            let parts = self.taxels[own.clone()].iter().zip(&self.weights[own]);
+            *out = parts
+                .map(|(&other, weight)| weight * felt[other as usize])
+                .sum();
         }
     }
 }

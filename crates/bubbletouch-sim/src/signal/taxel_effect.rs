@@ -3,9 +3,10 @@
 //! The random numbers are counter-based. Four adjacent taxels share a counter, and [`LANES`] counters are computed at
 //! a time.
 
-use crate::contact::{Instructions, for_instructions};
 use crate::random::{CounterKey, GROUP};
-use std::fmt::Debug;
+use multiversion::multiversion;
+use std::fmt;
+use std::sync::Arc;
 
 /// Number of taxels that are processed together. If larger, the data leave the processor's cache; if smaller, blocks of counters are only partly used.
 pub(super) const CHUNK: usize = 512;
@@ -21,10 +22,27 @@ pub struct Moment {
     pub time: f64,
 }
 
-/// Step of a `BodyReadout`, prepared for one patch. The step acts on each taxel independently.
-pub trait TaxelEffect: Debug + Send + Sync {
-    /// Replaces the true values of the taxels in `chunk` by readings, in the unit of the frames of the patch.
-    fn apply(&self, chunk: &mut Chunk, moment: Moment, values: &mut [f64]);
+/// Step of a `BodyReadout`, prepared for one patch: a function that replaces the true values of the taxels in a chunk by readings, in the unit of the frames of the
+/// patch. The step acts on each taxel independently.
+#[derive(Clone)]
+pub struct TaxelEffect(Arc<dyn Fn(&mut Chunk, Moment, &mut [f64]) + Send + Sync>);
+
+impl TaxelEffect {
+    pub(super) fn new(
+        read: impl Fn(&mut Chunk, Moment, &mut [f64]) + Send + Sync + 'static,
+    ) -> Self {
+        Self(Arc::new(read))
+    }
+
+    pub(super) fn apply(&self, chunk: &mut Chunk, moment: Moment, values: &mut [f64]) {
+        (self.0)(chunk, moment, values);
+    }
+}
+
+impl fmt::Debug for TaxelEffect {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("TaxelEffect")
+    }
 }
 
 /// Random numbers of eight counters, four numbers per counter. The first index is the number within the counter, the second is the counter.
@@ -74,7 +92,7 @@ impl Chunk {
         draws.fill([[0.0; LANES]; GROUP]);
         for (index, weight) in terms {
             let groups = &self.groups[..self.n_blocks];
-            add_normals(Instructions::Best, key, index, weight, groups, draws);
+            add_normals(key, index, weight, groups, draws);
         }
     }
 
@@ -82,7 +100,7 @@ impl Chunk {
     pub(super) fn draw_uniforms(&mut self, key: CounterKey, index: u64) {
         let groups = &self.groups[..self.n_blocks];
         let draws = &mut self.draws[..self.n_blocks];
-        lay_uniforms(Instructions::Best, key, index, groups, draws);
+        lay_uniforms(key, index, groups, draws);
     }
 
     /// Replaces each value by `read(value, draw)`, where `draw` is the random number that was last drawn for the taxel.
@@ -94,19 +112,18 @@ impl Chunk {
     }
 }
 
-for_instructions! {
-    /// Adds `weight` times the normal numbers at `index` to `sums`, for all groups of taxels.
-    fn add_normals(
-        key: CounterKey,
-        index: u64,
-        weight: f64,
-        groups: &[[u64; LANES]],
-        sums: &mut [Block],
-    ) = add_each
-}
-
-#[inline(always)]
-fn add_each(key: CounterKey, index: u64, weight: f64, groups: &[[u64; LANES]], sums: &mut [Block]) {
+/// Adds `weight` times the normal numbers at `index` to `sums`, for all groups of taxels.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+    "x86_64+avx2+fma"
+))]
+fn add_normals(
+    key: CounterKey,
+    index: u64,
+    weight: f64,
+    groups: &[[u64; LANES]],
+    sums: &mut [Block],
+) {
     for block in 0..groups.len() {
         let normals = key.normals(&groups[block], index);
         for item in 0..GROUP {
@@ -117,18 +134,12 @@ fn add_each(key: CounterKey, index: u64, weight: f64, groups: &[[u64; LANES]], s
     }
 }
 
-for_instructions! {
-    /// Writes the uniform random numbers at `index` to `uniforms`, for all groups of taxels.
-    fn lay_uniforms(
-        key: CounterKey,
-        index: u64,
-        groups: &[[u64; LANES]],
-        uniforms: &mut [Block],
-    ) = lay_each
-}
-
-#[inline(always)]
-fn lay_each(key: CounterKey, index: u64, groups: &[[u64; LANES]], uniforms: &mut [Block]) {
+/// Writes the uniform random numbers at `index` to `uniforms`, for all groups of taxels.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+    "x86_64+avx2+fma"
+))]
+fn lay_uniforms(key: CounterKey, index: u64, groups: &[[u64; LANES]], uniforms: &mut [Block]) {
     for block in 0..groups.len() {
         uniforms[block] = key.uniforms(&groups[block], index);
     }

@@ -13,10 +13,9 @@
 
 use super::adaptive::{Adaptive, ReadBlock};
 use super::dense::Dense;
-use super::ensemble::{EnsembleAbout, Operator, Source, TrainingFrames};
-use crate::error::Result;
+use super::ensemble::{EnsembleAbout, Operator, TrainingFrames};
+use crate::linalg::Cholesky;
 use crate::random::Seed;
-use crate::sensing::cholesky::Cholesky;
 use crate::sensing::image_prior::{N_COMPONENTS, with_copies};
 use crate::sensing::pca::Pca;
 use crate::world::ImageShape;
@@ -30,15 +29,14 @@ const N_FRAMES: usize = 8192;
 const LEAST_NOISE: f64 = 1e-12;
 
 pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
-    words: "adaptive blocks, learned estimate",
-    is_prefix_nested: false,
-    is_whole_frame: false,
+    is_adaptive: true,
     needs_rows: true,
     // The components and their sums.
     bytes: |_, n| 16.0 * n * n.min(N_COMPONENTS as f64),
-    source: Source::LearnedAdaptive(|training, grid, m, seed| {
-        Ok(Box::new(AdaptiveLearned::new(training, grid, m, seed)?))
-    }),
+    ..EnsembleAbout::learned(
+        "adaptive blocks, learned estimate",
+        |training, grid, m, seed| Ok(Box::new(AdaptiveLearned::new(training, grid, m, seed))),
+    )
 };
 
 /// Adaptive readout with the statistics of training frames.
@@ -58,15 +56,14 @@ struct AdaptiveLearned {
 }
 
 impl AdaptiveLearned {
-    fn new(training: &TrainingFrames, grid: ImageShape, m: usize, seed: &Seed) -> Result<Self> {
+    fn new(training: &TrainingFrames, grid: ImageShape, m: usize, seed: &Seed) -> Self {
         let seed = seed.named("adaptive_learned");
         let frames = with_copies(training.frames, grid, N_FRAMES, &seed);
         let n_frames = frames.nrows() as f64;
-        let pca = Pca::new(frames, N_COMPONENTS.min(grid.ny * grid.nx), &seed);
-        let n = pca.mean.len() as f64;
-        let rest = ((pca.total_variance - pca.variance.sum()) / n).max(0.0);
+        let pca = Pca::new(frames, N_COMPONENTS.min(grid.n_values()), &seed);
+        let rest = pca.rest();
         let accuracy = 3.0 * (rest / n_frames).sqrt();
-        Ok(Self {
+        Self {
             readout: Adaptive::new(grid, m),
             nx: grid.nx,
             sums: corner_sums(pca.components.view(), pca.mean.view(), grid),
@@ -75,7 +72,7 @@ impl AdaptiveLearned {
             mean: pca.mean,
             variance: pca.variance,
             rest,
-        })
+        }
     }
 
     /// Returns the coefficients of the components that estimate a frame, shape (k,).
@@ -141,10 +138,6 @@ impl Operator for AdaptiveLearned {
     }
 
     fn each_entry(&self, _: &mut dyn FnMut(usize, usize, f64)) {}
-
-    fn row_norm(&self) -> f64 {
-        1.0
-    }
 }
 
 /// Returns the sums of k components (k × n) and of the mean frame over the taxels above and to the left of each corner of the array.
@@ -173,15 +166,8 @@ fn corner_sums(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sensing::image_estimate::tests::{GRID, bumps, error};
+    use crate::sensing::image_estimate::tests::{GRID, bumps, error, noise};
     use crate::sensing::{Ensemble, Projection};
-    use rand::Rng;
-    use rand_distr::StandardNormal;
-
-    fn noise(n: usize, name: &str, std: f64) -> Array2<f64> {
-        let mut rng = Seed::new(4).named(name).rng();
-        Array2::from_shape_fn((n, 144), |_| std * rng.sample::<f64, _>(StandardNormal))
-    }
 
     fn learned(frames: &Array2<f64>, m: usize) -> Projection {
         let learned = (frames.view(), &Seed::new(1));
@@ -212,7 +198,7 @@ mod tests {
         let frames = bumps(9, "test") + noise(9, "test", 0.1);
         let frames = &frames;
         let learned_from = (training.view(), &Seed::new(1));
-        let made = AdaptiveLearned::new(&learned_from.0.into(), GRID, 20, learned_from.1).unwrap();
+        let made = AdaptiveLearned::new(&learned_from.0.into(), GRID, 20, learned_from.1);
         let components = made.components.0.t();
         let mut expected = Array2::zeros((9, 144));
         for (frame, mut expected) in frames.outer_iter().zip(expected.outer_iter_mut()) {

@@ -122,48 +122,6 @@ pub(super) fn split_blocks(ImageShape { ny, nx }: ImageShape, m: usize) -> Vec<B
     blocks
 }
 
-/// Returns the squared norm of each row of the averaging matrix; the rows are orthogonal.
-fn row_squares(blocks: &[Block]) -> Array1<f64> {
-    blocks
-        .iter()
-        .map(|block| 1.0 / block.area() as f64)
-        .collect()
-}
-
-/// Calls `visit(measurement, taxel, value)` for each nonzero entry of the averaging matrix.
-fn each_entry(blocks: &[Block], visit: &mut dyn FnMut(usize, usize, f64)) {
-    let nx = width(blocks);
-    for (measurement, block) in blocks.iter().enumerate() {
-        for line in block.rows.clone() {
-            for column in block.columns.clone() {
-                visit(measurement, line * nx + column, 1.0 / block.area() as f64);
-            }
-        }
-    }
-}
-
-/// Returns the number of columns of the array that the blocks tile.
-fn width(blocks: &[Block]) -> usize {
-    blocks.iter().map(|b| b.columns.end).max().unwrap_or(1)
-}
-
-/// Writes to `out` the mean of each block for each frame.
-fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
-    let nx = width(blocks);
-    for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
-        for (y, block) in row.iter_mut().zip(blocks) {
-            let mut sum = 0.0;
-            for taxels in block.lines(nx) {
-                sum += match frame.as_slice() {
-                    Some(frame) => frame[taxels].iter().sum::<f64>(),
-                    None => frame.slice(s![taxels]).iter().sum::<f64>(),
-                };
-            }
-            *y = sum / block.area() as f64;
-        }
-    }
-}
-
 pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     is_prefix_nested: false,
     needs_rows: true,
@@ -176,21 +134,51 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 #[derive(Debug)]
 struct Blocks(Vec<Block>);
 
+impl Blocks {
+    /// Returns the number of columns of the array that the blocks tile.
+    fn width(&self) -> usize {
+        self.0.iter().map(|b| b.columns.end).max().unwrap_or(1)
+    }
+
+    /// Returns the squared norm of each row of the averaging matrix; the rows are orthogonal.
+    fn row_squares(&self) -> Array1<f64> {
+        let squares = self.0.iter().map(|block| 1.0 / block.area() as f64);
+        squares.collect()
+    }
+}
+
 impl Operator for Blocks {
-    fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>) {
-        measure(&self.0, frames, out);
+    fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+        let nx = self.width();
+        for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
+            for (y, block) in row.iter_mut().zip(&self.0) {
+                let mut sum = 0.0;
+                for taxels in block.lines(nx) {
+                    sum += match frame.as_slice() {
+                        Some(frame) => frame[taxels].iter().sum::<f64>(),
+                        None => frame.slice(s![taxels]).iter().sum::<f64>(),
+                    };
+                }
+                *y = sum / block.area() as f64;
+            }
+        }
     }
 
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
-        each_entry(&self.0, visit);
+        let nx = self.width();
+        for (measurement, block) in self.0.iter().enumerate() {
+            for taxel in block.lines(nx).flatten() {
+                visit(measurement, taxel, 1.0 / block.area() as f64);
+            }
+        }
     }
 
     fn row_norm(&self) -> f64 {
-        row_squares(&self.0).mean().unwrap_or(1.0).sqrt()
+        self.row_squares().mean().unwrap_or(1.0).sqrt()
     }
 
     fn known_gram(&self) -> Option<Array2<f64>> {
-        Some(Array2::from_diag(&row_squares(&self.0)))
+        Some(Array2::from_diag(&self.row_squares()))
     }
 }
 
@@ -198,26 +186,19 @@ impl Operator for Blocks {
 mod tests {
     use super::*;
 
-    fn covered(grid: ImageShape, blocks: &[Block]) -> Vec<usize> {
-        let mut count = vec![0; grid.ny * grid.nx];
-        for block in blocks {
-            for row in block.rows.clone() {
-                for column in block.columns.clone() {
-                    count[row * grid.nx + column] += 1;
-                }
-            }
-        }
-        count
-    }
-
     #[test]
     fn any_number_of_blocks_covers_every_taxel_once() {
         for grid in [(1, 1), (1, 9), (7, 3), (8, 8), (5, 12)].map(|(ny, nx)| ImageShape { ny, nx })
         {
-            for m in 1..=grid.ny * grid.nx {
+            for m in 1..=grid.n_values() {
                 let blocks = blocks(grid, m);
                 assert_eq!(blocks.len(), m);
-                assert!(covered(grid, &blocks).iter().all(|&count| count == 1));
+                let taxels = blocks
+                    .iter()
+                    .flat_map(|block| block.lines(grid.nx).flatten());
+                let mut taxels: Vec<usize> = taxels.collect();
+                taxels.sort_unstable();
+                assert!(taxels.into_iter().eq(0..grid.n_values()), "{grid:?}, {m}");
             }
         }
     }

@@ -11,8 +11,18 @@ use rand_chacha::ChaCha8Rng;
 pub(crate) struct Dense(pub(crate) Array2<f64>);
 
 impl Operator for Dense {
-    fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>) {
-        measure(&self.0, frames, out);
+    /// Writes the measurements X Φᵀ of the frames X, computed by a blocked matrix product. Each measurement is summed over the taxels in one fixed order for any
+    /// number of frames or measurements (tested as a law). Taxels that are zero in all frames are omitted, which does not change the bits of the result.
+    fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+        let touched = touched(frames);
+        if touched.len() as f64 > MOSTLY_TOUCHED * frames.ncols() as f64 {
+            return general_mat_mul(1.0, &frames, &self.0.t(), 0.0, &mut out);
+        }
+        out.fill(0.0);
+        for taxels in touched.chunk_by(|a, b| a / SUMMED_TOGETHER == b / SUMMED_TOGETHER) {
+            let (frames, matrix) = (columns(frames, taxels), columns(self.0.view(), taxels));
+            general_mat_mul(1.0, &frames, &matrix.t(), 1.0, &mut out);
+        }
     }
 
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
@@ -61,20 +71,6 @@ pub(crate) fn by_rows(
 const SUMMED_TOGETHER: usize = 256;
 /// Fraction of nonzero taxels above which the product uses all taxels. Above this fraction, copying the nonzero taxels would take longer than it saves.
 const MOSTLY_TOUCHED: f64 = 0.8;
-
-/// Writes the measurements X Φᵀ of the frames X, computed by a blocked matrix product. Each measurement is summed over the taxels in one fixed order for any
-/// number of frames or measurements (tested as a law). Taxels that are zero in all frames are omitted, which does not change the bits of the result.
-fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
-    let touched = touched(frames);
-    if touched.len() as f64 > MOSTLY_TOUCHED * frames.ncols() as f64 {
-        return general_mat_mul(1.0, &frames, &matrix.t(), 0.0, &mut out);
-    }
-    out.fill(0.0);
-    for taxels in touched.chunk_by(|a, b| a / SUMMED_TOGETHER == b / SUMMED_TOGETHER) {
-        let (frames, matrix) = (columns(frames, taxels), columns(matrix.view(), taxels));
-        general_mat_mul(1.0, &frames, &matrix.t(), 1.0, &mut out);
-    }
-}
 
 /// Returns the indices of taxels that are nonzero in at least one frame, ascending.
 fn touched(frames: ArrayView2<f64>) -> Vec<usize> {

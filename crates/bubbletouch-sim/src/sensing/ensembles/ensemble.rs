@@ -12,26 +12,16 @@ use std::sync::OnceLock;
 /// Function that draws the linear map from an ny × nx array to m measurements with its own random stream, 1 ≤ m ≤ ny · nx.
 pub type Draw = fn(ImageShape, usize, &Seed) -> Box<dyn Operator>;
 
-/// Function that learns the linear map to m measurements from frames of training touches, with its own random stream.
-pub type Learn = fn(&TrainingFrames, usize, &Seed) -> Result<Box<dyn Operator>>;
+/// Function that learns the map from an ny × nx array to m measurements from frames of training touches, with its own random stream, 1 ≤ m ≤ ny · nx.
+pub type Learn = fn(&TrainingFrames, ImageShape, usize, &Seed) -> Result<Box<dyn Operator>>;
 
-/// Function that prepares the adaptive readout of an ny × nx array with at most m readings per frame, 1 ≤ m ≤ ny · nx.
-pub type Adapt = fn(ImageShape, usize) -> Box<dyn Operator>;
-
-/// Function that prepares an adaptive readout as [`Adapt`] does, and learns the estimate of a frame from training frames.
-pub type LearnAdaptive = fn(&TrainingFrames, ImageShape, usize, &Seed) -> Result<Box<dyn Operator>>;
-
-/// Origin of a measurement map: drawn at random, learned from frames, or adapted to each frame.
+/// Origin of a measurement map.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
     /// The map is drawn at random or fixed.
     Drawn(Draw),
     /// The map is learned from frames of training touches.
     Learned(Learn),
-    /// Adapted to each frame: earlier readings determine the later readings. The map is not linear; it returns an estimate of the frame, one value per taxel.
-    Adaptive(Adapt),
-    /// Adapted to each frame; the estimate of the frame is learned from frames of training touches.
-    LearnedAdaptive(LearnAdaptive),
 }
 
 /// Frames of training touches from which a measurement map is learned.
@@ -68,11 +58,13 @@ pub struct EnsembleAbout {
     pub is_prefix_nested: bool,
     /// Whether the ensemble measures every taxel separately for any requested number of measurements.
     pub is_whole_frame: bool,
+    /// Whether earlier readings of a frame determine its later readings. Such a map is not linear; it returns an estimate of the frame, one value per taxel.
+    pub is_adaptive: bool,
     /// Whether the ensemble requires a grid of taxels with rows and columns.
     pub needs_rows: bool,
     /// Function that returns the memory of a projection, bytes. Its arguments are the numbers of measurements and of taxels.
     pub bytes: fn(f64, f64) -> f64,
-    /// Origin of the measurement map: drawn at random, learned from frames, or adapted to each frame.
+    /// Origin of the measurement map: drawn at random, or learned from frames.
     pub source: Source,
 }
 
@@ -83,9 +75,23 @@ impl EnsembleAbout {
             words,
             is_prefix_nested: true,
             is_whole_frame: false,
+            is_adaptive: false,
             needs_rows: false,
             bytes: |_, n| 16.0 * n,
             source: Source::Drawn(draw),
+        }
+    }
+
+    /// Describes an ensemble that `learn` learns, with default properties: measurements that are not nested, a stored matrix, and any layout.
+    pub const fn learned(words: &'static str, learn: Learn) -> Self {
+        Self {
+            words,
+            is_prefix_nested: false,
+            is_whole_frame: false,
+            is_adaptive: false,
+            needs_rows: false,
+            bytes: |m, n| 16.0 * n * m,
+            source: Source::Learned(learn),
         }
     }
 }
@@ -99,8 +105,11 @@ pub trait Operator: Debug + Send + Sync {
     /// Calls `visit(measurement, taxel, value)` for each entry of Φ that can be nonzero, always in one order. An adaptive map visits nothing.
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64));
 
-    /// Returns the root mean square norm of the rows of Φ. For an adaptive map, returns an upper bound of the noise of values divided by the noise of taxels.
-    fn row_norm(&self) -> f64;
+    /// Returns the root mean square norm of the rows of Φ, by default 1. For an adaptive map, returns an upper bound of the noise of values divided by the noise of
+    /// taxels.
+    fn row_norm(&self) -> f64 {
+        1.0
+    }
 
     /// Returns the indices of the taxels that are read, in the order of the measurements, if each measurement is one taxel; otherwise `None`.
     fn taxels(&self) -> Option<&[usize]> {
@@ -142,10 +151,6 @@ impl Ensemble {
     ///
     ///     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
     ///         (0..self.0).for_each(|taxel| visit(taxel, taxel, 1.0));
-    ///     }
-    ///
-    ///     fn row_norm(&self) -> f64 {
-    ///         1.0
     ///     }
     /// }
     ///
@@ -189,23 +194,17 @@ impl Ensemble {
 
     /// Returns whether the map is learned from frames of training touches.
     pub fn is_learned(self) -> bool {
-        let source = self.about().source;
-        matches!(source, Source::Learned(_) | Source::LearnedAdaptive(_))
+        matches!(self.about().source, Source::Learned(_))
     }
 
     /// Returns whether the map is drawn at random or fixed, and therefore linear and independent of all frames.
     pub fn is_drawn(self) -> bool {
-        matches!(self.about().source, Source::Drawn(_))
+        !self.about().is_adaptive && !self.is_learned()
     }
 
     /// Returns whether a measured frame has one value per taxel: each taxel is measured, or an adaptive readout estimates it.
     pub fn gives_frames(self) -> bool {
-        let about = self.about();
-        let is_adaptive = matches!(
-            about.source,
-            Source::Adaptive(_) | Source::LearnedAdaptive(_)
-        );
-        about.is_whole_frame || is_adaptive
+        self.about().is_whole_frame || self.about().is_adaptive
     }
 
     /// Returns the number of values of a measured frame for n taxels and a requested number m of measurements. The result is n if the ensemble gives one

@@ -21,7 +21,7 @@ ensembles! {
     Identity identity "The frame itself, whatever m.";
 }
 
-pub use ensemble::{Adapt, Draw, EnsembleAbout, Learn, Operator, Source, TrainingFrames};
+pub use ensemble::{Draw, EnsembleAbout, Learn, Operator, Source, TrainingFrames};
 pub(super) use sbhe::ScrambledHadamard;
 
 use serde::{Deserialize, Serialize};

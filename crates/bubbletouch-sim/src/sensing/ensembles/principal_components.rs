@@ -5,26 +5,17 @@
 //! needs a matrix of m × n numbers, and training touches that it reads in full.
 
 use super::dense::Dense;
-use super::ensemble::{EnsembleAbout, Operator, Source, TrainingFrames};
+use super::ensemble::{EnsembleAbout, TrainingFrames};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::sensing::pca::Pca;
 use ndarray::Array2;
 
-pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
-    words: "principal components",
-    // The last digits of a component depend on the number of components computed together.
-    is_prefix_nested: false,
-    is_whole_frame: false,
-    needs_rows: false,
-    bytes: |m, n| 16.0 * n * m,
-    // Approximate cost of the computation, divided by the number of measured frames.
-    source: Source::Learned(learn),
-};
-
-fn learn(training: &TrainingFrames, m: usize, seed: &Seed) -> Result<Box<dyn Operator>> {
-    Ok(Box::new(Dense(components(training, m, seed)?)))
-}
+// The last digits of a component depend on the number of components computed together, so that the measurements are not nested.
+pub(crate) const ABOUT: EnsembleAbout =
+    EnsembleAbout::learned("principal components", |training, _, m, seed| {
+        Ok(Box::new(Dense(components(training, m, seed)?)))
+    });
 
 /// Returns the first m principal components of training frames, shape (m, n_taxels).
 ///
@@ -60,38 +51,6 @@ mod tests {
                 .map(|k| ((i * i * (k + 2)) as f64).sin() * pattern(k) / (1 + k) as f64)
                 .sum()
         })
-    }
-
-    #[test]
-    fn no_other_matrix_of_two_rows_keeps_more_of_the_frames() {
-        let frames = frames();
-        let centred = &frames - &frames.mean_axis(ndarray::Axis(0)).unwrap();
-        let kept = |rows: &Array2<f64>| centred.dot(&rows.t()).mapv(|y| y * y).sum();
-        let learned = (frames.view(), &Seed::new(1));
-        let ensemble = Ensemble::PrincipalComponents;
-        let rows = Projection::learned(ensemble, ImageShape { ny: 3, nx: 4 }, 2, learned)
-            .unwrap()
-            .matrix();
-        let unit = rows.dot(&rows.t()) - Array2::<f64>::eye(2);
-        assert!(unit.iter().all(|e| e.abs() < 1e-12));
-        let most = kept(&rows);
-        for seed in 0..50 {
-            // Pairs of orthonormal rows near the principal components, by Gram–Schmidt.
-            let drawn = Projection::new(
-                Ensemble::Gaussian,
-                ImageShape { ny: 3, nx: 4 },
-                2,
-                &Seed::new(seed),
-            );
-            let mut other = &rows + &(0.3 * drawn.unwrap().matrix());
-            let first = other.row(0).to_owned() / other.row(0).dot(&other.row(0)).sqrt();
-            let mut second = other.row(1).to_owned();
-            second.scaled_add(-second.dot(&first), &first);
-            second /= second.dot(&second).sqrt();
-            other.row_mut(0).assign(&first);
-            other.row_mut(1).assign(&second);
-            assert!(kept(&other) < most, "{seed}");
-        }
     }
 
     #[test]

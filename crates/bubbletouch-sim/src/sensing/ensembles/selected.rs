@@ -2,40 +2,30 @@
 //!
 //! Each measurement is the reading of one taxel. The methods are in [`Selection`]. Test touches are not used.
 
-use super::ensemble::{EnsembleAbout, Operator, Source, TrainingFrames};
+use super::ensemble::EnsembleAbout;
 use super::principal_components::components;
 use super::subsample::{Taxels, random_taxels};
-use crate::error::Result;
-use crate::random::Seed;
+use crate::linalg::pivoted_columns;
 use crate::sensing::Selection;
-use crate::sensing::selection::{greedy_taxels, pivoted_columns};
+use crate::sensing::selection::greedy_taxels;
 
-pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
-    words: "selected taxels",
-    // Principal components, and therefore the pivots, depend on the number of components computed together.
-    is_prefix_nested: false,
-    is_whole_frame: false,
-    needs_rows: false,
-    // The principal components from which pivots are chosen.
-    bytes: |m, n| 16.0 * n * m,
-    source: Source::Learned(learn),
-};
-
-fn learn(training: &TrainingFrames, m: usize, seed: &Seed) -> Result<Box<dyn Operator>> {
-    let taxels = match training.selection {
-        Selection::Greedy => greedy_taxels(training, m, &seed.named("selected"))?,
-        Selection::PivotedQr => pivoted_columns(components(training, m, seed)?),
-        Selection::Random => random_taxels(training.frames.ncols(), m, seed),
-    };
-    Ok(Box::new(Taxels(taxels)))
-}
+// Principal components, and therefore the pivots, depend on the number of components computed together. The memory is that of these components.
+pub(crate) const ABOUT: EnsembleAbout =
+    EnsembleAbout::learned("selected taxels", |training, _, m, seed| {
+        let taxels = match training.selection {
+            Selection::Greedy => greedy_taxels(training, m, &seed.named("selected"))?,
+            Selection::PivotedQr => pivoted_columns(components(training, m, seed)?),
+            Selection::Random => random_taxels(training.frames.ncols(), m, seed),
+        };
+        Ok(Box::new(Taxels(taxels)))
+    });
 
 #[cfg(test)]
 mod tests {
     use crate::random::Seed;
     use crate::sensing::{Ensemble, Projection, Selection, TrainingFrames};
     use crate::world::ImageShape;
-    use ndarray::{Array2, ArrayView2};
+    use ndarray::Array2;
 
     const GRID: ImageShape = ImageShape { ny: 4, nx: 5 };
 
@@ -53,55 +43,36 @@ mod tests {
         (frames, labels)
     }
 
-    fn selected<'a>(
-        selection: Selection,
-        frames: ArrayView2<'a, f64>,
-        labels: &'a [usize],
-    ) -> Vec<usize> {
+    fn selected(selection: Selection, m: usize) -> Projection {
+        let (frames, labels) = training();
         let training = TrainingFrames {
-            labels,
+            labels: &labels,
             selection,
-            ..TrainingFrames::from(frames)
+            ..TrainingFrames::from(frames.view())
         };
-        let seed = Seed::new(4);
-        let projection = Projection::learned(Ensemble::Selected, GRID, 2, (training, &seed));
-        projection.unwrap().taxels().unwrap().to_vec()
+        Projection::learned(Ensemble::Selected, GRID, m, (training, &Seed::new(4))).unwrap()
     }
 
     #[test]
     fn greedy_selects_the_two_taxels_that_tell_the_classes_apart() {
-        let (frames, labels) = training();
-        let mut taxels = selected(Selection::Greedy, frames.view(), &labels);
+        let mut taxels = selected(Selection::Greedy, 2).taxels().unwrap().to_vec();
         taxels.sort_unstable();
         assert_eq!(taxels, [7, 12]);
     }
 
     #[test]
-    fn the_random_selection_is_the_subsample_of_the_same_seed() {
-        let (frames, labels) = training();
-        let drawn = Projection::new(Ensemble::Subsample, GRID, 2, &Seed::new(4)).unwrap();
-        let random = selected(Selection::Random, frames.view(), &labels);
-        assert_eq!(drawn.taxels().unwrap(), random);
-    }
-
-    #[test]
-    fn a_measurement_is_the_reading_of_its_taxel() {
-        let (frames, labels) = training();
+    fn a_measurement_is_the_reading_of_its_taxel_and_a_random_selection_is_a_subsample() {
+        let (frames, _) = training();
         for selection in Selection::ALL {
-            let training = TrainingFrames {
-                labels: &labels,
-                selection,
-                ..TrainingFrames::from(frames.view())
-            };
-            let seed = Seed::new(4);
-            let learned = Projection::learned(Ensemble::Selected, GRID, 4, (training, &seed));
-            let projection = learned.unwrap();
+            let projection = selected(selection, 4);
             let measured = projection.measure(frames.view());
             let taxels = projection.taxels().unwrap();
             for (measurement, &taxel) in taxels.iter().enumerate() {
                 assert_eq!(measured.column(measurement), frames.column(taxel));
             }
         }
+        let drawn = Projection::new(Ensemble::Subsample, GRID, 4, &Seed::new(4)).unwrap();
+        assert_eq!(drawn.taxels(), selected(Selection::Random, 4).taxels());
     }
 
     #[test]

@@ -29,10 +29,6 @@ impl Operator for Taxels {
         picked.for_each(|(measurement, &taxel)| visit(measurement, taxel, 1.0));
     }
 
-    fn row_norm(&self) -> f64 {
-        1.0
-    }
-
     fn taxels(&self) -> Option<&[usize]> {
         Some(&self.0)
     }

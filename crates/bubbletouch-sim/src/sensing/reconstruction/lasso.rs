@@ -122,19 +122,23 @@ impl Curvature {
     }
 }
 
+/// Frame that has not converged.
+struct OpenFrame {
+    index: usize,
+    /// Squared norm ‖y‖² of the frame's measurements y.
+    square: f64,
+    /// Penalty of the current stage; at least λ.
+    penalty: f64,
+    /// Momentum parameter of the FISTA iteration.
+    momentum: f64,
+}
+
 /// Solver state of the frames that have not converged yet, one frame per row of each matrix.
 struct Open<'a> {
     sensed: &'a SensedDictionary<'a>,
     /// Upper bound of the largest eigenvalue of AᵀA, where A is the matrix of measured atoms.
     curvature: f64,
-    /// Indices of the frames that have not converged.
-    frames: Vec<usize>,
-    /// Squared norm ‖y‖² of each frame's measurements y.
-    square: Vec<f64>,
-    /// Penalty of each frame's current stage; at least λ.
-    penalty: Vec<f64>,
-    /// Momentum parameter of the FISTA iteration for each frame.
-    momentum: Vec<f64>,
+    frames: Vec<OpenFrame>,
     /// Products Aᵀy of the measured atoms A with the measurements y, one row per frame.
     b: Array2<f64>,
     alpha: Array2<f64>,
@@ -144,23 +148,22 @@ struct Open<'a> {
 
 impl<'a> Open<'a> {
     fn new(sensed: &'a SensedDictionary<'a>, y: &Array2<f64>, curvature: f64, lambda: f64) -> Self {
-        let n_frames = y.nrows();
-        let shape = (n_frames, sensed.atoms().nrows());
         let b = y.dot(&sensed.atoms().t());
         let steepest = |b: ArrayView1<f64>| b.iter().fold(lambda, |most, b| most.max(b.abs()));
+        let rows = y.outer_iter().zip(b.outer_iter()).enumerate();
+        let frames = rows.map(|(index, (y, b))| OpenFrame {
+            index,
+            square: y.dot(&y),
+            penalty: (REDUCTION * steepest(b)).max(lambda),
+            momentum: 1.0,
+        });
         Self {
             sensed,
             curvature,
-            frames: (0..n_frames).collect(),
-            square: y.outer_iter().map(|y| y.dot(&y)).collect(),
-            momentum: vec![1.0; n_frames],
-            penalty: b
-                .outer_iter()
-                .map(|b| (REDUCTION * steepest(b)).max(lambda))
-                .collect(),
+            frames: frames.collect(),
+            alpha: Array2::zeros(b.dim()),
+            ahead: Array2::zeros(b.dim()),
             b,
-            alpha: Array2::zeros(shape),
-            ahead: Array2::zeros(shape),
         }
     }
 
@@ -179,88 +182,78 @@ impl<'a> Open<'a> {
     fn step(&mut self) {
         let gradient = self.gradient(&self.ahead);
         let length = 1.0 / self.curvature;
-        for (row, gradient) in gradient.outer_iter().enumerate() {
-            let alpha = self.alpha.row_mut(row);
-            let ahead = self.ahead.row_mut(row);
-            step_row(
-                alpha,
-                ahead,
-                gradient,
-                length,
-                self.penalty[row],
-                &mut self.momentum[row],
-            );
+        for ((row, gradient), frame) in gradient.outer_iter().enumerate().zip(&mut self.frames) {
+            let (alpha, ahead) = (self.alpha.row_mut(row), self.ahead.row_mut(row));
+            frame.step(alpha, ahead, gradient, length);
         }
     }
 
     /// Moves the converged frames to `solved` (all frames if `is_last`), and keeps the others.
     fn retire(&mut self, rule: &Lasso, is_last: bool, solved: &mut Solved) {
         let gradient = self.gradient(&self.alpha);
-        let mut kept = Vec::new();
-        for (row, &frame) in self.frames.iter().enumerate() {
+        let n_before = self.frames.len();
+        let (mut row, mut kept) = (0..n_before, Vec::new());
+        self.frames.retain_mut(|frame| {
+            let row = row.next().expect("one row for each frame");
             let (alpha, b) = (self.alpha.row(row), self.b.row(row));
-            let square = self.square[row];
-            let penalty = self.penalty[row];
-            let (primal, gap) = duality_gap(alpha, b, gradient.row(row), square, penalty);
+            let penalty = frame.penalty;
+            let (primal, gap) = duality_gap(alpha, b, gradient.row(row), frame.square, penalty);
             if penalty > rule.lambda && gap <= STAGE_GAP * primal {
-                self.penalty[row] = (REDUCTION * penalty).max(rule.lambda);
-                self.momentum[row] = 1.0;
+                frame.penalty = (REDUCTION * penalty).max(rule.lambda);
+                frame.momentum = 1.0;
             }
             let is_solved = penalty == rule.lambda && gap <= rule.tolerance * primal;
             if is_solved || is_last {
-                solved.coefficients.row_mut(frame).assign(&alpha);
-                solved.capped[frame] = !is_solved;
-            } else {
-                kept.push(row);
+                solved.coefficients.row_mut(frame.index).assign(&alpha);
+                solved.capped[frame.index] = !is_solved;
+                return false;
+            }
+            kept.push(row);
+            true
+        });
+        if kept.len() < n_before {
+            for matrix in [&mut self.b, &mut self.alpha, &mut self.ahead] {
+                *matrix = matrix.select(Axis(0), &kept);
             }
         }
-        if kept.len() == self.frames.len() {
-            return;
-        }
-        for matrix in [&mut self.b, &mut self.alpha, &mut self.ahead] {
-            *matrix = matrix.select(Axis(0), &kept);
-        }
-        self.frames = kept.iter().map(|&row| self.frames[row]).collect();
-        self.penalty = kept.iter().map(|&row| self.penalty[row]).collect();
-        self.square = kept.iter().map(|&row| self.square[row]).collect();
-        self.momentum = kept.iter().map(|&row| self.momentum[row]).collect();
     }
 }
 
-/// Performs one proximal gradient step for one frame from the extrapolated coefficients `ahead`, and computes the next extrapolated coefficients.
-fn step_row(
-    alpha: ArrayViewMut1<f64>,
-    mut ahead: ArrayViewMut1<f64>,
-    gradient: ArrayView1<f64>,
-    length: f64,
-    lambda: f64,
-    momentum: &mut f64,
-) {
-    let threshold = lambda * length;
-    let mut alpha = alpha;
-    let mut uphill = 0.0;
-    // `ahead` becomes the new α and `alpha` the change; both are then swapped.
-    Zip::from(&mut alpha)
-        .and(&mut ahead)
-        .and(&gradient)
-        .for_each(|old, z, &g| {
-            let moved = *z - length * g;
-            let new = moved - moved.clamp(-threshold, threshold);
-            let change = new - *old;
-            uphill += (*z - new) * change;
-            (*old, *z) = (change, new);
+impl OpenFrame {
+    /// Performs one proximal gradient step from the extrapolated coefficients `ahead`, and computes the next extrapolated coefficients. `length` is the length of
+    /// the step.
+    fn step(
+        &mut self,
+        mut alpha: ArrayViewMut1<f64>,
+        mut ahead: ArrayViewMut1<f64>,
+        gradient: ArrayView1<f64>,
+        length: f64,
+    ) {
+        let threshold = self.penalty * length;
+        let mut uphill = 0.0;
+        // `ahead` becomes the new α and `alpha` the change; both are then swapped.
+        Zip::from(&mut alpha)
+            .and(&mut ahead)
+            .and(&gradient)
+            .for_each(|old, z, &g| {
+                let moved = *z - length * g;
+                let new = moved - moved.clamp(-threshold, threshold);
+                let change = new - *old;
+                uphill += (*z - new) * change;
+                (*old, *z) = (change, new);
+            });
+        let grown = 0.5 * (1.0 + (1.0 + 4.0 * self.momentum * self.momentum).sqrt());
+        let (weight, next) = match uphill > 0.0 {
+            true => (0.0, 1.0),
+            false => ((self.momentum - 1.0) / grown, grown),
+        };
+        self.momentum = next;
+        Zip::from(&mut alpha).and(&mut ahead).for_each(|change, z| {
+            let new = *z;
+            *z = new + weight * *change;
+            *change = new;
         });
-    let grown = 0.5 * (1.0 + (1.0 + 4.0 * *momentum * *momentum).sqrt());
-    let (weight, next) = match uphill > 0.0 {
-        true => (0.0, 1.0),
-        false => ((*momentum - 1.0) / grown, grown),
-    };
-    *momentum = next;
-    Zip::from(&mut alpha).and(&mut ahead).for_each(|change, z| {
-        let new = *z;
-        *z = new + weight * *change;
-        *change = new;
-    });
+    }
 }
 
 /// Returns the objective and the duality gap (objective minus dual value) at the coefficients α; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².

@@ -9,8 +9,8 @@
 //! With PCA atoms this is the estimate from the training covariance; with a fixed basis it is a Wiener filter in this basis.
 
 use crate::error::{Error, Result};
+use crate::linalg::Cholesky;
 use crate::sensing::SensedDictionary;
-use crate::sensing::cholesky::Cholesky;
 use ndarray::{Array1, Array2, ArrayView2};
 
 /// Smallest noise variance relative to the mean variance of the measurements. Without noise, the matrix to be inverted may be singular.

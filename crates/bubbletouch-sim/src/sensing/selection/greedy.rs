@@ -255,32 +255,40 @@ mod tests {
         (n_correct, margins, distances)
     }
 
+    /// Returns the first m taxels that greedy selection selects.
+    fn selected(frames: &Array2<f64>, labels: &[usize], groups: &[usize], m: usize) -> Vec<usize> {
+        let training = TrainingFrames {
+            frames: frames.view(),
+            labels,
+            groups,
+            selection: Selection::Greedy,
+        };
+        greedy_taxels(&training, m, &Seed::new(1)).unwrap()
+    }
+
     #[test]
     fn each_step_adds_the_taxel_that_brute_force_finds() {
         let (frames, labels, groups) = training();
         // Readings of two levels have many equally near frames.
         let touched = frames.mapv(|reading| f64::from(u8::from(reading > 0.4)));
         for frames in [frames, touched] {
-            check_steps(&TrainingFrames {
-                frames: frames.view(),
-                labels: &labels,
-                groups: &groups,
-                selection: Selection::Greedy,
-            });
+            let score = |taxels: &[usize]| {
+                let training = TrainingFrames {
+                    labels: &labels,
+                    groups: &groups,
+                    ..TrainingFrames::from(frames.view())
+                };
+                slow_score(taxels, &training)
+            };
+            let mut slow: Vec<usize> = Vec::new();
+            while slow.len() < 6 {
+                let left = (0..18).filter(|taxel| !slow.contains(taxel));
+                let scores = left.map(|taxel| (score(&[&slow[..], &[taxel]].concat()), taxel));
+                let best = scores.reduce(|a, b| if b.0 > a.0 { b } else { a });
+                slow.push(best.unwrap().1);
+            }
+            assert_eq!(selected(&frames, &labels, &groups, 6), slow);
         }
-    }
-
-    fn check_steps(training: &TrainingFrames) {
-        let fast = greedy_taxels(training, 6, &Seed::new(1)).unwrap();
-        let mut slow: Vec<usize> = Vec::new();
-        while slow.len() < 6 {
-            let left = (0..18).filter(|taxel| !slow.contains(taxel));
-            let scores =
-                left.map(|taxel| (slow_score(&[&slow[..], &[taxel]].concat(), training), taxel));
-            let best = scores.reduce(|a, b| if b.0 > a.0 { b } else { a });
-            slow.push(best.unwrap().1);
-        }
-        assert_eq!(fast, slow);
     }
 
     #[test]
@@ -294,21 +302,13 @@ mod tests {
             };
             f64::from(u8::from(is_on))
         });
-        let training = TrainingFrames {
-            labels: &labels,
-            ..TrainingFrames::from(frames.view())
-        };
-        assert_eq!(greedy_taxels(&training, 1, &Seed::new(1)).unwrap(), [10]);
+        assert_eq!(selected(&frames, &labels, &[], 1), [10]);
     }
 
     #[test]
     fn one_frame_of_each_class_selects_the_taxel_that_separates_most_classes() {
         let frames = ndarray::arr2(&[[0.0, 0.0], [0.0, 1.0], [0.0, 2.0], [1.0, 3.0]]);
-        let training = TrainingFrames {
-            labels: &[0, 1, 2, 3],
-            ..TrainingFrames::from(frames.view())
-        };
-        assert_eq!(greedy_taxels(&training, 1, &Seed::new(1)).unwrap(), [1]);
+        assert_eq!(selected(&frames, &[0, 1, 2, 3], &[], 1), [1]);
     }
 
     #[test]
@@ -316,39 +316,20 @@ mod tests {
         // Taxel 0 has one value per group, taxel 1 one value per class with errors in a few frames.
         let labels: Vec<usize> = (0..40).map(|frame| (frame / 2) % 2).collect();
         let groups: Vec<usize> = (0..40).map(|frame| frame / 2).collect();
-        let frames = Array2::from_shape_fn((40, 2), |(frame, taxel)| match taxel {
-            0 => ((frame / 2 * 7919) % 20) as f64,
-            _ => {
-                (labels[frame] as f64)
-                    + if frame % 9 == 0 {
-                        0.6
-                    } else {
-                        0.001 * frame as f64
-                    }
-            }
+        let frames = Array2::from_shape_fn((40, 2), |(frame, taxel)| match (taxel, frame % 9) {
+            (0, _) => ((frame / 2 * 7919) % 20) as f64,
+            (_, 0) => labels[frame] as f64 + 0.6,
+            _ => labels[frame] as f64 + 0.001 * frame as f64,
         });
-        let select = |groups: &[usize]| {
-            let training = TrainingFrames {
-                labels: &labels,
-                groups,
-                ..TrainingFrames::from(frames.view())
-            };
-            greedy_taxels(&training, 1, &Seed::new(1)).unwrap()[0]
-        };
-        assert_eq!(select(&groups), 1);
-        assert_eq!(select(&[]), 0);
+        assert_eq!(selected(&frames, &labels, &groups, 1), [1]);
+        assert_eq!(selected(&frames, &labels, &[], 1), [0]);
     }
 
     #[test]
     fn taxels_that_never_change_are_selected_last() {
         let (mut frames, labels, groups) = training();
         frames.slice_mut(ndarray::s![.., 2..16]).fill(0.25);
-        let training = TrainingFrames {
-            labels: &labels,
-            groups: &groups,
-            ..TrainingFrames::from(frames.view())
-        };
-        let mut taxels = greedy_taxels(&training, 6, &Seed::new(1)).unwrap();
+        let mut taxels = selected(&frames, &labels, &groups, 6);
         taxels[..4].sort_unstable();
         assert_eq!(taxels, [0, 1, 16, 17, 2, 3]);
     }

@@ -7,10 +7,8 @@
 //! | [`Random`](Selection::Random) | drawn without replacement, as by the ensemble `subsample` | no |
 
 mod greedy;
-mod pivoted_qr;
 
 pub(super) use greedy::greedy_taxels;
-pub(super) use pivoted_qr::pivoted_columns;
 
 use serde::{Deserialize, Serialize};
 
