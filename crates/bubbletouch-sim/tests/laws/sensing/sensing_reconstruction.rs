@@ -1,19 +1,12 @@
 //! Laws of the solvers, compared with slow oracles and with numbers of an independent program.
 
+use super::{RANDOM, complete, drawn, gauss, shape};
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::sensing::{
     Basis, Dictionary, Effort, Ensemble, Lasso, Lmmse, Omp, Projection, Reconstructor,
     SensedDictionary, Solver,
 };
-use bubbletouch_sim::world::ImageShape;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
-
-const RANDOM: [Ensemble; 4] = [
-    Ensemble::Gaussian,
-    Ensemble::Bernoulli,
-    Ensemble::Sparse,
-    Ensemble::Sbhe,
-];
 
 fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |most, v| most.max(v.abs()))
@@ -32,6 +25,21 @@ fn sparse_rows(n_frames: usize, k: usize, s: usize) -> Array2<f64> {
     rows
 }
 
+fn omp(most_atoms: usize, residual: f64) -> Omp {
+    Omp {
+        most_atoms,
+        residual,
+    }
+}
+
+fn lasso(lambda: f64, tolerance: f64, most_steps: usize) -> Lasso {
+    Lasso {
+        lambda,
+        tolerance,
+        most_steps,
+    }
+}
+
 fn wavy_frames(n_frames: usize, n: usize) -> Array2<f64> {
     Array2::from_shape_fn((n_frames, n), |(i, j)| {
         let x = j as f64 / n as f64;
@@ -43,28 +51,21 @@ fn wavy_frames(n_frames: usize, n: usize) -> Array2<f64> {
 
 #[test]
 fn pursuit_and_l1_recover_sparse_frames_from_enough_measurements_without_noise() {
-    let grid = ImageShape { ny: 16, nx: 16 };
+    let grid = shape(16, 16);
     for ensemble in RANDOM {
-        let projection = Projection::new(ensemble, grid, 100, &Seed::new(5)).unwrap();
+        let projection = drawn(ensemble, grid, 100, 5);
         for basis in [Basis::Dct, Basis::Haar, Basis::Daubechies4] {
-            let dictionary = Dictionary::complete(basis, grid).unwrap();
+            let dictionary = complete(basis, grid);
             let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
             let truth = sparse_rows(6, 256, 8);
             let frames = dictionary.synthesise(truth.view());
             let y = projection.measure(frames.view());
-            let omp = Omp {
-                most_atoms: 20,
-                residual: 1e-9,
-            };
+            let omp = omp(20, 1e-9);
             let found = omp.solve(&sensed, y.view()).unwrap();
             assert!(!found.capped.contains(&true), "{ensemble:?} {basis:?}");
             let error = &found.coefficients - &truth;
             assert!(largest(&error) < 1e-8, "OMP, {ensemble:?} {basis:?}");
-            let lasso = Lasso {
-                lambda: 1e-4,
-                tolerance: 1e-10,
-                most_steps: 20_000,
-            };
+            let lasso = lasso(1e-4, 1e-10, 20_000);
             let found = lasso.solve(&sensed, y.view()).unwrap();
             assert!(!found.capped.contains(&true), "{ensemble:?} {basis:?}");
             let error = &found.coefficients - &truth;
@@ -98,45 +99,16 @@ fn naive_omp(a: ArrayView2<f64>, y: ArrayView1<f64>, n_atoms: usize) -> Array1<f
     coefficients
 }
 
-/// Solves a linear system by Gaussian elimination with pivoting.
-fn gauss(mut a: Array2<f64>, mut b: Array1<f64>) -> Array1<f64> {
-    let n = b.len();
-    for i in 0..n {
-        let pivot = (i..n)
-            .max_by(|&p, &q| a[[p, i]].abs().total_cmp(&a[[q, i]].abs()))
-            .unwrap();
-        for j in 0..n {
-            a.swap([i, j], [pivot, j]);
-        }
-        b.swap(i, pivot);
-        for row in i + 1..n {
-            let factor = a[[row, i]] / a[[i, i]];
-            for j in i..n {
-                a[[row, j]] -= factor * a[[i, j]];
-            }
-            b[row] -= factor * b[i];
-        }
-    }
-    for i in (0..n).rev() {
-        let known: f64 = (i + 1..n).map(|j| a[[i, j]] * b[j]).sum();
-        b[i] = (b[i] - known) / a[[i, i]];
-    }
-    b
-}
-
 #[test]
 fn batch_pursuit_is_the_textbook_pursuit() {
-    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(12, 64));
+    let (grid, frames) = (shape(8, 8), wavy_frames(12, 64));
     for ensemble in RANDOM {
-        let projection = Projection::new(ensemble, grid, 30, &Seed::new(6)).unwrap();
-        let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+        let projection = drawn(ensemble, grid, 30, 6);
+        let dictionary = complete(Basis::Dct, grid);
         let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
         let y = projection.measure(frames.view());
         for n_atoms in [1, 3, 10] {
-            let omp = Omp {
-                most_atoms: n_atoms,
-                residual: 0.0,
-            };
+            let omp = omp(n_atoms, 0.0);
             let found = omp.solve(&sensed, y.view()).unwrap();
             for (frame, row) in found.coefficients.outer_iter().enumerate() {
                 let slow = naive_omp(sensed.atoms().t(), y.row(frame), n_atoms);
@@ -149,16 +121,13 @@ fn batch_pursuit_is_the_textbook_pursuit() {
 
 #[test]
 fn pursuit_stops_at_the_residual_and_says_when_it_could_not_reach_it() {
-    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(10, 64));
-    let projection = Projection::new(Ensemble::Gaussian, grid, 40, &Seed::new(6)).unwrap();
-    let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+    let (grid, frames) = (shape(8, 8), wavy_frames(10, 64));
+    let projection = drawn(Ensemble::Gaussian, grid, 40, 6);
+    let dictionary = complete(Basis::Dct, grid);
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
     let y = projection.measure(frames.view());
     for (most_atoms, residual) in [(40, 0.5), (3, 0.05)] {
-        let omp = Omp {
-            most_atoms,
-            residual,
-        };
+        let omp = omp(most_atoms, residual);
         let found = omp.solve(&sensed, y.view()).unwrap();
         for (frame, alpha) in found.coefficients.outer_iter().enumerate() {
             let left = &y.row(frame) - &alpha.dot(&sensed.atoms());
@@ -171,20 +140,19 @@ fn pursuit_stops_at_the_residual_and_says_when_it_could_not_reach_it() {
 
 #[test]
 fn the_l1_solution_meets_the_optimality_conditions() {
-    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(20, 64));
+    let (grid, frames) = (shape(8, 8), wavy_frames(20, 64));
     for (ensemble, m) in [(Ensemble::Gaussian, 20), (Ensemble::Sbhe, 50)] {
-        let projection = Projection::new(ensemble, grid, m, &Seed::new(6)).unwrap();
-        let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+        let projection = drawn(ensemble, grid, m, 6);
+        let dictionary = complete(Basis::Dct, grid);
         let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
         let y = projection.measure(frames.view());
-        for lambda in [0.01, 0.1, 0.5] {
-            let lasso = Lasso {
-                lambda,
-                tolerance: 1e-12,
-                most_steps: 100_000,
-            };
+        // With a penalty above every correlation, no coefficient remains.
+        let none = 1.0001 * largest(&y.dot(&sensed.atoms().t()));
+        for lambda in [0.01, 0.1, 0.5, none] {
+            let lasso = lasso(lambda, 1e-12, 100_000);
             let found = lasso.solve(&sensed, y.view()).unwrap();
             assert!(!found.capped.contains(&true));
+            assert!(lambda < none || largest(&found.coefficients) == 0.0);
             for (frame, alpha) in found.coefficients.outer_iter().enumerate() {
                 let left = &y.row(frame) - &alpha.dot(&sensed.atoms());
                 let slopes = sensed.atoms().dot(&left);
@@ -199,106 +167,17 @@ fn the_l1_solution_meets_the_optimality_conditions() {
     }
 }
 
-#[test]
-fn a_penalty_above_every_correlation_leaves_nothing() {
-    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(4, 64));
-    let projection = Projection::new(Ensemble::Gaussian, grid, 20, &Seed::new(6)).unwrap();
-    let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
-    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
-    let y = projection.measure(frames.view());
-    let lasso = Lasso {
-        lambda: 1.0001 * largest(&y.dot(&sensed.atoms().t())),
-        tolerance: 1e-9,
-        most_steps: 50,
-    };
-    let found = lasso.solve(&sensed, y.view()).unwrap();
-    assert_eq!(largest(&found.coefficients), 0.0);
-    assert!(!found.capped.contains(&true));
-}
-
 /// Returns a small problem with known solutions: 24 taxels in a row, all 24 cosines as atoms, and 10 measurements. The measurements are averages over blocks of
 /// 2, 2, 3, 2, 3, 2, 2, 3, 2, 3 taxels.
 fn golden_problem() -> (Projection, Dictionary, Array2<f64>) {
-    let grid = ImageShape { ny: 1, nx: 24 };
-    let projection = Projection::new(Ensemble::BlockAverage, grid, 10, &Seed::new(1)).unwrap();
-    let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+    let grid = shape(1, 24);
+    let projection = drawn(Ensemble::BlockAverage, grid, 10, 1);
+    let dictionary = complete(Basis::Dct, grid);
     let y = Array2::from_shape_fn((1, 10), |(_, i)| (0.7 * i as f64).sin() + 0.1 * i as f64);
     (projection, dictionary, y)
 }
 
-fn assert_golden(found: ArrayView1<f64>, golden: &[(usize, f64)], tolerance: f64) {
-    let mut expected = Array1::zeros(found.len());
-    for &(atom, value) in golden {
-        expected[atom] = value;
-    }
-    let error = largest(&(&found - &expected));
-    assert!(error < tolerance, "{error}: {found}");
-}
-
-/// Reference: `orthogonal_mp(A / norms, y, n_nonzero_coefs=s) / norms` of scikit-learn 1.9.1.
-#[test]
-fn pursuit_agrees_with_scikit_learn() {
-    let (projection, dictionary, y) = golden_problem();
-    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
-    let goldens: [&[(usize, f64)]; 2] = [
-        &[
-            (0, 2.347981151042561),
-            (1, 1.017484359120837),
-            (3, -2.4595483019317794),
-            (5, -0.4935999862667157),
-        ],
-        &[
-            (0, 2.3568862851660564),
-            (1, 0.977929769960914),
-            (2, 0.3431155895261033),
-            (3, -2.512012270258347),
-            (5, -0.609702553095139),
-            (13, 0.3191213975769725),
-            (14, 0.9526407641647067),
-        ],
-    ];
-    for golden in goldens {
-        let omp = Omp {
-            most_atoms: golden.len(),
-            residual: 0.0,
-        };
-        let found = omp.solve(&sensed, y.view()).unwrap();
-        assert_golden(found.coefficients.row(0), golden, 1e-10);
-    }
-}
-
-/// Reference: `Lasso(alpha=lam / 10, fit_intercept=False, tol=1e-14, max_iter=1000000).fit(A, y).coef_` of scikit-learn 1.9.1.
-#[test]
-fn the_l1_solution_agrees_with_scikit_learn() {
-    let (projection, dictionary, y) = golden_problem();
-    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
-    let goldens: [(f64, &[(usize, f64)]); 2] = [
-        (
-            0.05,
-            &[
-                (0, 2.232484557463463),
-                (1, 0.8725101747700555),
-                (2, 0.2414803880468431),
-                (3, -2.3204229896564237),
-                (5, -0.36947014181475274),
-                (6, -0.038355411255771237),
-                (7, -0.09735620464025187),
-            ],
-        ),
-        (0.5, &[(0, 1.0856772027081394), (3, -1.0313840343748208)]),
-    ];
-    for (lambda, golden) in goldens {
-        let lasso = Lasso {
-            lambda,
-            tolerance: 1e-15,
-            most_steps: 1_000_000,
-        };
-        let found = lasso.solve(&sensed, y.view()).unwrap();
-        assert_golden(found.coefficients.row(0), golden, 1e-6);
-    }
-}
-
-/// Reference: minima of the objective by `Lasso` of scikit-learn 1.9.1, as above.
+/// Reference: minima of the objective by `Lasso(alpha=lam / 10, fit_intercept=False, tol=1e-14, max_iter=1000000)` of scikit-learn 1.9.1.
 #[test]
 fn a_solved_l1_objective_is_within_the_tolerance_of_scikit_learn_at_any_penalty() {
     let (projection, dictionary, y) = golden_problem();
@@ -312,11 +191,7 @@ fn a_solved_l1_objective_is_within_the_tolerance_of_scikit_learn_at_any_penalty(
     ] {
         let tolerance = Effort::default().tolerance;
         for most_steps in [3, 10_000] {
-            let lasso = Lasso {
-                lambda,
-                tolerance,
-                most_steps,
-            };
+            let lasso = lasso(lambda, tolerance, most_steps);
             let found = lasso.solve(&sensed, y.view()).unwrap();
             let alpha = found.coefficients.row(0);
             let left = &y.row(0) - &alpha.dot(&sensed.atoms());
@@ -354,7 +229,7 @@ fn dense_lmmse(sensed: &SensedDictionary, noise_std: f64, y: ArrayView2<f64>) ->
 
 #[test]
 fn the_linear_estimate_is_its_dense_formula() {
-    let (grid, frames) = (ImageShape { ny: 6, nx: 6 }, wavy_frames(40, 36));
+    let (grid, frames) = (shape(6, 6), wavy_frames(40, 36));
     let noise_std = 0.2;
     for ensemble in RANDOM.into_iter().chain([Ensemble::BlockAverage]) {
         // With 4 atoms the estimate goes through coefficients, with 30 directly to taxels.
@@ -375,7 +250,7 @@ fn the_linear_estimate_is_its_dense_formula() {
 
 #[test]
 fn the_linear_estimate_trusts_training_alone_when_noise_drowns_the_measurements() {
-    let (grid, frames) = (ImageShape { ny: 6, nx: 6 }, wavy_frames(40, 36));
+    let (grid, frames) = (shape(6, 6), wavy_frames(40, 36));
     let seed = Seed::new(7);
     let projection = Projection::new(Ensemble::Sbhe, grid, 20, &seed).unwrap();
     let dictionary = Dictionary::learned(Basis::Pca, grid, frames.view(), Some(8), &seed).unwrap();
@@ -391,7 +266,7 @@ fn the_linear_estimate_trusts_training_alone_when_noise_drowns_the_measurements(
 
 #[test]
 fn a_frame_is_reconstructed_the_same_in_every_batch() {
-    let (grid, frames) = (ImageShape { ny: 8, nx: 8 }, wavy_frames(70, 64));
+    let (grid, frames) = (shape(8, 8), wavy_frames(70, 64));
     let seed = Seed::new(8);
     let projection = Projection::new(Ensemble::Gaussian, grid, 24, &seed).unwrap();
     for basis in [Basis::Dct, Basis::Pca] {
@@ -418,32 +293,27 @@ fn a_frame_is_reconstructed_the_same_in_every_batch() {
 
 #[test]
 fn limits_out_of_range_and_untrained_dictionaries_are_refused() {
-    let grid = ImageShape { ny: 4, nx: 4 };
-    let projection = Projection::new(Ensemble::Gaussian, grid, 8, &Seed::new(1)).unwrap();
-    let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+    let grid = shape(4, 4);
+    let projection = drawn(Ensemble::Gaussian, grid, 8, 1);
+    let dictionary = complete(Basis::Dct, grid);
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
     let y = Array2::zeros((1, 8));
-    let omp = |most_atoms, residual| {
-        let omp = Omp {
-            most_atoms,
-            residual,
-        };
-        omp.solve(&sensed, y.view()).unwrap_err().to_string()
-    };
-    assert_eq!(omp(0, 0.1), "most atoms: 0; at least 1");
-    assert!(omp(1, -0.1).starts_with("residual: -0.1"));
-    assert!(omp(1, f64::NAN).starts_with("residual: NaN"));
-    let lasso = |lambda, tolerance, most_steps| {
-        let lasso = Lasso {
-            lambda,
-            tolerance,
-            most_steps,
-        };
-        lasso.solve(&sensed, y.view()).unwrap_err().to_string()
-    };
-    assert!(lasso(0.0, 1e-3, 10).starts_with("lambda: 0"));
-    assert!(lasso(1.0, f64::INFINITY, 10).starts_with("tolerance"));
-    assert_eq!(lasso(1.0, 1e-3, 0), "most steps: 0; at least 1");
+    for (most_atoms, residual, expected) in [
+        (0, 0.1, "most atoms: 0; at least 1"),
+        (1, -0.1, "residual: -0.1"),
+        (1, f64::NAN, "residual: NaN"),
+    ] {
+        let error = omp(most_atoms, residual).solve(&sensed, y.view());
+        assert!(error.unwrap_err().to_string().starts_with(expected));
+    }
+    for (lambda, tolerance, most_steps, expected) in [
+        (0.0, 1e-3, 10, "lambda: 0"),
+        (1.0, f64::INFINITY, 10, "tolerance"),
+        (1.0, 1e-3, 0, "most steps: 0; at least 1"),
+    ] {
+        let error = lasso(lambda, tolerance, most_steps).solve(&sensed, y.view());
+        assert!(error.unwrap_err().to_string().starts_with(expected));
+    }
     let untrained = Lmmse::new(&sensed, 0.1).unwrap_err().to_string();
     assert!(
         untrained.contains("has seen no training frames"),

@@ -1,30 +1,16 @@
 //! Laws of sensor errors in signal chains: strengths, order, history, time, units.
 
+use super::{grid, noise};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::signal::{
-    Chain, Noise, NoiseUnit, Recording, SensorError, SignalStep, SignalWorkspace,
-};
-use bubbletouch_sim::world::{Grid, Patch, Taxel};
+use bubbletouch_sim::signal::{Chain, Recording, SENSOR_ERRORS, SensorError};
+use bubbletouch_sim::signal::{SignalStep, SignalWorkspace};
+use bubbletouch_sim::world::Patch;
 
 const N: usize = 48;
-const NOISE: SignalStep = SignalStep::Noise(Noise {
-    std: 0.02,
-    unit: NoiseUnit::FullScale,
-});
+const NOISE: f64 = 0.02;
 
 fn patch() -> Patch {
-    let grid = Grid {
-        nx: 8,
-        ny: 6,
-        pitch: 2e-3,
-    };
-    let taxel = Taxel {
-        radius: 1e-3,
-        stiffness: 200.0,
-        damping: 0.0,
-        stroke: 5e-3,
-    };
-    Patch::grid(grid, taxel).unwrap()
+    grid(8, 6)
 }
 
 fn skin() -> Seed {
@@ -37,23 +23,26 @@ fn is_error(step: &SignalStep, wanted: SensorError) -> bool {
 
 /// Returns a list of all imperfections, each at a multiple of a base strength.
 fn imperfections(times: f64) -> Vec<SignalStep> {
-    let skin = skin();
-    vec![
-        SensorError::Hysteresis.step(&[0.1 * times], skin).unwrap(),
-        SensorError::Crosstalk.step(&[0.2 * times], skin).unwrap(),
-        SensorError::Scan.step(&[1e3 * 0.05 * times], skin).unwrap(),
-        SensorError::Gain.step(&[0.3 * times], skin).unwrap(),
-        SensorError::Drift.step(&[0.1 * times], skin).unwrap(),
-        SensorError::Faults
-            .step(&[0.1 * times, 0.1 * times], skin)
-            .unwrap(),
-        SensorError::Quantisation
-            .step(&[(6.0 * times).floor()], skin)
-            .unwrap(),
-        SensorError::MatrixReadout
-            .step(&[0.1 * times], skin)
-            .unwrap(),
-    ]
+    let strengths: [(SensorError, &[f64]); 8] = [
+        (SensorError::Hysteresis, &[0.1]),
+        (SensorError::Crosstalk, &[0.2]),
+        (SensorError::Scan, &[50.0]),
+        (SensorError::Gain, &[0.3]),
+        (SensorError::Drift, &[0.1]),
+        (SensorError::Faults, &[0.1, 0.1]),
+        (SensorError::Quantisation, &[6.0]),
+        (SensorError::MatrixReadout, &[0.1]),
+    ];
+    let steps = strengths.iter().map(|(error, strengths)| {
+        let is_whole = error.about().strengths[0].is_whole;
+        let times = |strength: &f64| match is_whole {
+            true => (strength * times).floor(),
+            false => strength * times,
+        };
+        let strengths: Vec<f64> = strengths.iter().map(times).collect();
+        error.step(&strengths, skin()).unwrap()
+    });
+    steps.collect()
 }
 
 /// Returns a press of `n_frames` frames with increasing depth, 2 mm at most.
@@ -85,7 +74,7 @@ fn read(steps: &[SignalStep], frames: &[f64], n_before: usize, touch: u64) -> Ve
 fn an_imperfection_of_no_strength_is_as_if_it_were_not_listed() {
     let others = [
         SignalStep::Force,
-        NOISE,
+        noise(NOISE),
         SignalStep::Smoothing { width: 3e-3 },
     ];
     for step in imperfections(0.0) {
@@ -124,13 +113,8 @@ fn gains_and_faults_stay_with_the_skin_and_zeros_wander_from_touch_to_touch() {
     assert_eq!(zeros[..N], zeros[N..2 * N]);
     assert_eq!(zeros[..N], zeros[2 * N..]);
     let of = |skin| {
-        let std = 0.3;
-        read(
-            &[SensorError::Gain.step(&[std], skin).unwrap()],
-            &frames,
-            0,
-            4,
-        )
+        let gain = SensorError::Gain.step(&[0.3], skin).unwrap();
+        read(&[gain], &frames, 0, 4)
     };
     assert_ne!(of(skin()), of(Seed::new(2).named("skin")));
 }
@@ -141,11 +125,15 @@ fn steps_act_in_the_order_of_the_list() {
     let [_, crosstalk, _, gain, _, faults, converter, _] = imperfections(1.0)[..] else {
         panic!("eight steps");
     };
-    for (first, second) in [(crosstalk, gain), (faults, crosstalk), (converter, NOISE)] {
+    for (first, second) in [
+        (crosstalk, gain),
+        (faults, crosstalk),
+        (converter, noise(NOISE)),
+    ] {
         let one_way = read(&[first, second], &frames, 0, 4);
         assert_ne!(one_way, read(&[second, first], &frames, 0, 4));
         // The second step acts on the output of the first step.
-        if second != NOISE {
+        if second != noise(NOISE) {
             let by_hand = read(&[second], &read(&[first], &frames, 0, 4), 0, 4);
             assert_eq!(one_way, by_hand);
         }
@@ -161,7 +149,7 @@ fn frames_of_a_chain_without_time_are_read_as_if_each_were_alone() {
         SensorError::Drift,
     ];
     steps.retain(|step| !connects.iter().any(|error| is_error(step, *error)));
-    steps.insert(2, NOISE);
+    steps.insert(2, noise(NOISE));
     let frames = press(3);
     let together = read(&steps, &frames, 0, 4);
     let chain = Chain::new(&steps, &patch()).unwrap();
@@ -184,7 +172,7 @@ fn frames_of_a_chain_without_time_are_read_as_if_each_were_alone() {
 #[test]
 fn a_skin_that_was_pressed_deeper_and_let_go_reads_a_touch_differently_and_no_touch_as_one() {
     let hysteresis = SensorError::Hysteresis.step(&[0.1], skin()).unwrap();
-    let chain = Chain::new(&[NOISE, hysteresis], &patch()).unwrap();
+    let chain = Chain::new(&[noise(NOISE), hysteresis], &patch()).unwrap();
     assert!(chain.remembers());
     let deep = vec![4e-3; N];
     let history = |before: &[f64], touch: &[f64]| {
@@ -217,43 +205,28 @@ fn a_fraction_of_the_full_scale_means_the_same_before_and_after_force() {
 }
 
 #[test]
-fn a_strength_that_no_skin_has_is_refused_by_name() {
-    let skin = skin();
-    for (step, place) in [
-        (
-            SensorError::Hysteresis.step(&[0.3], skin).unwrap(),
-            "hysteresis width: 0.3;",
-        ),
-        (
-            SensorError::Crosstalk.step(&[-0.1], skin).unwrap(),
-            "crosstalk: -0.1;",
-        ),
-        (
-            SensorError::Scan.step(&[1e3 * f64::NAN], skin).unwrap(),
-            "scan time: NaN;",
-        ),
-        (
-            SensorError::Gain.step(&[-1.0], skin).unwrap(),
-            "gain std: -1;",
-        ),
-        (
-            SensorError::Drift.step(&[f64::INFINITY], skin).unwrap(),
-            "drift std: inf;",
-        ),
-        (
-            SensorError::Faults.step(&[0.7, 0.7], skin).unwrap(),
-            "dead and stuck fractions: 0.7 and 0.7;",
-        ),
-        (
-            SensorError::Quantisation.step(&[25.0], skin).unwrap(),
-            "converter bits: 25;",
-        ),
-        (
-            SensorError::MatrixReadout.step(&[-0.1], skin).unwrap(),
-            "line resistance: -0.1;",
-        ),
-    ] {
-        let error = Chain::new(&[step], &patch()).unwrap_err();
-        assert!(error.to_string().starts_with(place), "{error}");
+fn a_strength_that_no_skin_has_is_refused_by_its_key() {
+    let refused = |error: SensorError, strengths: &[f64], expected: &str| {
+        let step = error.step(strengths, skin()).unwrap();
+        let said = Chain::new(&[step], &patch()).unwrap_err().to_string();
+        assert!(said.starts_with(expected), "{said}");
+    };
+    for error in SENSOR_ERRORS {
+        for (place, strength) in error.about().strengths.iter().enumerate() {
+            let [_, largest] = strength.range;
+            for bad in [-0.1, f64::NAN, f64::INFINITY, 1.01 * largest] {
+                let mut strengths = [0.0; 2];
+                strengths[place] = bad;
+                let expected = format!("{}: {bad}; {}", strength.key, strength.allowed);
+                refused(
+                    *error,
+                    &strengths[..error.about().strengths.len()],
+                    &expected,
+                );
+            }
+        }
     }
+    let together = "dead_fraction and stuck_fraction: 0.7 and 0.7;";
+    refused(SensorError::Faults, &[0.7, 0.7], together);
+    refused(SensorError::Quantisation, &[2.5], "adc_bits: 2.5;");
 }
