@@ -1,12 +1,11 @@
 //! A study as a job array on a real Slurm cluster of one node, which the test starts. One shard is killed, and the same command continues it.
 #![cfg(target_os = "linux")]
 
-use crate::command::{Case, CommandLine, filled, says};
+use crate::command::{Case, CommandLine, filled, says, skip};
 use crate::faults::pieces;
 use bubbletouch::study::journal::Journal;
 use std::fmt::Display;
 use std::fs::{self, Permissions};
-use std::io::Write;
 use std::net::TcpListener;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -98,10 +97,8 @@ impl Cluster {
     fn wait_until_empty(&self) {
         let start = Instant::now();
         while !self.ask("squeue", &["--noheader"]).trim().is_empty() {
-            assert!(
-                start.elapsed() < Duration::from_secs(300),
-                "jobs do not end"
-            );
+            let is_late = start.elapsed() > Duration::from_secs(300);
+            assert!(!is_late, "jobs do not end");
             sleep(Duration::from_millis(300));
         }
     }
@@ -124,14 +121,12 @@ fn configuration(folder: &Path) -> String {
     let [ctld, d] = free.map(|listener| listener.local_addr().unwrap().port());
     let cpus = std::thread::available_parallelism().unwrap();
     let folder = folder.display();
-    let values: [(&str, &dyn Display); 5] = [
-        ("host", &host),
-        ("folder", &folder),
-        ("ctld", &ctld),
-        ("d", &d),
-        ("cpus", &cpus),
-    ];
-    filled(include_str!("../fixtures/texts/slurm.conf"), &values)
+    let text = include_str!("../fixtures/texts/slurm.conf");
+    let values: [(&str, &dyn Display); 3] = [("ctld", &ctld), ("d", &d), ("cpus", &cpus)];
+    filled(
+        &filled(text, &values),
+        &[("host", &host), ("folder", &folder)],
+    )
 }
 
 /// Runs a command and asserts success; returns the text of its standard output.
@@ -149,10 +144,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     let cluster = match Cluster::start(&folder) {
         Ok(cluster) => cluster,
         Err(reason) => {
-            let _ = writeln!(
-                std::io::stderr(),
-                "SKIPPED: no Slurm could be started: {reason}"
-            );
+            skip(format!("no Slurm could be started: {reason}"));
             return;
         }
     };
@@ -167,35 +159,21 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     let journal = case.path("jobs/journal.3-of-8.jsonl");
     let start = Instant::now();
     while pieces(&journal).is_empty() {
-        let waited = start.elapsed();
-        assert!(
-            waited < Duration::from_secs(200),
-            "the third job does not begin"
-        );
+        let is_late = start.elapsed() > Duration::from_secs(200);
+        assert!(!is_late, "the third job does not begin");
         sleep(Duration::from_millis(5));
     }
     cluster.ask("scancel", &["--signal=KILL", "--full", &format!("{job}_3")]);
     cluster.wait_until_empty();
     let finished = pieces(&journal).len();
-    assert!(
-        !case.path("jobs/summary.csv").exists(),
-        "{finished} cells of the killed job"
-    );
+    assert!(!case.path("jobs/summary.csv").exists(), "{finished} items");
     let said = cluster.submit(&case);
     says(&said, &["submitted 1 of 8 shards"]);
     cluster.wait_until_empty();
     assert!(pieces(&journal).len() > finished);
     case.succeeds("run study.toml --out whole");
-    for name in [
-        "accuracy.csv",
-        "summary.csv",
-        "confusion.csv",
-        "comparison.csv",
-        "study.toml",
-    ] {
-        let read = |folder: &str| case.bytes(&format!("{folder}/{name}"));
-        assert!(read("whole") == read("jobs"), "{name}");
-    }
+    let tables = "accuracy.csv summary.csv confusion.csv comparison.csv study.toml";
+    case.same_files(["whole", "jobs"], &tables.words());
     let said = cluster.submit(&case);
     says(&said, &["all 8 shards are done"]);
     cluster.wait_until_empty();
@@ -300,15 +278,13 @@ fn characters_that_slurm_interprets_do_not_change_what_a_job_is_called_or_where_
 /// Returns the lines of a journal without the first one.
 fn records(journal: &Path) -> Vec<(String, serde_json::Value)> {
     let text = fs::read_to_string(journal).unwrap();
-    let lines = text.lines().skip(1).map(|line| {
+    let record = |line: &str| {
         let (_, json) = line.split_once(' ').unwrap();
         let json: serde_json::Value = serde_json::from_str(json).unwrap();
-        (
-            json["key"].as_str().unwrap().to_owned(),
-            json["record"].clone(),
-        )
-    });
-    lines.collect()
+        let key = json["key"].as_str().unwrap().to_owned();
+        (key, json["record"].clone())
+    };
+    text.lines().skip(1).map(record).collect()
 }
 
 /// Writes journals of shards: for the first and for each other record of a whole run, whether each of two shards has it and whether it failed there.
@@ -342,24 +318,22 @@ fn what_failed_in_one_shard_and_succeeded_in_another_has_succeeded_and_what_fail
     case.succeeds("run study.toml --out whole");
     let n = records(&case.path("whole/journal.jsonl")).len();
     assert!(n >= 2, "{n} work items");
-    type Shards = fn(bool) -> [Option<bool>; 2];
-    let cases: [(&str, Shards); 4] = [
-        ("first", |is_first| {
-            [Some(is_first), is_first.then_some(false)]
-        }),
-        ("second", |is_first| [Some(false), is_first.then_some(true)]),
-        ("both", |is_first| {
-            [Some(is_first), is_first.then_some(true)]
-        }),
-        ("all", |_| [Some(true), None]),
-    ];
-    for (folder, shards) in cases {
-        write_shards(&case, folder, shards);
-        let (_, said) = case.succeeds(&["merge", "study.toml", "--out", folder]);
-        for table in ["accuracy.csv", "summary.csv", "failures.csv"] {
-            let read = |folder: &str| case.bytes(&format!("{folder}/{table}"));
-            assert!(read("whole") == read(folder), "{folder}, {table}: {said}");
-        }
+    // States of the first item and of the other items in both shards; true if the item failed there.
+    let (failed, done) = (Some(true), Some(false));
+    for (folder, first, others) in [
+        ("first", [failed, done], [done, None]),
+        ("second", [done, failed], [done, None]),
+        ("both", [failed, failed], [done, None]),
+        ("all", [failed, None], [failed, None]),
+    ] {
+        write_shards(
+            &case,
+            folder,
+            |is_first| if is_first { first } else { others },
+        );
+        case.succeeds(&["merge", "study.toml", "--out", folder]);
+        let tables = ["accuracy.csv", "summary.csv", "failures.csv"];
+        case.same_files(["whole", folder], &tables);
     }
 }
 
