@@ -18,15 +18,10 @@ fn every_point_stands_inside_its_panel() {
         let places = places(&spec, &tables).unwrap();
         assert!(!places.is_empty(), "{}", spec.name);
         for place in places {
-            let inside = |part: f64| (0.0..=1.0).contains(&part);
-            assert!(
-                inside(place.x) && inside(place.y),
-                "{}: {place:?}",
-                spec.name
-            );
-            for end in place.interval.into_iter().flatten() {
-                assert!(inside(end), "{}: {place:?}", spec.name);
-            }
+            let ends = place.interval.into_iter().flatten();
+            let mut all = ends.chain([place.x, place.y]);
+            let is_inside = all.all(|part| (0.0..=1.0).contains(&part));
+            assert!(is_inside, "{}: {place:?}", spec.name);
         }
     }
 }
@@ -39,23 +34,15 @@ fn equal_charts_are_equal_bytes_and_say_their_title_lines_and_units() {
         let svg = drawing.svg(&spec.title);
         assert_eq!(svg, draw(&spec, &tables).unwrap().svg(&spec.title));
     }
+    let lines = "RBF SVM | k nearest | 64:1 | noise 20 % | 95 % interval | chance (1 in 24)";
+    let zero = "crosstalk (%) | compression 256:1 | linear SVM, gaussian";
+    let front = "time of one decision | 100 µs | Pareto front: nothing is both faster and as good";
+    let tiles = "not finite | 1 ms | missed contact | mass of a taxel (kg)";
     for (name, words) in [
-        (
-            "lines",
-            "RBF SVM | k nearest | 64:1 | noise 20 % | 95 % interval | chance (1 in 24)",
-        ),
-        (
-            "zero",
-            "crosstalk (%) | compression 256:1 | linear SVM, gaussian",
-        ),
-        (
-            "front",
-            "time of one decision | 100 µs | Pareto front: nothing is both faster and as good",
-        ),
-        (
-            "tiles",
-            "not finite | 1 ms | missed contact | mass of a taxel (kg)",
-        ),
+        ("lines", lines),
+        ("zero", zero),
+        ("front", front),
+        ("tiles", tiles),
         ("rows", "hand on a mug | a millisecond"),
         ("whiskers", "5th percentile to 95th percentile"),
     ] {
@@ -94,10 +81,8 @@ fn a_number_that_stands_for_none_is_named_and_no_line_leads_to_it() {
     let table = table.unwrap();
     let place = table.place("crosstalk").unwrap();
     table.columns[place].names = &[("0", "no cable")];
-    assert_eq!(
-        table.columns[place].value_words(&Value::Number(0.0)),
-        "no cable"
-    );
+    let words = table.columns[place].value_words(&Value::Number(0.0));
+    assert_eq!(words, "no cable");
     assert_eq!(n_lines(&spec, &tables), (0, true));
 }
 
@@ -118,11 +103,9 @@ fn many_lines_have_their_names_at_their_ends_one_below_the_other() {
         height.split('"').next().unwrap().parse().unwrap()
     });
     let heights: Vec<f64> = heights.collect();
-    assert!(heights.len() > 4, "{heights:?}");
-    assert!(
-        heights.windows(2).all(|pair| pair[1] - pair[0] >= 14.0),
-        "{heights:?}"
-    );
+    let mut gaps = heights.windows(2).map(|pair| pair[1] - pair[0]);
+    let are_apart = heights.len() > 4 && gaps.all(|gap| gap >= 14.0);
+    assert!(are_apart, "{heights:?}");
 }
 
 #[test]
@@ -142,20 +125,15 @@ fn the_legend_stands_above_all_data() {
         assert!(highest_tick > 0, "{}", spec.name);
         if let Some(legend) = legend {
             let panel = charts_top(&svg);
-            assert!(
-                legend < panel,
-                "{}: legend at {legend}, panel at {panel}",
-                spec.name
-            );
+            assert!(legend < panel, "{}: {legend} and {panel}", spec.name);
         }
     }
 }
 
 /// Returns the position of the highest label of a vertical axis.
 fn charts_top(svg: &str) -> f64 {
-    let labels = svg
-        .split("<text ")
-        .filter(|text| text.contains("text-anchor=\"end\""));
+    let texts = svg.split("<text ");
+    let labels = texts.filter(|text| text.contains("text-anchor=\"end\""));
     let heights =
         labels.filter_map(|text| text.split("y=\"").nth(1)?.split('"').next()?.parse().ok());
     heights.fold(f64::INFINITY, f64::min)

@@ -78,15 +78,11 @@ fn pictures_are_png_files_with_two_elements_a_pixel() {
     let (chart, matrix) = (of("accuracy_by_ratio"), of("confusion"));
     for drawing in [chart, matrix] {
         let (width, height, elements) = pixels(&drawing.png().unwrap());
-        assert_eq!(
-            (f64::from(width), f64::from(height)),
-            (2.0 * drawing.width, 2.0 * drawing.height)
-        );
-        let inked = elements
-            .iter()
-            .filter(|element| **element != [255; 3])
-            .count();
-        assert!(inked * 50 > elements.len(), "{inked} of {}", elements.len());
+        assert_eq!(f64::from(width), 2.0 * drawing.width);
+        assert_eq!(f64::from(height), 2.0 * drawing.height);
+        let inked = elements.iter().filter(|element| **element != [255; 3]);
+        let (inked, n) = (inked.count(), elements.len());
+        assert!(inked * 50 > n, "{inked} of {n}");
     }
 }
 
@@ -94,23 +90,15 @@ fn pictures_are_png_files_with_two_elements_a_pixel() {
 fn a_confusion_matrix_holds_every_count_of_the_best_cell() {
     let typed = tables(quickstart_cells(), 3, 24);
     let made = tables_of(&typed).unwrap();
-    let spec = charts(&made, None)
-        .into_iter()
-        .find(|spec| spec.name == "confusion")
-        .unwrap();
-    let best = typed
-        .summary
-        .iter()
-        .max_by(|a, b| a.1.accuracy.total_cmp(&b.1.accuracy))
-        .unwrap();
-    let rows: Vec<usize> = (0..typed.confusion.len())
-        .filter(|&row| typed.confusion[row].configuration == best.0.configuration)
-        .collect();
-    let mut shown: Vec<usize> = places(&spec, &made)
-        .unwrap()
-        .iter()
-        .map(|place| place.row)
-        .collect();
+    let mut specs = charts(&made, None).into_iter();
+    let spec = specs.find(|spec| spec.name == "confusion").unwrap();
+    let summary = typed.summary.iter();
+    let best = summary.max_by(|a, b| a.1.accuracy.total_cmp(&b.1.accuracy));
+    let best = best.unwrap().0.configuration;
+    let mut rows: Vec<usize> = (0..typed.confusion.len()).collect();
+    rows.retain(|&row| typed.confusion[row].configuration == best);
+    let places = places(&spec, &made).unwrap();
+    let mut shown: Vec<usize> = places.iter().map(|place| place.row).collect();
     shown.sort_unstable();
     assert_eq!(shown, rows);
     assert!(charts(&tables_of(&Tables::default()).unwrap(), None).is_empty());
@@ -125,12 +113,9 @@ fn a_name_is_drawn_letter_by_letter_whatever_it_holds() {
         drawing.bold_text((1.0, 9.0), text, TextStyle::new(9));
     }
     let svg = drawing.svg(name);
-    assert_eq!(
-        svg.matches("&lt;i&gt;&amp;&quot;$x^2$ <").count(),
-        2,
-        "{svg}"
-    );
-    assert_eq!(svg.matches("$\\alpha$").count(), 2, "{svg}");
+    for escaped in ["&lt;i&gt;&amp;&quot;$x^2$ <", "$\\alpha$"] {
+        assert_eq!(svg.matches(escaped).count(), 2, "{svg}");
+    }
     assert!(!svg.contains("<i>") && !svg.contains('\u{1}'));
 }
 
@@ -192,30 +177,30 @@ fn a_pressure_map_in_plain_letters() {
 +------------------------+
 ";
     assert!(drawn.starts_with(expected), "{drawn}");
-    says(
-        &drawn,
-        &["12 × 6 taxels, pitch 2 mm; peak deflection 3.8 mm at x 3 mm, y 1 mm; 24 of 72"],
-    );
+    let peak = "12 × 6 taxels, pitch 2 mm; peak deflection 3.8 mm at x 3 mm, y 1 mm; 24 of 72";
+    says(&drawn, &[peak]);
 }
 
 #[test]
 fn a_drawing_in_the_terminal_keeps_to_its_width_and_shows_the_peak() {
-    for (nx, ny) in [
-        (1, 1),
-        (39, 5),
-        (40, 5),
-        (64, 64),
-        (79, 3),
-        (500, 20),
-        (3, 200),
-    ] {
+    let deflections = |frame: &Array2<f64>, ink| {
+        pressure_text(frame, 1.0, Quantity::Deflection, ink, 80).unwrap()
+    };
+    let sizes = [
+        [1, 1],
+        [5, 39],
+        [5, 40],
+        [64, 64],
+        [3, 79],
+        [20, 500],
+        [200, 3],
+    ];
+    for [ny, nx] in sizes {
         let mut frame = Array2::zeros((ny, nx));
         frame[(ny - 1, nx - 1)] = 0.003;
-        let plain = pressure_text(&frame, 1.0, Quantity::Deflection, Ink::Plain, 80).unwrap();
-        let picture: Vec<&str> = plain
-            .lines()
-            .filter(|line| line.starts_with(['|', '+']))
-            .collect();
+        let plain = deflections(&frame, Ink::Plain);
+        let picture = plain.lines().filter(|line| line.starts_with(['|', '+']));
+        let picture: Vec<&str> = picture.collect();
         assert!(
             picture.iter().all(|line| line.chars().count() <= 80),
             "{plain}"
@@ -224,13 +209,12 @@ fn a_drawing_in_the_terminal_keeps_to_its_width_and_shows_the_peak() {
         assert!(plain.contains("peak deflection 3 mm"));
         assert_eq!(plain.contains("largest of"), nx > 78);
         assert!(!plain.contains('\u{1b}'));
-        let coloured =
-            pressure_text(&frame, 1.0, Quantity::Deflection, Ink::TrueColour, 80).unwrap();
+        let coloured = deflections(&frame, Ink::TrueColour);
         assert!(coloured.contains("\u{1b}[38;2;") && coloured.contains('▀'));
     }
-    let nothing =
-        pressure_text(&Array2::zeros((4, 4)), 1.0, Quantity::Force, Ink::Plain, 80).unwrap();
-    assert!(nothing.contains("no taxel is touched"));
+    let none = Array2::zeros((4, 4));
+    let nothing = pressure_text(&none, 1.0, Quantity::Force, Ink::Plain, 80);
+    assert!(nothing.unwrap().contains("no taxel is touched"));
 }
 
 #[test]
@@ -249,19 +233,15 @@ fn a_frame_file_holds_the_same_bits() {
     let text = fs::read_to_string(&csv).unwrap();
     assert_eq!(text, frame_csv(&frame));
     assert!(text.starts_with("3.3333333333333335e-5,"), "{text}");
-    let read: Vec<f64> = text
-        .split([',', '\n'])
-        .filter(|t| !t.is_empty())
-        .map(|t| t.parse().unwrap())
-        .collect();
+    let numbers = text.trim_end().split([',', '\n']);
+    let read: Vec<f64> = numbers.map(|number| number.parse().unwrap()).collect();
     assert_eq!(Array2::from_shape_vec((3, 5), read).unwrap(), frame);
 
     let npz = dir.path().join("frame.npz");
     write_frame(&npz, &frame, &grid).unwrap();
     let mut archive = ndarray_npy::NpzReader::new(fs::File::open(&npz).unwrap()).unwrap();
     let deflection: Array2<f64> = archive.by_name("deflection").unwrap();
-    let (x, y): (Array1<f64>, Array1<f64>) =
-        (archive.by_name("x").unwrap(), archive.by_name("y").unwrap());
+    let [x, y]: [Array1<f64>; 2] = ["x", "y"].map(|name| archive.by_name(name).unwrap());
     assert_eq!(deflection, frame);
     assert_eq!(x, array![-0.004, -0.002, 0.0, 0.002, 0.004]);
     assert_eq!(y, array![-0.002, 0.0, 0.002]);
@@ -282,29 +262,27 @@ fn a_frame_file_of_another_kind_is_refused_before_anything_is_written() {
         ny: 1,
         pitch: 0.002,
     };
+    let refused = |name: &str, frame| {
+        let error = write_frame(&dir.path().join(name), &frame, &grid).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        error.to_string()
+    };
     for name in ["frame.jpg", "frame", "csv"] {
-        let path = dir.path().join(name);
-        let said = write_frame(&path, &array![[0.0, 0.0]], &grid).unwrap_err();
-        assert_eq!(said.exit_code(), 2);
-        assert!(
-            said.to_string()
-                .ends_with("a name that ends in .csv, .npz or .png"),
-            "{said}"
-        );
+        let said = refused(name, array![[0.0, 0.0]]);
+        let ending = "a name that ends in .csv, .npz or .png";
+        assert!(said.ends_with(ending), "{said}");
     }
-    assert!(write_frame(&dir.path().join("a.png"), &array![[0.0, f64::NAN]], &grid).is_err());
-    assert!(write_frame(&dir.path().join("a.csv"), &array![[0.0], [0.0]], &grid).is_err());
+    refused("a.png", array![[0.0, f64::NAN]]);
+    refused("a.csv", array![[0.0], [0.0]]);
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
 }
 
 #[test]
 fn between_words_nothing_is_drawn_and_many_lines_have_whiskers() {
-    let ensembles = many_cells().into_iter().filter(|configuration| {
-        configuration.pitch_mm == 2.0
-            && configuration.size_mm == 64.0
-            && configuration.noise_std == 0.0
-            && configuration.ratio == 4.0
-    });
+    let mut over_ratios = many_cells();
+    over_ratios.retain(|one| [one.pitch_mm, one.size_mm, one.noise_std] == [2.0, 64.0, 0.0]);
+    let mut ensembles = over_ratios.clone();
+    ensembles.retain(|one| one.ratio == 4.0);
     let count = |svg: &str, what: &str| svg.matches(what).count();
     let first = |configurations: Vec<Configuration>| {
         let made = tables_of(&tables(configurations, 1, 4)).unwrap();
@@ -312,16 +290,11 @@ fn between_words_nothing_is_drawn_and_many_lines_have_whiskers() {
         let svg = draw(&spec, &made).unwrap().svg("");
         (spec.name, svg)
     };
-    let (name, svg) = first(ensembles.collect());
+    let (name, svg) = first(ensembles);
     assert_eq!(name, "accuracy_by_ensemble");
     assert_eq!(count(&svg, r#"stroke-width="1.5""#), 5 + 1);
     assert!(!svg.contains("fill-opacity"));
     // Five lines over ratios: five polylines, one error bar per point, and one in the legend.
-    let over_ratios = many_cells().into_iter().filter(|configuration| {
-        configuration.pitch_mm == 2.0
-            && configuration.size_mm == 64.0
-            && configuration.noise_std == 0.0
-    });
-    let (_, svg) = first(over_ratios.collect());
+    let (_, svg) = first(over_ratios);
     assert_eq!(count(&svg, r#"stroke-width="1.5""#), 25 + 1);
 }

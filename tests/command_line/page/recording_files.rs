@@ -1,5 +1,6 @@
 //! Recording files: what is read equals what was written, memory is bounded, and a file is complete or missing.
 
+use crate::command::skip;
 use crate::stored::{frame, normal, read_recording, vectors};
 use bubbletouch::geometry::Pose;
 use bubbletouch::report::recording::{
@@ -13,7 +14,6 @@ use ndarray_npy::NpzReader;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 
 const GRID: Grid = Grid {
@@ -82,9 +82,9 @@ fn push(writer: &mut RecordingWriter, pushed: &Pushed) -> bubbletouch::Result<()
 
 fn write(path: &Path, frames: &[Pushed]) {
     let mut writer = RecordingWriter::create(path, header()).unwrap();
-    frames
-        .iter()
-        .for_each(|frame| push(&mut writer, frame).unwrap());
+    for frame in frames {
+        push(&mut writer, frame).unwrap();
+    }
     assert_eq!(writer.finish().unwrap(), frames.len());
 }
 
@@ -94,9 +94,8 @@ fn rounded(value: f64) -> f64 {
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
     names.sort();
     names
 }
@@ -156,17 +155,10 @@ fn single_rows_are_those_of_the_whole_and_vectors_have_lengths() {
     })
     .unwrap();
     for k in [39, 0, 17] {
-        let palm = frames[k].palm.iter().map(|&value| rounded(value));
-        assert!(
-            file.frame(0, Quantity::Deflection, k)
-                .unwrap()
-                .into_iter()
-                .eq(palm)
-        );
-        let tip = frames[k].tip_force.iter();
-        let lengths: Vec<f64> = tip
-            .map(|f| DVec3::from(f.to_array().map(rounded)).length())
-            .collect();
+        let palm: Vec<f64> = frames[k].palm.iter().copied().map(rounded).collect();
+        assert_eq!(file.frame(0, Quantity::Deflection, k).unwrap(), palm);
+        let length = |force: &DVec3| DVec3::from(force.to_array().map(rounded)).length();
+        let lengths: Vec<f64> = frames[k].tip_force.iter().map(length).collect();
         assert_eq!(file.frame(1, Quantity::Force, k).unwrap(), lengths);
         assert_eq!(visited[k], lengths);
     }
@@ -188,9 +180,9 @@ fn a_writer_dropped_half_way_leaves_what_was_there_before() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
     let mut writer = RecordingWriter::create(&path, header()).unwrap();
-    pushed(10)
-        .iter()
-        .for_each(|frame| push(&mut writer, frame).unwrap());
+    for frame in &pushed(10) {
+        push(&mut writer, frame).unwrap();
+    }
     assert_eq!(names(folder.path()).len(), 1);
     drop(writer);
     assert_eq!(names(folder.path()).len(), 0);
@@ -205,19 +197,16 @@ fn a_place_that_cannot_be_written_is_an_error_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    let start = |path: &Path| match RecordingWriter::create(path, header()) {
-        Ok(_) => panic!("{} can be written", path.display()),
-        Err(error) => error,
-    };
-    let below = start(&file.join("touch.npz"));
-    assert_eq!(below.exit_code(), 2);
-    let said = "file/touch.npz: there is no folder ";
-    assert!(below.to_string().contains(said), "{below}");
-    let missing = start(&folder.path().join("no/touch.npz"));
-    assert_eq!(missing.exit_code(), 2);
-    let said = "no/touch.npz: there is no folder ";
-    assert!(missing.to_string().contains(said), "{missing}");
-    assert_eq!(start(folder.path()).exit_code(), 2);
+    for (path, said) in [
+        ("file/touch.npz", "file/touch.npz: there is no folder "),
+        ("no/touch.npz", "no/touch.npz: there is no folder "),
+        ("", ""),
+    ] {
+        let error = RecordingWriter::create(&folder.path().join(path), header()).err();
+        let error = error.expect(path);
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains(said), "{error}");
+    }
     assert_eq!(names(folder.path()), ["file"]);
 }
 
@@ -225,8 +214,7 @@ fn a_place_that_cannot_be_written_is_an_error_at_once() {
 fn a_full_disk_is_an_error() {
     let full = Path::new("/dev/full");
     if !full.exists() {
-        writeln!(std::io::stderr(), "SKIPPED: this system has no /dev/full")
-            .expect("standard error takes a line");
+        skip("this system has no /dev/full");
         return;
     }
     let mut writer = RecordingWriter::create(full, header()).unwrap();
@@ -235,15 +223,10 @@ fn a_full_disk_is_an_error() {
     }
     let error = writer.finish().unwrap_err();
     assert_eq!(error.exit_code(), 1);
-    assert!(
-        error.to_string().starts_with("/dev/full: write failed: "),
-        "{error}"
-    );
-    assert!(
-        !names(Path::new("/dev"))
-            .iter()
-            .any(|name| name.starts_with("full."))
-    );
+    let error = error.to_string();
+    assert!(error.starts_with("/dev/full: write failed: "), "{error}");
+    let mut beside = names(Path::new("/dev")).into_iter();
+    assert!(!beside.any(|name| name.starts_with("full.")));
 }
 
 #[test]
@@ -254,18 +237,14 @@ fn frames_that_do_not_fit_are_refused_and_are_not_in_the_recording() {
     let mut writer = RecordingWriter::create(&path, header()).unwrap();
     push(&mut writer, &frames[0]).unwrap();
     let said = push(&mut writer, &frames[0]).unwrap_err().to_string();
-    assert_eq!(
-        said,
-        "recording, frame 1: 0.001 s after 0.001 s; finite times that increase"
-    );
+    let times = "recording, frame 1: 0.001 s after 0.001 s; finite times that increase";
+    assert_eq!(said, times);
     let poses = [Pose::IDENTITY; 2];
     let tip = vectors(&frames[1].tip, &frames[1].tip_force, poses[0]);
     let palm = normal(&frames[1].palm[1..], &frames[1].palm, poses[0]);
     let broken = frame(0.5, vec![palm, tip.clone()], &poses);
-    assert_eq!(
-        writer.push(&broken).unwrap_err().to_string(),
-        "recording, frame 1: rows of [1, 11, 12, 7, 5, 15, 7, 7, 7] numbers; rows of [1, 12, 12, 7, 5, 15, 7, 7, 7] numbers"
-    );
+    let rows = "recording, frame 1: rows of [1, 11, 12, 7, 5, 15, 7, 7, 7] numbers; rows of [1, 12, 12, 7, 5, 15, 7, 7, 7] numbers";
+    assert_eq!(writer.push(&broken).unwrap_err().to_string(), rows);
     let palm = normal(&frames[1].palm, &frames[1].palm, poses[0]);
     for broken in [
         frame(0.5, vec![palm.clone(), palm.clone()], &poses),
@@ -277,15 +256,8 @@ fn frames_that_do_not_fit_are_refused_and_are_not_in_the_recording() {
     push(&mut writer, &frames[1]).unwrap();
     assert_eq!(writer.finish().unwrap(), 2);
     let read = read_recording(&path).unwrap();
-    let palm = frames[1].palm.iter().map(|&value| rounded(value));
-    assert!(
-        read.patches[0]
-            .deflection
-            .row(1)
-            .to_vec()
-            .into_iter()
-            .eq(palm)
-    );
+    let palm: Vec<f64> = frames[1].palm.iter().copied().map(rounded).collect();
+    assert_eq!(read.patches[0].deflection.row(1).to_vec(), palm);
 }
 
 #[test]

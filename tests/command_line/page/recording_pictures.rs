@@ -86,11 +86,8 @@ fn a_touched_taxel_is_one_spot_of_its_colour_and_neighbours_stand_side_by_side()
         // Distances of neighbours in pixels: 2 mm in both directions.
         let (dx, dy) = (right[0] - first[0], first[1] - above[1]);
         assert!((right[1] - first[1]).abs() < 0.6 && (above[0] - first[0]).abs() < 0.6);
-        assert!(
-            dx > 10.0 && (dx / dy - 1.0).abs() < 0.06,
-            "{}: {dx}, {dy}",
-            patch.name
-        );
+        let is_even = dx > 10.0 && (dx / dy - 1.0).abs() < 0.06;
+        assert!(is_even, "{}: {dx}, {dy}", patch.name);
     }
 }
 
@@ -119,14 +116,12 @@ fn write(path: &Path) {
     };
     let mut writer = RecordingWriter::create(path, header).unwrap();
     for k in 0..40 {
-        let values: Vec<Vec<f64>> = patches
-            .iter()
-            .map(|patch| {
-                let spot = |taxel: usize| if taxel == k { 5e-5 * k as f64 } else { 0.0 };
-                (0..patch.n_taxels()).map(spot).collect()
-            })
-            .collect();
-        let readings = values.iter().map(|v| normal(v, v, Pose::IDENTITY));
+        let reading = |patch: &RecordedPatch| {
+            let mut values = vec![0.0; patch.n_taxels()];
+            values[k] = 5e-5 * k as f64;
+            normal(&values, &values, Pose::IDENTITY)
+        };
+        let readings = patches.iter().map(reading);
         let ball = Pose::from_translation(DVec3::new(1e-3 * k as f64, 0.0, 0.02));
         let now = frame(0.01 * k as f64, readings.collect(), &[ball]);
         writer.push(&now).unwrap();
@@ -136,9 +131,8 @@ fn write(path: &Path) {
 
 /// Returns the frames of an APNG as a viewer shows them, and the sum of their delays in seconds.
 fn played(path: &Path) -> (Vec<Vec<u8>>, f64) {
-    let mut reader = png::Decoder::new(BufReader::new(File::open(path).unwrap()))
-        .read_info()
-        .unwrap();
+    let file = BufReader::new(File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
     let n_frames = reader.info().animation_control().unwrap().num_frames;
     let width = reader.info().width as usize;
     let mut canvas: Vec<u8> = Vec::new();
@@ -213,11 +207,9 @@ fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
         let height = pictures[0].len() / (3 * width);
         for (from, to) in [(0, 640), (height - 200, height)] {
             let left = if from == 0 { skin.size().0 } else { 0 };
-            let part = |picture: &[u8]| {
-                let rows = picture.chunks(3 * width).enumerate();
-                let rows = rows.filter(|(row, _)| (from..to).contains(row));
-                let right = rows.flat_map(|(_, row)| row[3 * left..].to_vec());
-                right.collect::<Vec<u8>>()
+            let part = |picture: &[u8]| -> Vec<u8> {
+                let rows = picture.chunks(3 * width).take(to).skip(from);
+                rows.flat_map(|row| row[3 * left..].to_vec()).collect()
             };
             assert_ne!(part(&pictures[0]), part(&pictures[4]));
         }

@@ -9,33 +9,23 @@ use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_folder::{ChartFormat, MAX_CHARTS};
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
-use bubbletouch::study::table::{Comparison, PStatus, Tables};
+use bubbletouch::study::table::{Comparison, Configuration, PStatus, Tables};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 fn contents(dir: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = fs::read_dir(dir).unwrap().map(|entry| entry.unwrap());
-    entries
-        .map(|entry| {
-            let name = entry.file_name().into_string().unwrap();
-            (name, fs::read(entry.path()).unwrap())
-        })
-        .collect()
+    let file = |entry: std::io::Result<fs::DirEntry>| {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        (name, fs::read(entry.path()).unwrap())
+    };
+    fs::read_dir(dir).unwrap().map(file).collect()
 }
 
-/// Files of a recognition study without limits of the model, in order.
-const TABLE_FILES: [&str; 9] = [
-    "accuracy.csv",
-    "summary.csv",
-    "confusion.csv",
-    "comparison.csv",
-    "timing.csv",
-    "pareto.csv",
-    "stages.csv",
-    "confused.csv",
-    "published.csv",
-];
+/// Files of a recognition study in the order of writing.
+const FILES: &str = "accuracy.csv summary.csv confusion.csv comparison.csv timing.csv pareto.csv stages.csv confused.csv published.csv limits.csv \
+                     robustness.csv accuracy_by_noise.svg pareto_prediction.svg confusion.svg report.html";
 
 /// Asserts that a folder's tables have the columns and bytes from which they were made.
 fn assert_reads_as(folder: &Path, made: &Tables) {
@@ -80,10 +70,8 @@ fn csv_of(tables: &Tables, file: &str) -> String {
 fn a_row_is_the_cell_then_the_score_and_nothing_stands_for_absent() {
     let mut one = tables(vec![configuration()], 1, 2);
     one.summary[0].0.c = None;
-    (
-        one.summary[0].1.accuracy_low,
-        one.summary[0].1.accuracy_high,
-    ) = (0.5625, 1e-7);
+    let score = &mut one.summary[0].1;
+    (score.accuracy_low, score.accuracy_high) = (0.5625, 1e-7);
     one.comparison = vec![Comparison {
         configuration: 3,
         best_configuration: 1,
@@ -115,13 +103,7 @@ fn a_row_is_the_cell_then_the_score_and_nothing_stands_for_absent() {
 fn a_table_without_rows_has_the_header_of_one_with_rows_and_reads_as_none() {
     let full = tables(quickstart_cells(), 3, 24);
     let none = Tables::default();
-    for file in [
-        "summary.csv",
-        "accuracy.csv",
-        "confusion.csv",
-        "comparison.csv",
-        "pareto.csv",
-    ] {
+    for file in FILES.split(' ').take(6) {
         let (full, none) = (csv_of(&full, file), csv_of(&none, file));
         assert_eq!(none.lines().count(), 1);
         assert_eq!(full.lines().next(), none.lines().next());
@@ -162,9 +144,9 @@ fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
         write_all(&folder, &made, &page).unwrap();
         let names = contents(&folder);
         let of_ending = |ending: &str| {
-            let is_chart =
-                |name: &&String| name.starts_with("accuracy_by") && name.ends_with(ending);
-            names.keys().filter(is_chart).cloned().collect::<Vec<_>>()
+            let charts = names.keys().filter(|name| name.starts_with("accuracy_by"));
+            let charts = charts.filter(|name| name.ends_with(ending));
+            charts.cloned().collect::<Vec<_>>()
         };
         let html = String::from_utf8(names["report.html"].clone()).unwrap();
         (of_ending(".svg"), of_ending(".png"), html)
@@ -177,10 +159,7 @@ fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
     assert!(all.len() > most + 1 && first.iter().all(|name| all.contains(name)));
     let n_left_out = all.len() - most;
     let said = format!("{n_left_out} more, from accuracy_by_");
-    assert!(
-        html.contains(&said) && html.contains("--all-charts"),
-        "{said}"
-    );
+    says(&html, &[&said, "--all-charts"]);
     assert!(!all_html.contains("--all-charts"));
 }
 
@@ -217,40 +196,24 @@ fn equal_tables_give_equal_bytes_in_every_file() {
     let (first, second) = (dir.path().join("a"), dir.path().join("b/deeper"));
     let paths = write_all(&first, &made, &about()).unwrap();
     // Other charts drawn in between must not change a byte.
-    write_all(
-        &dir.path().join("c"),
-        &tables(quickstart_cells(), 1, 3),
-        &about(),
-    )
-    .unwrap();
+    let other = tables(quickstart_cells(), 1, 3);
+    write_all(&dir.path().join("c"), &other, &about()).unwrap();
     write_all(&second, &made, &about()).unwrap();
     assert_eq!(contents(&first), contents(&second));
-    let names: Vec<&str> = paths
-        .iter()
-        .map(|path| path.file_name().unwrap().to_str().unwrap())
-        .collect();
-    assert_eq!(names[..TABLE_FILES.len()], TABLE_FILES);
-    assert_eq!(
-        names[TABLE_FILES.len()..],
-        [
-            "limits.csv",
-            "robustness.csv",
-            "accuracy_by_noise.svg",
-            "pareto_prediction.svg",
-            "confusion.svg",
-            "report.html",
-        ]
-    );
+    let name = |path: &PathBuf| path.file_name().unwrap().to_str().unwrap().to_owned();
+    let names: Vec<String> = paths.iter().map(name).collect();
+    assert_eq!(names.join(" "), FILES);
     assert_eq!(contents(&first).len(), names.len());
 }
 
 #[test]
 fn a_table_that_cannot_be_read_is_named_with_its_line() {
     let dir = tempfile::tempdir().unwrap();
-    let two = each(vec![configuration()], [16.0, 4.0], |one, ratio| {
-        one.ratio = ratio
+    let two = [16.0, 4.0].map(|ratio| Configuration {
+        ratio,
+        ..configuration()
     });
-    let made = tables(two, 2, 3);
+    let made = tables(two.to_vec(), 2, 3);
     write_tables(dir.path(), &made);
     let path = dir.path().join("summary.csv");
     let whole = fs::read_to_string(&path).unwrap();
@@ -286,12 +249,7 @@ fn a_folder_that_cannot_be_written_stays_as_it_was() {
     fs::create_dir_all(blocked.join("report.html/inside")).unwrap();
     assert!(write_all(&blocked, &made, &ReportPage::default()).is_err());
     assert_reads_as(&blocked, &made);
-    let entries = fs::read_dir(&blocked)
-        .unwrap()
-        .map(|e| e.unwrap().file_name());
-    assert!(
-        entries
-            .into_iter()
-            .all(|name| !name.to_string_lossy().contains("partial"))
-    );
+    let mut entries = fs::read_dir(&blocked).unwrap();
+    let is_partial = |name: std::ffi::OsString| name.to_string_lossy().contains("partial");
+    assert!(!entries.any(|entry| is_partial(entry.unwrap().file_name())));
 }

@@ -106,10 +106,8 @@ fn an_edit_of_any_entry_is_found_whatever_configurations_are_numbered() {
     assert_eq!(rows, wanted);
     // A configuration of a table that contains only its number.
     let (_, changed) = compared(tables([1, 0], |_, _| {}, 8));
-    assert_eq!(
-        (&changed[0].table[..], changed[0].n_changed),
-        ("counts.csv", 1)
-    );
+    assert_eq!(changed[0].table, "counts.csv");
+    assert_eq!(changed[0].n_changed, 1);
 }
 
 row! {
@@ -128,25 +126,21 @@ pub struct Classified {
 /// Returns a table of an SVM with two C and a k-NN classifier, at three ratios.
 fn classified(invert: &str) -> Vec<Table> {
     let mut rows = Vec::new();
-    let designs = [
-        ("svm", Some(1.0), 0.9),
-        ("svm", Some(10.0), 0.8),
-        ("k_nearest", None, 0.7),
-    ];
+    let nearest = ("k_nearest", None, 0.7);
+    let designs = [("svm", Some(1.0), 0.9), ("svm", Some(10.0), 0.8), nearest];
     for (classifier, c, best) in designs {
         for (place, ratio) in [1.6, 2.0, 2.37].into_iter().enumerate() {
             let accuracy = best - 0.02 * place as f64;
-            let accuracy = if classifier == invert {
-                1.0 - accuracy
-            } else {
-                accuracy
-            };
-            let classifier = classifier.to_owned();
+            let inverted = 1.0 - accuracy;
             rows.push(Classified {
-                classifier,
+                classifier: classifier.to_owned(),
                 c,
                 ratio,
-                accuracy,
+                accuracy: if classifier == invert {
+                    inverted
+                } else {
+                    accuracy
+                },
             });
         }
     }
