@@ -58,11 +58,9 @@ fn felt(skin: &Patch, state: &HandState) -> (f64, Option<(f64, f64)>) {
 }
 
 fn deepest(touch: &HumanTouch) -> HandState {
-    let states = film(touch);
-    *states
-        .iter()
-        .min_by(|a, b| a.height.total_cmp(&b.height))
-        .unwrap()
+    let states = film(touch).into_iter();
+    let deepest = states.min_by(|a, b| a.height.total_cmp(&b.height));
+    deepest.unwrap()
 }
 
 #[test]
@@ -140,11 +138,8 @@ fn a_hand_goes_exactly_as_deep_as_it_says() {
         let touch = touch(TouchKind::Tap, number);
         let state = deepest(&touch);
         assert!((state.height + touch.depth).abs() < 1e-5 || touch.hold < STEP);
-        let most = press(&skin, &state)
-            .deflections()
-            .iter()
-            .copied()
-            .fold(0.0, f64::max);
+        let pressed = press(&skin, &state);
+        let most = pressed.deflections().iter().copied().fold(0.0, f64::max);
         assert!(most <= -state.height + 1e-9, "{most} for {}", state.height);
         assert!(most > -state.height - 3e-4, "{most} for {}", state.height);
     }
@@ -153,10 +148,7 @@ fn a_hand_goes_exactly_as_deep_as_it_says() {
 #[test]
 fn a_tap_and_a_hold_of_the_same_name_differ_in_time_only() {
     for number in 0..40 {
-        let (tap, hold) = (
-            touch(TouchKind::Tap, number),
-            touch(TouchKind::Hold, number),
-        );
+        let [tap, hold] = [TouchKind::Tap, TouchKind::Hold].map(|kind| touch(kind, number));
         let instant = |touch: &HumanTouch| {
             let start = touch.duration() - touch.hold;
             touch.at(0.5 * start + 0.5 * touch.hold)
@@ -201,20 +193,10 @@ fn the_centre_of_pressure_of_a_stroke_travels_its_length_its_way() {
         let ends = [pressed[0], pressed[pressed.len() - 1]];
         let [a, b] = ends.map(|state| felt(&skin, state).1.unwrap());
         let (along, around) = (b.0 - a.0, SURFACE * (b.1 - a.1));
-        let expected = (
-            touch.travel * touch.direction.cos(),
-            touch.travel * touch.direction.sin(),
-        );
-        assert!(
-            (along - expected.0).abs() < 3e-3,
-            "{along} m for {}",
-            expected.0
-        );
-        assert!(
-            (around - expected.1).abs() < 3e-3,
-            "{around} m for {}",
-            expected.1
-        );
+        let (sin, cos) = touch.direction.sin_cos();
+        for (moved, expected) in [(along, touch.travel * cos), (around, touch.travel * sin)] {
+            assert!((moved - expected).abs() < 3e-3, "{moved} m for {expected}");
+        }
     }
 }
 
@@ -260,14 +242,10 @@ fn a_grab_closes_its_fingers_around_the_arm_and_opens_them() {
             assert!(bent(closed) >= bent(open), "{number}");
             turned += bent(closed) - bent(open);
         }
-        assert!(
-            turned > 2.0,
-            "{number}: {turned} rad, four fingers together"
-        );
-        let laid_on = states
-            .iter()
-            .find(|s| s.height == -grab.depth && s.closed < 1e-3);
-        wider += usize::from(angles(closed) > angles(laid_on.unwrap()) + 0.5);
+        assert!(turned > 2.0, "{number}: {turned} rad of four fingers");
+        let is_laid_on = |s: &&HandState| s.height == -grab.depth && s.closed < 1e-3;
+        let laid_on = states.iter().find(is_laid_on).unwrap();
+        wider += usize::from(angles(closed) > angles(laid_on) + 0.5);
     }
     assert!(wider >= 16, "{wider} of 20 reach around the arm");
 }
@@ -282,34 +260,29 @@ fn what_no_hand_can_do_is_refused_by_its_name() {
         let error = drawn.unwrap_err().to_string();
         assert!(error.starts_with(words), "{error}");
     };
+    let none = "fingers: none; at least one number, 1 to 5";
     #[allow(clippy::reversed_empty_ranges)]
     let changes: [(Change, &str); 5] = [
         (
             |of| of.depth = 3e-3..=1e-3,
-            "tap, range of depth: 0.003 to 0.001; ",
+            "range of depth: 0.003 to 0.001",
         ),
-        (
-            |of| of.rise = 0.1..=f64::NAN,
-            "tap, range of rise: 0.1 to NaN; ",
-        ),
+        (|of| of.rise = 0.1..=f64::NAN, "range of rise: 0.1 to NaN"),
         (
             |of| of.hold = 0.0..=f64::INFINITY,
-            "tap, range of hold: 0 to inf; ",
+            "range of hold: 0 to inf",
         ),
-        (
-            |of| of.fingers.clear(),
-            "tap, fingers: none; at least one number, 1 to 5",
-        ),
+        (|of| of.fingers.clear(), none),
         (
             |of| of.contacts = 2..=3,
-            "tap, range of lift: 0 m between contacts; ",
+            "range of lift: 0 m between contacts",
         ),
     ];
     let usual = TouchRanges::usual(TouchKind::Tap);
     for (change, words) in changes {
         let mut ranges = usual.clone();
         change(&mut ranges);
-        refused(&ranges, SURFACE, words);
+        refused(&ranges, SURFACE, &format!("tap, {words}"));
     }
     refused(&usual, f64::NAN, "radius of the arm: NaN m; ");
 }
@@ -319,11 +292,8 @@ const STUDY: &str = include_str!("../fixtures/texts/human_touch.toml");
 fn laid_out(text: &str) -> bubbletouch::Result<(Plan, HumanTouches, Sweep)> {
     let spec = StudySpec::parse("study.toml", text)?;
     let plan = Plan::new("study.toml", spec)?;
-    let human = plan
-        .spec
-        .human_touch
-        .as_ref()
-        .expect("a study of human touches");
+    let human = plan.spec.human_touch.as_ref();
+    let human = human.expect("a study of human touches");
     let touches = HumanTouches::draw(human, &Seed::new(plan.spec.seed))?;
     let sweep = Sweep::new(&plan, &touches)?;
     Ok((plan, touches, sweep))
@@ -336,11 +306,8 @@ fn outcome(kinds: &str) -> Tables {
 }
 
 fn accuracies(outcome: &Tables) -> Vec<f64> {
-    outcome
-        .summary
-        .iter()
-        .map(|(_, score)| score.accuracy)
-        .collect()
+    let summary = outcome.summary.iter();
+    summary.map(|(_, score)| score.accuracy).collect()
 }
 
 #[test]
@@ -349,17 +316,12 @@ fn time_tells_kinds_apart_that_one_frame_does_not() {
     let [deepest, _, summarised, course] = found[..] else {
         panic!("{found:?}")
     };
-    assert!(
-        summarised > deepest + 0.2 && course > deepest + 0.3,
-        "{found:?}"
-    );
-    assert!(course > 0.75, "{found:?}");
+    let is_told = summarised > deepest + 0.2 && course > deepest + 0.3 && course > 0.75;
+    assert!(is_told, "{found:?}");
     let found = accuracies(&outcome("kinds = [\"tap\", \"hold\"]"));
-    assert!(
-        (0.2..0.8).contains(&found[0]),
-        "one frame cannot: {found:?}"
-    );
-    assert!(found[3] > 0.9, "{found:?}");
+    // One frame cannot tell a tap from a hold.
+    let is_told = (0.2..0.8).contains(&found[0]) && found[3] > 0.9;
+    assert!(is_told, "{found:?}");
 }
 
 #[test]
@@ -399,13 +361,8 @@ fn touches_are_balanced_and_alone_the_same() {
             }
         }
         let mut alone = Array2::zeros((human.n_frames(), 1024));
-        record_touch(
-            &skin,
-            recorded,
-            human.interval(),
-            alone.view_mut(),
-            &mut workspace,
-        );
+        let (interval, out) = (human.interval(), alone.view_mut());
+        record_touch(&skin, recorded, interval, out, &mut workspace);
         let first = number * human.n_frames();
         let rows = deflection.slice(ndarray::s![first..first + human.n_frames(), ..]);
         assert_eq!(alone.mapv(f64::from), rows);
@@ -438,10 +395,8 @@ fn tables_name_frames_and_temporal_features_and_the_written_study_runs_again() {
     case.succeeds("run study.toml --out found");
     let read = |name: &str| case.bytes(&format!("found/{name}"));
     let text = String::from_utf8(read("summary.csv")).unwrap();
-    says(
-        &text,
-        &[",frames,temporal_features,features,", ",49,stacked_8,raw,"],
-    );
+    let columns = ",frames,temporal_features,features,";
+    says(&text, &[columns, ",49,stacked_8,raw,"]);
     let page = String::from_utf8(read("report.html")).unwrap();
     assert!(page.contains("its confusion matrix is diagonal"));
     // The resolved study can be run again.

@@ -9,7 +9,7 @@ use bubbletouch::mesh::{LengthUnit, TriangleMesh};
 use bubbletouch::scene::ScenePlan;
 use bubbletouch::world::Robot;
 use glam::DVec3;
-use ndarray::{Array1, Array2, Array3, array};
+use ndarray::{Array1, Array2, Axis, array};
 use std::path::Path;
 
 /// Position file in the layout of iCub's, with two channels without a taxel.
@@ -107,12 +107,13 @@ fn an_archive_has_positions_and_normals_or_poses_and_pixels() {
     assert_eq!(file.layout.axes(), [DVec3::Z, DVec3::Y]);
     assert_eq!(file.radii.as_deref(), Some(&[1e-3, 2e-3][..]));
     // A rotation by 90° about x takes z to −y.
-    let rows = vec![
-        1.0f32, 0.0, 0.0, 0.01, 0.0, 0.0, -1.0, 0.02, 0.0, 1.0, 0.0, 0.03,
+    let pose = array![
+        [1.0f32, 0.0, 0.0, 0.01],
+        [0.0, 0.0, -1.0, 0.02],
+        [0.0, 1.0, 0.0, 0.03]
     ];
     let dex = npz(|npz| {
-        let poses = Array3::from_shape_vec((1, 3, 4), rows).unwrap();
-        npz.add_array("poses", &poses).unwrap();
+        npz.add_array("poses", &pose.insert_axis(Axis(0))).unwrap();
         npz.add_array("taxel2pixel", &array![[25i64, 15]]).unwrap();
     });
     let file = layout("dex.npz", dex);
@@ -143,10 +144,11 @@ fn arrays_of_an_archive_may_have_other_usual_names() {
         let again = archive(&[one], other).unwrap();
         assert_eq!(again.layout, expected.layout, "{one} {other}");
     }
-    let error = archive(&["points", "xyz"], "normals")
-        .unwrap_err()
-        .to_string();
-    says(&error, &["the arrays points and xyz; one of them"]);
+    let error = archive(&["points", "xyz"], "normals").unwrap_err();
+    says(
+        &error.to_string(),
+        &["the arrays points and xyz; one of them"],
+    );
 }
 
 #[test]
@@ -160,10 +162,8 @@ fn a_robots_file_has_arrays_taxels_or_prismatic_joints() {
     ] {
         near(file.layout.centers()[taxel], center);
     }
-    assert_eq!(
-        (file.layout.n_taxels(), file.link.as_deref()),
-        (6, Some("base"))
-    );
+    assert_eq!(file.layout.n_taxels(), 6);
+    assert_eq!(file.link.as_deref(), Some("base"));
     let listed = "<taxel idx='1' xyz='0.02 0.01 0' rpy='0 0 0'/><taxel idx='0' xyz='0.01 0.01 0' rpy='1.5707963267948966 0 0'/>";
     let file = layout("list.urdf", robot(listed));
     near(file.layout.centers()[0], [0.01, 0.01, 0.01]);
@@ -190,14 +190,10 @@ fn an_array_of_a_robots_file_is_an_image_and_listed_taxels_may_have_radii() {
     let file = pad(&(taxel(1, &large) + &taxel(0, &small)));
     assert_eq!(file.radii, Some(vec![1e-3, 2e-3]));
     // Taxels are read, and an array beside them is not, as urdf_tactile does.
-    let both = taxel(0, &small)
-        + &taxel(3, "<box size='1 1 1'/>")
-        + "<array rows='2' cols='3' size='1 1'/>";
-    let file = pad(&both);
-    assert_eq!(
-        (file.layout.n_taxels(), file.radii, file.pixels),
-        (2, None, None)
-    );
+    let array = "<array rows='2' cols='3' size='1 1'/>";
+    let file = pad(&(taxel(0, &small) + &taxel(3, "<box size='1 1 1'/>") + array));
+    assert_eq!(file.layout.n_taxels(), 2);
+    assert_eq!((file.radii, file.pixels), (None, None));
     says(&file.notes[0], &["2 taxels for 4 channels"]);
     says(&file.notes[1], &["<array> beside <taxel>s"]);
 }
@@ -211,38 +207,24 @@ fn spellings_of_a_csv_file_are_read_as_the_same_layout() {
     let expected = layout("plain.csv", &plain);
     let metres = "0.0015,-0.002,0.03,0,0.6,0.8,0.0007\n0.004,0.0005,0.006,0,0,1,0.0007\n";
     let centimetres = "0.15,-0.2,3,0,0.6,0.8,0.07\n0.4,0.05,0.6,0,0,1,0.07\n";
+    let semicolons = plain.replace(',', ";");
+    let tabs = plain.replace(',', "\t");
+    let crlf = format!("\u{feff}{}", plain.replace('\n', "\r\n"));
+    let in_metres = format!("x_m,y_m,z_m,nx,ny,nz,radius_m\n{metres}");
+    let in_centimetres = format!("x (cm),y (cm),z (cm),nx,ny,nz,radius [cm]\n{centimetres}");
+    let brackets = format!("x [mm], Y (mm), z_mm, Normal_x, n_y, nz, Radius (mm)\n{rows}");
+    let comments = format!("# a fingertip\n\n{header}\n# first row\n{rows}\n");
     for (name, text) in [
-        ("semicolons.csv", plain.replace(',', ";")),
-        ("tabs.tsv", plain.replace(',', "\t")),
-        (
-            "decimal_commas.csv",
-            plain.replace(',', ";").replace('.', ","),
-        ),
-        (
-            "decimal_tabs.csv",
-            plain.replace(',', "\t").replace('.', ","),
-        ),
-        (
-            "comments.csv",
-            format!("# a fingertip\n\n{header}\n# first row\n{rows}\n"),
-        ),
+        ("decimal_commas.csv", semicolons.replace('.', ",")),
+        ("decimal_tabs.csv", tabs.replace('.', ",")),
+        ("semicolons.csv", semicolons),
+        ("tabs.tsv", tabs),
+        ("comments.csv", comments),
         ("capitals.csv", plain.to_uppercase().replace("E-1", "e-1")),
-        (
-            "bom_crlf.csv",
-            format!("\u{feff}{}", plain.replace('\n', "\r\n")),
-        ),
-        (
-            "metres.csv",
-            format!("x_m,y_m,z_m,nx,ny,nz,radius_m\n{metres}"),
-        ),
-        (
-            "centimetres.csv",
-            format!("x (cm),y (cm),z (cm),nx,ny,nz,radius [cm]\n{centimetres}"),
-        ),
-        (
-            "brackets.csv",
-            format!("x [mm], Y (mm), z_mm, Normal_x, n_y, nz, Radius (mm)\n{rows}"),
-        ),
+        ("bom_crlf.csv", crlf),
+        ("metres.csv", in_metres),
+        ("centimetres.csv", in_centimetres),
+        ("brackets.csv", brackets),
     ] {
         let again = layout(name, &text);
         assert_eq!(again.layout, expected.layout, "{name}");
@@ -252,15 +234,11 @@ fn spellings_of_a_csv_file_are_read_as_the_same_layout() {
     let named = plain.replace("x_mm", "id,x_mm").replace("1.5,", "a,1.5,");
     let named = layout("named.csv", named.replace("\n4,", "\nb,4,"));
     assert_eq!(named.layout, expected.layout);
-    says(
-        &named.notes[0],
-        &["named.csv: columns that are not used: `id`"],
-    );
+    let unused = "named.csv: columns that are not used: `id`";
+    says(&named.notes[0], &[unused]);
     let error = read(&Case::new().file("latin.csv", b"x_mm\xe9\n")).unwrap_err();
-    says(
-        &error.to_string(),
-        &["latin.csv: cannot be read (stream did not contain valid UTF-8); a layout in .csv"],
-    );
+    let words = "latin.csv: cannot be read (stream did not contain valid UTF-8); a layout in .csv";
+    says(&error.to_string(), &[words]);
 }
 
 #[test]
@@ -283,17 +261,13 @@ fn points_of_paxini_have_units_and_names_of_coordinates() {
 fn positions_alone_are_read() {
     let cube = TriangleMesh::cuboid("cube", DVec3::splat(0.01)).unwrap();
     let published = r#"{"units": "millimeters", "points": [{"id": 1, "x_mm": 1, "y_mm": 0, "z_mm": 5.0}, {"id": 2, "x_mm": 5.1, "y_mm": 0, "z_mm": 0}]}"#;
+    let paxini = r#"{"model": "S", "units": "mm", "taxels_mm": [[1, 0, 5], [5.1, 0, 0]]}"#;
+    let icub = "[calibration]\n0 0 0 0 0 0\n0.001 0 0.005 0 0 0\n0.0051 0 0 0 0 0\n";
     for (name, text) in [
         ("p.csv", "x_mm,y_mm,z_mm\n1,0,5\n5.1,0,0\n"),
-        (
-            "p.json",
-            r#"{"model": "S", "units": "mm", "taxels_mm": [[1, 0, 5], [5.1, 0, 0]]}"#,
-        ),
+        ("p.json", paxini),
         ("published.json", published),
-        (
-            "p.txt",
-            "[calibration]\n0 0 0 0 0 0\n0.001 0 0.005 0 0 0\n0.0051 0 0 0 0 0\n",
-        ),
+        ("p.txt", icub),
     ] {
         let file = on_mesh(name, text, &cube).unwrap();
         assert_eq!(file.layout.axes(), [DVec3::Z, DVec3::X], "{name}");
@@ -420,24 +394,18 @@ fn a_layout_of_another_unit_is_noted_and_read_with_its_unit() {
     assert!(expected.notes.is_empty());
     let file = layout("m.json", points(4e-3));
     let note = "m.json: the layout is 0.012 mm long; 1 mm to 1 m is usual: if the file is in another unit, give it (--unit, or unit= in Python)";
-    assert!(
-        file.notes.len() == 1 && file.notes[0].ends_with(note),
-        "{:?}",
-        file.notes
-    );
+    assert_eq!(file.notes.len(), 1);
+    assert!(file.notes[0].ends_with(note), "{:?}", file.notes);
+    let place = |(k, axis): (usize, usize)| [4.0 * (k % 4) as f64, 4.0 * (k / 4) as f64, 0.0][axis];
+    let positions = Array2::from_shape_fn((16, 3), place);
+    let normals = Array2::from_shape_fn((16, 3), |(_, axis)| f64::from(axis == 2));
     let archive = npz(|npz| {
-        let place =
-            |(k, axis): (usize, usize)| [4.0 * (k % 4) as f64, 4.0 * (k / 4) as f64, 0.0][axis];
-        let normals = Array2::from_shape_fn((16, 3), |(_, axis)| f64::from(axis == 2));
-        npz.add_array("positions", &Array2::from_shape_fn((16, 3), place))
-            .unwrap();
+        npz.add_array("positions", &positions).unwrap();
         npz.add_array("normals", &normals).unwrap();
         npz.add_array("radii", &Array1::from_elem(16, 1.5)).unwrap();
     });
-    says(
-        &layout("mm.npz", &archive).notes[0],
-        &["the layout is 12000 mm long"],
-    );
+    let notes = layout("mm.npz", &archive).notes;
+    says(&notes[0], &["the layout is 12000 mm long"]);
     let in_metres = in_unit("m.json", points(4e-3), LengthUnit::Metre).unwrap();
     let in_millimetres = in_unit("mm.npz", archive, LengthUnit::Millimetre).unwrap();
     assert_eq!(in_millimetres.radii, Some(vec![1.5e-3; 16]));
@@ -464,25 +432,19 @@ fn every_sensor_of_a_robots_file_has_its_own_fault() {
     let case = Case::new();
     let path = case.file("two.urdf", text);
     let error = read(&path).unwrap_err().to_string();
-    says(
-        &error,
-        &["line 3: a second sensor `palm` (the first is on line 2); a name of its own"],
-    );
+    let second = "line 3: a second sensor `palm` (the first is on line 2); a name of its own";
+    says(&error, &[second]);
     let robot = Robot::read(&path).unwrap();
     assert_eq!(robot.tactile_sensors().len(), 1);
-    says(
-        &robot.notes().concat(),
-        &["tactile sensor `palm` on link `a` is not read"],
-    );
+    let unread = "tactile sensor `palm` on link `a` is not read";
+    says(&robot.notes().concat(), &[unread]);
 }
 
 #[test]
 fn a_patch_of_a_scene_has_the_taxels_of_a_file_or_of_its_robots_sensor() {
     let case = Case::with("palm.txt", ICUB);
-    case.file(
-        "pad.urdf",
-        robot("<array rows='4' cols='6' size='0.003 0.003' spacing='0.004 0.004'/>"),
-    );
+    let array = "<array rows='4' cols='6' size='0.003 0.003' spacing='0.004 0.004'/>";
+    case.file("pad.urdf", robot(array));
     case.file("large.csv", "x_m,y_m\n0,0\n4,0\n");
     let scene = |layout: &str| {
         let text = format!(
@@ -498,18 +460,12 @@ fn a_patch_of_a_scene_has_the_taxels_of_a_file_or_of_its_robots_sensor() {
     assert!((skin.taxels().at(0).radius - 2e-3).abs() < 1e-12);
     assert_eq!(plan.notes().count(), 0);
     let notes = |layout: &str| scene(layout).unwrap().notes().collect::<String>();
-    says(
-        &notes("{ file = \"large.csv\" }"),
-        &["patches.p: ", "4000 mm long"],
-    );
+    let large = notes("{ file = \"large.csv\" }");
+    says(&large, &["patches.p: ", "4000 mm long"]);
     let left_out = "`pad_tactile` on link `base` is not read: layout = { sensor";
     says(&notes("{ file = \"palm.txt\" }"), &[left_out]);
-    assert_eq!(
-        scene("{ file = \"palm.txt\" }").unwrap().patches[0]
-            .skin
-            .n_taxels(),
-        2
-    );
+    let palm = scene("{ file = \"palm.txt\" }").unwrap();
+    assert_eq!(palm.patches[0].skin.n_taxels(), 2);
     for (layout, wanted) in [
         ("{ sensor = \"pad\" }", "layout.sensor: `pad`"),
         ("{ file = \"none.csv\" }", "none.csv"),

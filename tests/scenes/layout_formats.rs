@@ -114,23 +114,14 @@ fn a_layout_that_is_written_is_read_as_the_same_layout() {
 fn a_file_is_written_in_the_format_of_its_name_only() {
     let case = Case::new();
     let [layout, ..] = layouts();
+    let other = "another file; a layout in .csv";
+    let urdf = "the format urdf; the format of this extension";
+    let dex = "the format dex-01; the format of this extension";
     for (name, format, expected) in [
-        ("a.step", None, "another file; a layout in .csv"),
-        (
-            "a",
-            Some(LayoutFormat::Csv),
-            "another file; a layout in .csv",
-        ),
-        (
-            "a.csv",
-            Some(LayoutFormat::Urdf),
-            "the format urdf; the format of this extension",
-        ),
-        (
-            "a.json",
-            Some(LayoutFormat::Dex01),
-            "the format dex-01; the format of this extension",
-        ),
+        ("a.step", None, other),
+        ("a", Some(LayoutFormat::Csv), other),
+        ("a.csv", Some(LayoutFormat::Urdf), urdf),
+        ("a.json", Some(LayoutFormat::Dex01), dex),
         ("b/a.csv", None, "there is no folder"),
     ] {
         let error = layout.write(&case.path(name), format).unwrap_err();
@@ -181,21 +172,6 @@ fn each_fault_of_an_archive_is_refused_with_its_row() {
         })
     };
     // Rows of the pose of the second taxel; the others are at rest.
-    let dex = |second: [[f64; 4]; 3], n_pixels: usize| {
-        let rest = [
-            [1.0, 0.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0, 0.0],
-            [0.0, 0.0, 1.0, 0.0],
-        ];
-        let poses = [rest, second, rest].concat().concat();
-        npz(|npz| {
-            npz.add_array("poses", &Array3::from_shape_vec((3, 3, 4), poses).unwrap())
-                .unwrap();
-            npz.add_array("taxel2pixel", &Array2::<i64>::zeros((n_pixels, 2)))
-                .unwrap();
-            npz.add_array("radii", &Array1::from_elem(3, 1e-3)).unwrap();
-        })
-    };
     let pose = |x: f64, last: f64, place: f64| {
         [
             [x, 0.0, 0.0, place],
@@ -203,54 +179,45 @@ fn each_fault_of_an_archive_is_refused_with_its_row() {
             [0.0, 0.0, last, 0.0],
         ]
     };
+    let dex = |second: [[f64; 4]; 3], n_pixels: usize| {
+        let rest = pose(1.0, 1.0, 0.0);
+        let poses = [rest, second, rest].concat().concat();
+        let poses = Array3::from_shape_vec((3, 3, 4), poses).unwrap();
+        let pixels = Array2::<i64>::zeros((n_pixels, 2));
+        npz(|npz| {
+            npz.add_array("poses", &poses).unwrap();
+            npz.add_array("taxel2pixel", &pixels).unwrap();
+            npz.add_array("radii", &Array1::from_elem(3, 1e-3)).unwrap();
+        })
+    };
     let zero = [unit, [0.0; 3], unit];
+    let array = |name: &str, shape: (usize, usize)| {
+        npz(|npz| npz.add_array(name, &Array2::<f64>::ones(shape)).unwrap())
+    };
+    let not_finite = "row 2: a number that is not finite";
+    let normals = "normals: an array of shape [2, 3]; 3 × 3";
+    let pixels = "taxel2pixel: an array of shape [2, 2]; 3 × 2";
+    let missing = "no array normals (the arrays positions); positions and normals, or poses";
+    let flat = "poses, row 2: a matrix that is no rotation";
+    let mirrored = "poses, row 2: a left-handed frame";
     for (bytes, expected) in [
-        (
-            own(2e-3, &[unit; 2]),
-            "normals: an array of shape [2, 3]; 3 × 3",
-        ),
-        (own(nan, &[unit; 3]), "row 2: a number that is not finite"),
+        (own(2e-3, &[unit; 2]), normals),
+        (own(nan, &[unit; 3]), not_finite),
         (own(2e-3, &zero), "row 2: normal [0, 0, 0] of length 0"),
-        (
-            dex(pose(1.0, 1.0, 2e-3), 2),
-            "taxel2pixel: an array of shape [2, 2]; 3 × 2",
-        ),
-        (
-            dex(pose(1.0, 1.0, nan), 3),
-            "row 2: a number that is not finite",
-        ),
-        (
-            dex(pose(1.0, 0.0, 2e-3), 3),
-            "poses, row 2: a matrix that is no rotation",
-        ),
-        (
-            dex(pose(-1.0, 1.0, 2e-3), 3),
-            "poses, row 2: a left-handed frame",
-        ),
-        (
-            npz(|npz| npz.add_array("other", &Array1::<f64>::zeros(3)).unwrap()),
-            "positions and normals, or poses",
-        ),
-        (
-            npz(|npz| {
-                npz.add_array("positions", &Array2::<f64>::ones((2, 3)))
-                    .unwrap()
-            }),
-            "no array normals (the arrays positions); positions and normals, or poses",
-        ),
+        (dex(pose(1.0, 1.0, 2e-3), 2), pixels),
+        (dex(pose(1.0, 1.0, nan), 3), not_finite),
+        (dex(pose(1.0, 0.0, 2e-3), 3), flat),
+        (dex(pose(-1.0, 1.0, 2e-3), 3), mirrored),
+        (array("other", (3, 1)), "positions and normals, or poses"),
+        (array("positions", (2, 3)), missing),
     ] {
         let error = read(&case.file("skin.npz", bytes)).unwrap_err();
         says(&error.to_string(), &["skin.npz", expected]);
         assert_eq!(error.exit_code(), 2);
     }
     for bytes in [own(2e-3, &[unit; 3]), dex(pose(1.0, 1.0, 2e-3), 3)] {
-        assert_eq!(
-            read(&case.file("skin.npz", bytes))
-                .unwrap()
-                .layout
-                .n_taxels(),
-            3
-        );
+        let file = read(&case.file("skin.npz", bytes)).unwrap();
+        assert_eq!(file.layout.n_taxels(), 3);
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::command::filled;
 use crate::scene::{frames, plan, plan_in};
 use bubbletouch::scene::PoseControl;
+use glam::DVec3;
 
 const MOTION: &str = "motion = { phases = [
     { duration_s = 0.2, linear_mm_per_s = [0.0, 5.0, -40.0] },
@@ -63,9 +64,9 @@ fn an_oscillation_is_farthest_after_a_quarter_of_its_period() {
     );
     let frames = frames(&plan(&text));
     let place = |frame: usize| 1e3 * frames[frame].objects[0].pose.translation;
-    assert_eq!(place(0), glam::DVec3::new(1.0, 0.0, 50.0));
-    assert!(place(5).distance(glam::DVec3::new(0.0, 1.0, 58.0)) < 1e-9);
-    assert!(place(15).distance(glam::DVec3::new(0.0, -1.0, 42.0)) < 1e-9);
+    assert_eq!(place(0), DVec3::new(1.0, 0.0, 50.0));
+    assert!(place(5).distance(DVec3::new(0.0, 1.0, 58.0)) < 1e-9);
+    assert!(place(15).distance(DVec3::new(0.0, -1.0, 42.0)) < 1e-9);
     assert!(place(20).distance(place(0)) < 1e-9);
 }
 
@@ -94,10 +95,7 @@ fn parts_in_a_scene_are_the_solid_of_a_file_of_objects() {
     let centered = spheres(&models(&format!("{written}\ncentered = true")).unwrap());
     assert!(centered.bounds().center().length() < 1e-3);
     let moved = as_written.bounds().center() - centered.bounds().center();
-    assert!(
-        moved.distance(glam::DVec3::new(0.0, 0.0, 0.05)) < 1e-9,
-        "{moved}"
-    );
+    assert!(moved.distance(0.05 * DVec3::Z) < 1e-9, "{moved}");
 }
 
 #[test]
@@ -121,25 +119,15 @@ fn skinned_can(carrier: &str, patch: &str, can: &str) -> String {
 fn skin_on_an_object_goes_with_it_and_does_not_feel_it() {
     let place = "at = { position_mm = [0.0, 0.0, 30.0] }";
     let can = format!("[[objects]]\nname = \"can\"\nobject = \"soup_can\"\n{place}\n{MOTION}\n");
-    let on_object = skinned_can(
-        "",
-        "object = \"can\"\nat = { position_mm = [0.0, 0.0, 50.0] }",
-        &can,
-    );
+    let at = "at = { position_mm = [0.0, 0.0, 50.0] }";
+    let on_object = skinned_can("", &format!("object = \"can\"\n{at}"), &can);
     let robot = format!("[[robots]]\nname = \"core\"\nfloating = true\n{place}\n{MOTION}\n");
-    let on_robot = skinned_can(
-        &robot,
-        "robot = \"core\"\nat = { position_mm = [0.0, 0.0, 50.0] }",
-        "",
-    );
+    let on_robot = skinned_can(&robot, &format!("robot = \"core\"\n{at}"), "");
     assert_same(&on_object, &on_robot);
     // Skin that is fixed in the world touches the can that moves into it.
     let beside = skinned_can("", "at = { position_mm = [0.0, 40.0, 50.0] }", &can);
-    assert!(
-        frames(&plan(&beside))
-            .iter()
-            .any(|frame| frame.patches[0].n_touched > 0)
-    );
+    let beside = frames(&plan(&beside));
+    assert!(beside.iter().any(|frame| frame.patches[0].n_touched > 0));
 }
 
 #[test]
@@ -147,12 +135,8 @@ fn a_free_ball_is_carried_by_skin_on_an_object_that_rides_a_link() {
     let text = include_str!("../fixtures/texts/scene_mounts_a_free_ball_is.toml");
     let weight = 0.046 * 9.81;
     for frame in frames(&plan(text)) {
-        assert_eq!(
-            frame.objects[1].held,
-            PoseControl::AtRest,
-            "{} s",
-            frame.time
-        );
+        let held = frame.objects[1].held;
+        assert_eq!(held, PoseControl::AtRest, "{} s", frame.time);
         let carried = frame.patches[0].wrench.force;
         assert!((carried.z + weight).abs() < 1e-6 * weight, "{carried}");
         assert!(frame.touches.is_empty());

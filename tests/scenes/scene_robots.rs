@@ -46,27 +46,19 @@ fn what_a_robots_file_has_and_is_not_read_is_said() {
 #[test]
 fn every_path_of_a_resolved_scene_is_absolute() {
     let case = Case::with("r.urdf", URDF);
-    for (name, text) in [
-        (
-            "my.toml",
-            "[[object]]\nname = \"ball\"\nsource = \"ours\"\n[[object.part]]\nshape = \"ball\"\ndiameter_mm = 30\n",
-        ),
-        ("s.csv", "x,y,z,r\n0,0,0,0.01\n"),
-        ("m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0.1,0,0,0,1\n"),
-        ("j.csv", "time_s,slide\n0,0.1\n"),
-        ("t.csv", "stiffness_n_per_m\n1\n2\n3\n4\n"),
-    ] {
-        case.file(name, text);
-    }
+    let ball = "[[object]]\nname = \"ball\"\nsource = \"ours\"\n[[object.part]]\nshape = \"ball\"\ndiameter_mm = 30\n";
+    case.file("my.toml", ball);
+    case.file("s.csv", "x,y,z,r\n0,0,0,0.01\n");
+    case.file("m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0.1,0,0,0,1\n");
+    case.file("j.csv", "time_s,slide\n0,0.1\n");
+    case.file("t.csv", "stiffness_n_per_m\n1\n2\n3\n4\n");
     let text = include_str!("../fixtures/texts/scene_robots_text.toml");
     let plan = plan_in(case.folder(), text).unwrap();
     let written = plan.spec.to_toml();
     for name in ["r.urdf", "j.csv", "m.csv", "t.csv", "my.toml", "s.csv"] {
         says(&written, &[format!("\"{}\"", case.path(name).display())]);
-        assert!(
-            !written.contains(&format!("\"{name}\"")),
-            "{name} in {written}"
-        );
+        let relative = format!("\"{name}\"");
+        assert!(!written.contains(&relative), "{name} in {written}");
     }
     assert_eq!(resolved(&plan).spec, plan.spec);
 }
@@ -129,9 +121,14 @@ fn skin_is_draped_over_the_shapes_of_a_named_link_which_carries_it() {
     }
     // Shapes that overlap have one outer surface, so no taxel of the capsule is within the disc.
     let plan = hand("region = { link = \"wrist\" }", ROBOT).unwrap();
-    let mut centers = plan.patches[0].skin.layout().centers().iter();
+    let is_outside = |c: &DVec3| c.z.abs() > 0.005 - 1e-9 || c.truncate().length() > 0.019;
     assert!(
-        centers.all(|center| center.z.abs() > 0.005 - 1e-9 || center.truncate().length() > 0.019)
+        plan.patches[0]
+            .skin
+            .layout()
+            .centers()
+            .iter()
+            .all(is_outside)
     );
 }
 
@@ -153,12 +150,8 @@ fn skin_is_draped_over_the_shapes_of_the_patchs_own_link() {
         assert_eq!(own(link, &on).unwrap(), own(link, &region).unwrap());
     }
     let top = "on = \"collision\", region = { plane_point_mm = [0.0, 0.0, 20.0], plane_normal = [0.0, 0.0, 1.0] }";
-    assert!(
-        own("palm", top)
-            .unwrap()
-            .iter()
-            .all(|center| (center.z - 0.02).abs() < 1e-12)
-    );
+    let centers = own("palm", top).unwrap();
+    assert!(centers.iter().all(|center| (center.z - 0.02).abs() < 1e-12));
 }
 
 /// Arm of MuJoCo, whose elbow starts outside its range, with a site and a mesh of the model's folder.
@@ -180,20 +173,14 @@ fn a_robot_of_mujoco_carries_skin_on_its_bodies_and_sites() {
     };
     let grid = "grid = { nx = 2, ny = 2, pitch_mm = 2.0 }";
     let file = "file = \"arm.xml\"";
-    assert_eq!(
-        pad_at(&plan(file, "palm", grid).unwrap()),
-        DVec3::new(0.5, 0.0, 0.5)
-    );
+    let at = pad_at(&plan(file, "palm", grid).unwrap());
+    assert_eq!(at, DVec3::new(0.5, 0.0, 0.5));
     let bent =
         format!("{file}\njoints = {{ time_s = [0.0], positions = {{ shoulder_deg = [90.0] }} }}");
     let at = pad_at(&plan(&bent, "palm", grid).unwrap());
     assert!((at - DVec3::new(0.0, 0.0, 0.0)).length() < 1e-15, "{at}");
-    let covered = plan(
-        file,
-        "lower",
-        "draped = { on = \"collision\", pitch_mm = 2.0 }",
-    )
-    .unwrap();
+    let draped = "draped = { on = \"collision\", pitch_mm = 2.0 }";
+    let covered = plan(file, "lower", draped).unwrap();
     let mut centers = covered.patches[0].skin.layout().centers().iter();
     let half = DVec3::new(0.01, 0.01, 0.02);
     assert!(centers.all(|&center| {
@@ -214,12 +201,10 @@ fn meshes_of_a_package_are_read_from_the_folder_of_the_scenes_key() {
         plan_in(case.folder(), &text)
     };
     let missing = plan("").unwrap_err().to_string();
+    let package = "package://hand_description/meshes/cube.obj: a mesh that is not found; packages = { hand_description = \"FOLDER\" }";
     says(
         &missing,
-        &[
-            "package://hand_description/meshes/cube.obj: a mesh that is not found; packages = { hand_description = \"FOLDER\" }",
-            "robots/hand_description/meshes/cube.obj",
-        ],
+        &[package, "robots/hand_description/meshes/cube.obj"],
     );
     let found = plan("packages = { hand_description = \"elsewhere\" }").unwrap();
     // The resolved scene finds the package from any folder.
