@@ -113,30 +113,23 @@ fn bad_input_is_named_and_nothing_is_written() {
     let case = with_recording();
     case.file("few.npy", npy(&labels(0..N - 1)));
     case.create_folder("empty");
+    let few = "few.npy: 89 values; 90, one a touch of";
+    let range = "--before-contact: 0..2; a first frame below the end, which is at most 1";
+    let claim = "--not-claimed: weather; order, session, padding";
+    let split = "--split: group; time with these data";
+    let without = "empty: a folder without frames; recorded.toml, a file frames.npy";
     for (options, words) in [
-        (
-            "skin --groups few.npy",
-            "few.npy: 89 values; 90, one a touch of",
-        ),
+        ("skin --groups few.npy", few),
         ("nowhere.npz", "nowhere.npz: cannot be read"),
         ("skin --order n_y", "--order"),
-        (
-            "skin --before-contact 0..2",
-            "--before-contact: 0..2; a first frame below the end, which is at most 1",
-        ),
+        ("skin --before-contact 0..2", range),
         (
             "skin --untouched 3,60..70",
             "--untouched: 64; taxels from 0 to 63",
         ),
-        (
-            "skin --not-claimed order,weather",
-            "--not-claimed: weather; order, session, padding",
-        ),
-        ("skin --split group", "--split: group; time with these data"),
-        (
-            "empty",
-            "empty: a folder without frames; recorded.toml, a file frames.npy",
-        ),
+        ("skin --not-claimed order,weather", claim),
+        ("skin --split group", split),
+        ("empty", without),
         // The output is not written over the input.
         ("skin --out skin/frames.npy", "frames.npy"),
     ] {
@@ -165,14 +158,9 @@ fn a_given_test_set_is_read_from_the_folder_or_from_recorded_toml() {
     case.file("skin/sessions.npy", npy(&sessions));
     says(&table("skin"), &["\nsession,"]);
     assert_eq!(verdicts(&case, "results/skin_audit", "shared"), ["note"]);
-    let keys = [
-        ("frames", "x"),
-        ("labels", "y"),
-        ("frames_test", "u"),
-        ("labels_test", "v"),
-    ];
+    let keys = ["frames", "labels", "frames_test", "labels_test"];
     let mut recorded = "[recorded]\n".to_owned();
-    for (key, name) in keys {
+    for (key, name) in keys.into_iter().zip(["x", "y", "u", "v"]) {
         recorded += &format!("{key} = \"{name}.npy\"\n");
         let bytes = case.bytes(&format!("skin/{key}.npy"));
         case.file(&format!("other/{name}.npy"), bytes);
@@ -181,15 +169,11 @@ fn a_given_test_set_is_read_from_the_folder_or_from_recorded_toml() {
     assert_eq!(table("other"), beside);
     case.remove("skin/sessions.npy");
     case.remove("skin/labels_test.npy");
-    says(
-        &case.refuses(&audit("skin")),
-        &["frames_test.npy", "labels_test"],
-    );
+    let error = case.refuses(&audit("skin"));
+    says(&error, &["frames_test.npy", "labels_test"]);
     case.file("other/u.npy", npy(&test.slice(s![.., 1.., ..]).to_owned()));
-    says(
-        &case.refuses(&audit("other")),
-        &["u.npy", "7 × 8 taxels", "8 × 8 taxels"],
-    );
+    let error = case.refuses(&audit("other"));
+    says(&error, &["u.npy", "7 × 8 taxels", "8 × 8 taxels"]);
 }
 
 /// The file lists the touches from the last to the first in time.
@@ -208,40 +192,13 @@ fn touches_to_look_at_have_their_numbers_in_the_file() {
     says(&rows, &["5,class 2,copy,68,", "68,class 2,copy,5,"]);
 }
 
-/// The arrays of the test set have their own names in an archive, as in studies.
-#[test]
-fn a_test_set_in_the_archive_of_the_frames_has_its_own_labels() {
-    let frames = frames();
-    let half = |from: usize| frames.slice(s![from..from + N / 2, .., ..]).to_owned();
-    // The test touches have labels in another order than the training touches.
-    let reversed = half(N / 2).slice(s![..;-1, .., ..]).to_owned();
-    let archive = npz(|npz| {
-        npz.add_array("frames", &half(0)).unwrap();
-        npz.add_array("labels", &labels(0..N / 2)).unwrap();
-        npz.add_array("frames_test", &reversed).unwrap();
-        npz.add_array("labels_test", &labels((N / 2..N).rev()))
-            .unwrap();
-    });
-    let case = Case::with("skin.npz", archive);
-    case.succeeds(&audit("skin.npz"));
-    let table = case.read("results/skin_audit/accuracy_by_split.csv");
-    let line = table
-        .lines()
-        .find_map(|line| line.strip_prefix("given,nearest_row,"));
-    let accuracy: f64 = line.unwrap().split(',').next().unwrap().parse().unwrap();
-    assert!(accuracy > 0.9, "{table}");
-}
-
 #[test]
 fn a_fault_ends_with_exit_code_one_if_asked_for() {
     let case = with_recording();
     case.succeeds(&audit("skin --fail-on fault"));
-    let of_class = |touch: usize| {
-        if touch.is_multiple_of(7) {
-            0
-        } else {
-            label(touch) as i64
-        }
+    let of_class = |touch: usize| match touch % 7 {
+        0 => 0,
+        _ => label(touch) as i64,
     };
     let by_class: Array1<i64> = (0..N).map(of_class).collect();
     case.file("skin/sessions.npy", npy(&by_class));

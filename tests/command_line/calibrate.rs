@@ -68,10 +68,8 @@ fn forces_tell_how_stiff_taxels_are() {
     let force = |frame: usize| (frame / 50 % 2) as f64 * 16.0 * 1e-3 * 150.0;
     write_npy(&case.path("forces.npy"), &Array1::from_shape_fn(600, force)).unwrap();
     let options = format!("--untouched-frames {UNTOUCHED} --zero 100 --full-scale 500");
-    let (text, table) = calibrated(
-        &case,
-        &format!("{options} --forces forces.npy --stroke-mm 2"),
-    );
+    let options = format!("{options} --forces forces.npy --stroke-mm 2");
+    let (text, table) = calibrated(&case, &options);
     let stiffness = number(&table, "skin", "stiffness_n_per_m");
     assert!((stiffness / 150.0 - 1.0).abs() < 0.03, "{text}");
 }
@@ -84,51 +82,38 @@ fn frames_that_tell_nothing_are_refused_or_say_so() {
     let mut broken = frames();
     broken[(7, 2, 1)] = f32::NAN;
     write_npy(&case.path("broken.npy"), &broken).unwrap();
-    for (options, words) in [
-        ("missing.npy", "missing.npy"),
-        ("line.npy", "line.npy"),
-        ("broken.npy", "NaN; finite numbers"),
-        (
-            "frames.npy --untouched other.npy",
-            "--untouched: other.npy without --untouched-times",
-        ),
-        (
-            "frames.npy --untouched frames.npy --untouched-times 0.5..0.2",
-            "times of untouched frames: 0.5..0.2",
-        ),
-        (
-            "frames.npy --untouched-frames 30..130",
-            "untouched frames: 16 taxels change by more than",
-        ),
-        (
-            "frames.npy --untouched-frames 50..100,150..200",
-            "untouched frames: 16 taxels read more than in the other frames",
-        ),
-        (
-            "frames.npy --untouched other.npy --untouched-times 0..1",
-            "other.npy: frames of 3 × 4 taxels; 12 × 12",
-        ),
-        ("frames.npy --untouched-frames 590..610", "590..610"),
-        ("frames.npy --untouched-frames 9..9", "9..9"),
-        ("frames.npy --untouched-frames x", "FROM..TO"),
-        (
-            "frames.npy --full-scale 0",
-            "full scale: 0; a number other than the zero, 0",
-        ),
-        (
-            "frames.npy --pitch-mm 0",
-            "--pitch-mm: 0; a positive number",
-        ),
-        ("frames.npy --forces line.npy --stroke-mm 1", "line.npy"),
-        ("frames.npy --output signal.txt", "signal.txt"),
-    ] {
+    let refused = |options: &str, words: &str| {
         says(&case.refuses(&format!("calibrate {options}")), &[words]);
+    };
+    refused("missing.npy", "missing.npy");
+    refused("line.npy", "line.npy");
+    refused("broken.npy", "NaN; finite numbers");
+    let changing = "untouched frames: 16 taxels change by more than";
+    let pressed = "untouched frames: 16 taxels read more than in the other frames";
+    let without = "--untouched: other.npy without --untouched-times";
+    let shape = "other.npy: frames of 3 × 4 taxels; 12 × 12";
+    let zero = "full scale: 0; a number other than the zero, 0";
+    for (options, words) in [
+        ("--untouched-frames 30..130", changing),
+        ("--untouched-frames 50..100,150..200", pressed),
+        ("--untouched-frames 590..610", "590..610"),
+        ("--untouched-frames 9..9", "9..9"),
+        ("--untouched-frames x", "FROM..TO"),
+        ("--untouched other.npy", without),
+        ("--untouched other.npy --untouched-times 0..1", shape),
+        ("--full-scale 0", zero),
+        ("--pitch-mm 0", "--pitch-mm: 0; a positive number"),
+        ("--forces line.npy --stroke-mm 1", "line.npy"),
+        ("--output signal.txt", "signal.txt"),
+    ] {
+        refused(&format!("frames.npy {options}"), words);
     }
+    let options = "--untouched frames.npy --untouched-times 0.5..0.2";
+    let times = "times of untouched frames: 0.5..0.2";
+    refused(&format!("frames.npy {options}"), times);
     let (text, _) = calibrated(&case, "--zero 100");
-    says(
-        &text,
-        &["# noise_std_full_scale: not identifiable: there are too few untouched frames"],
-    );
+    let few = "# noise_std_full_scale: not identifiable: there are too few untouched frames";
+    says(&text, &[few]);
 }
 
 /// Law: the zero of readings that are all positive is the median of the untouched ones, and such readings are not clipped.
@@ -136,10 +121,8 @@ fn frames_that_tell_nothing_are_refused_or_say_so() {
 fn counts_with_an_offset_have_a_zero_and_no_drift() {
     let case = Case::new();
     write_npy(&case.path("frames.npy"), &frames().mapv(f32::round)).unwrap();
-    let (text, table) = calibrated(
-        &case,
-        &format!("--untouched-frames {UNTOUCHED} --full-scale 500"),
-    );
+    let options = format!("--untouched-frames {UNTOUCHED} --full-scale 500");
+    let (text, table) = calibrated(&case, &options);
     says(&text, &["The zero is 100."]);
     let [drift, noise] =
         ["drift_std_full_scale", "noise_std_full_scale"].map(|key| number(&table, "signal", key));
@@ -152,13 +135,9 @@ fn a_file_of_untouched_frames_has_times() {
     let case = folder();
     let untouched = frames().slice(ndarray::s![..50, .., ..]).to_owned();
     write_npy(&case.path("untouched.npy"), &untouched).unwrap();
-    for (times, words) in [
-        (
-            "0..0",
-            "# drift_std_full_scale: not identifiable: untouched frames are from one time",
-        ),
-        ("0..0.1,0.9..1", "\ndrift_std_full_scale = 0"),
-    ] {
+    let once = "# drift_std_full_scale: not identifiable: untouched frames are from one time";
+    let twice = "\ndrift_std_full_scale = 0";
+    for (times, words) in [("0..0", once), ("0..0.1,0.9..1", twice)] {
         let options = format!("--untouched untouched.npy --untouched-times {times}");
         says(&calibrated(&case, &options).0, &[words]);
     }

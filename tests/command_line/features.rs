@@ -1,12 +1,10 @@
 //! Test that `bubbletouch features` writes exactly the rows with which a configuration is trained and tested.
 
-use crate::command::{Case, says};
-use bubbletouch::random::Seed;
-use bubbletouch::recognition::ClassifierKind;
-use bubbletouch::recognition::classifiers::classifier::Classifier;
-use bubbletouch::recognition::data::dataset::dataset;
+use crate::command::{Case, CommandLine, says};
+use crate::study::Study;
+use bubbletouch::study::progress::Silent;
 use bubbletouch::study::read_features;
-use ndarray::{Array1, Array2, Axis};
+use ndarray::Array1;
 use ndarray_npy::read_npy;
 
 /// Study with two noise levels, two ensembles, two m and two training sizes: 16 configurations with two trials each.
@@ -14,52 +12,24 @@ const STUDY: &str = include_str!("../fixtures/texts/features.toml");
 
 fn written(case: &Case, configuration: usize, trial: usize) -> std::path::PathBuf {
     let folder = format!("cell_{configuration}_{trial}");
-    let (configuration, trial) = (configuration.to_string(), trial.to_string());
-    let (said, _) = case.succeeds(&format!(
-        "features study.toml --configuration {configuration} --trial {trial} --out {folder}"
-    ));
+    let cell = format!("--configuration {configuration} --trial {trial}");
+    let (said, _) = case.succeeds(&format!("features study.toml {cell} --out {folder}"));
     assert_eq!(said, "");
     case.path(&folder)
 }
 
+/// Law: the files have the rows of the library, which give the accuracy of the run (`tests/studies/laws.rs`).
 #[test]
-fn training_on_the_files_gives_the_accuracy_of_the_run() {
-    let case = Case::new();
-    case.file("study.toml", STUDY);
-    case.succeeds("run study.toml --out results");
-    let mut table = csv::Reader::from_path(case.path("results/accuracy.csv")).unwrap();
-    let header = table.headers().unwrap().clone();
-    let column = |name: &str| header.iter().position(|column| column == name).unwrap();
-    let (mut n_rows, mut counts) = (0, Vec::new());
-    for row in table.records() {
-        let row = row.unwrap();
-        let number = |name: &str| row[column(name)].parse::<usize>().unwrap();
-        let folder = written(&case, number("configuration"), number("trial"));
-        let features: Array2<f64> = read_npy(folder.join("features.npy")).unwrap();
-        let labels: Array1<i64> = read_npy(folder.join("labels.npy")).unwrap();
-        let train: Array1<i64> = read_npy(folder.join("train.npy")).unwrap();
-        let test: Array1<i64> = read_npy(folder.join("test.npy")).unwrap();
-        assert_eq!(features.dim(), (72, number("measurements")));
-        assert_eq!(train.len(), 3 * number("train_touches"));
-        let rows = |rows: &Array1<i64>| {
-            let rows: Vec<usize> = rows.iter().map(|&row| row as usize).collect();
-            let labels = labels.select(Axis(0), &rows).mapv(|label| label as usize);
-            dataset(features.select(Axis(0), &rows), labels).unwrap()
-        };
-        let classifier = Classifier::new(ClassifierKind::LinearSvm);
-        let trained = classifier.train(&rows(&train), &Seed::new(0)).unwrap();
-        let test = rows(&test);
-        let predicted = trained.labels(test.records.view()).unwrap();
-        let pairs = predicted.iter().zip(&test.targets);
-        let n_correct = pairs.filter(|(a, b)| a == b).count();
-        assert_eq!(n_correct, number("n_correct"), "{row:?}");
-        n_rows += 1;
-        counts.push(n_correct);
+fn the_files_hold_the_rows_of_the_library() {
+    let case = Case::with("study.toml", STUDY);
+    let study = Study::new(STUDY).of_items();
+    // Configurations with and without noise, of both ensembles, numbers of measurements and of training touches.
+    for cell in [(0, 0), (5, 1), (10, 0), (15, 1)] {
+        let read = read_features(&written(&case, cell.0, cell.1)).unwrap();
+        let expected = study.first().features(cell, &Silent).unwrap();
+        assert_eq!(read.data, expected.data, "{cell:?}");
+        assert_eq!(read.split, expected.split, "{cell:?}");
     }
-    assert_eq!(n_rows, 32);
-    counts.sort_unstable();
-    counts.dedup();
-    assert!(counts.len() > 4, "configurations differ: {counts:?}");
 }
 
 #[test]
@@ -73,10 +43,7 @@ fn the_library_reads_what_the_command_writes_at_any_number_of_threads() {
     let names =
         "configuration.toml features.npy labels.npy manifest.json objects.csv test.npy train.npy";
     assert_eq!(case.names_in("1").join(" "), names);
-    for name in names.split(' ') {
-        let read = |folder| case.bytes(&format!("{folder}/{name}"));
-        assert!(read("1") == read("3"), "{name}");
-    }
+    case.same_files(["1", "3"], &names.words());
     let set = read_features(&case.path("1")).unwrap();
     assert_eq!(set.data.records.dim().0, 72);
     assert_eq!(

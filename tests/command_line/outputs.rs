@@ -1,9 +1,8 @@
 //! Outputs that are closed or full: a command does its work, and a write that fails is one error with exit code 1 that leaves no partial file.
 #![cfg(target_os = "linux")]
 
-use crate::command::{Case, fails, says};
+use crate::command::{Case, fails, says, skip};
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -121,11 +120,7 @@ fn a_full_disk_is_the_worlds_fault_and_leaves_nothing() {
     );
     let small = case.create_folder("small");
     let Some(_mount) = SmallDisk::mount(&small) else {
-        writeln!(
-            std::io::stderr(),
-            "SKIPPED: no right to mount a small tmpfs here"
-        )
-        .expect("standard error takes a line");
+        skip("no right to mount a small tmpfs here");
         return;
     };
     let output = case.run("run study.toml --out small/results");

@@ -21,18 +21,16 @@ fn the_nut_of_the_guide_is_built() {
     for entry in catalogue.entries() {
         let model = entry.build(0.1 * MM).unwrap().model;
         let error = surface_error(&entry.solid, model.spheres().unwrap(), 0.2 * MM);
-        assert!(
-            error.protrusion <= 0.05 * MM && error.gap <= 0.1 * MM,
-            "{error:?}"
-        );
+        let is_fine = error.protrusion <= 0.05 * MM && error.gap <= 0.1 * MM;
+        assert!(is_fine, "{error:?}");
     }
     // A pin along the hole touches nothing.
     let model = nut.build(0.1 * MM).unwrap().model;
     let spheres = model.spheres().unwrap().spheres();
-    let free = spheres
+    let mut free = spheres
         .iter()
         .map(|s| s.center.truncate().length() - s.radius);
-    assert!(free.fold(f64::INFINITY, f64::min) >= 0.0);
+    assert!(free.all(|gap| gap >= 0.0));
     let wrong = example.replacen("height_mm = 6.8", "height_mm = -2", 1);
     let error = Catalogue::parse("hardware", "hardware.toml", &wrong).unwrap_err();
     assert!(GUIDE.contains(&format!("{error}\n")), "{error}");
@@ -41,9 +39,8 @@ fn the_nut_of_the_guide_is_built() {
 #[test]
 fn the_guide_has_every_shape_and_every_key() {
     let listed = |text: &str| -> Vec<String> {
-        let error = Catalogue::parse("own", "own.toml", text)
-            .unwrap_err()
-            .to_string();
+        let error = Catalogue::parse("own", "own.toml", text).unwrap_err();
+        let error = error.to_string();
         let names = error.split('`').skip(1).step_by(2);
         names.map(str::to_owned).collect()
     };
@@ -53,15 +50,11 @@ fn the_guide_has_every_shape_and_every_key() {
     let keys = listed(&format!("{part}shape = \"ball\"\nnone = 1\n"));
     let of_object = listed("[[object]]\nnone = 1\n");
     assert!(shapes.len() > 11 && keys.len() > 18 && of_object.len() > 4);
-    let is_in = |name: &&String| {
-        GUIDE.contains(&format!("`{name}`")) || GUIDE.contains(&format!("`{name} ="))
+    let is_missing = |name: &&String| {
+        let written = [format!("`{name}`"), format!("`{name} =")];
+        *name != "none" && !written.iter().any(|text| GUIDE.contains(text))
     };
-    let missing: Vec<&String> = keys
-        .iter()
-        .chain(&of_object)
-        .filter(|name| *name != "none")
-        .filter(|n| !is_in(n))
-        .collect();
+    let missing: Vec<&String> = keys.iter().chain(&of_object).filter(is_missing).collect();
     assert!(missing.is_empty(), "{missing:?}");
     for shape in shapes.iter().filter(|name| *name != "none") {
         assert!(GUIDE.contains(&format!("| `\"{shape}\"` |")), "{shape}");
@@ -92,8 +85,6 @@ fn a_study_closes_holes_only_where_it_is_told_to() {
         let words = ["cube.obj: a hole 0.90 mm wide", "objects.close_holes_mm"];
         says(&said(ModelSpec::Packed, too_narrow), &words);
     }
-    says(
-        &said(ModelSpec::VertexSpheres, Some(1.0)),
-        &["close_holes_mm"],
-    );
+    let vertices = said(ModelSpec::VertexSpheres, Some(1.0));
+    says(&vertices, &["close_holes_mm"]);
 }

@@ -1,7 +1,7 @@
 //! Commands in the README and the guide work, and their links lead to existing files.
 #![cfg(unix)]
 
-use crate::command::Case;
+use crate::command::{Case, skip};
 use bubbletouch::study::{Plan, StudySpec};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -45,19 +45,16 @@ fn blocks(text: &str, language: &str) -> Vec<String> {
 
 /// Returns the commands of a shell block that can run in the test, without slow commands and those that need the reader's meshes.
 fn commands(block: &str) -> Vec<String> {
-    block
-        .replace("\\\n", " ")
-        .lines()
-        .map(|line| line.trim().trim_start_matches("$ "))
-        .filter_map(|line| {
-            let arguments = ["bubbletouch ", "cargo run --release -- "]
-                .iter()
-                .find_map(|start| line.strip_prefix(start))?;
-            Some(format!("bubbletouch {arguments}"))
-        })
-        .filter(|line| !line.trim_end().ends_with("# slow"))
-        .filter(|line| !line.contains("--objects") && !line.contains("--mesh"))
-        .collect()
+    let command = |line: &str| {
+        let line = line.trim().trim_start_matches("$ ");
+        let mut starts = ["bubbletouch ", "cargo run --release -- "].iter();
+        let arguments = starts.find_map(|start| line.strip_prefix(start))?;
+        let is_left_out =
+            line.ends_with("# slow") || line.contains("--objects") || line.contains("--mesh");
+        (!is_left_out).then(|| format!("bubbletouch {arguments}"))
+    };
+    let joined = block.replace("\\\n", " ");
+    joined.lines().filter_map(command).collect()
 }
 
 fn copy_folder(from: &Path, to: &Path) {
@@ -115,10 +112,7 @@ fn every_study_in_the_readme_and_the_guide_can_be_planned() {
         let documents = documents();
         let (_, text) = documents.iter().find(|(n, _)| n == name).unwrap();
         let studies = blocks(text, "toml");
-        assert!(
-            !studies.is_empty(),
-            "{name} shows a study in a ```toml block"
-        );
+        assert!(!studies.is_empty(), "{name} shows no study");
         for study in studies {
             let spec = StudySpec::parse(name, &study).unwrap();
             Plan::new(name, spec).unwrap();
@@ -178,24 +172,14 @@ fn every_function_of_the_architecture_page_is_in_its_files() {
                 let text: String = files.collect();
                 for name in code_words(functions).flat_map(|name| name.split("::")) {
                     let name = name.trim_end_matches('!');
-                    let items = [
-                        "fn",
-                        "struct",
-                        "enum",
-                        "trait",
-                        "const",
-                        "type",
-                        "macro_rules!",
-                    ];
+                    let mut items = "fn struct enum trait const type macro_rules!".split(' ');
                     let is_defined = |item: &str| {
-                        [" ", "(", "<", ":", "\n", ";"]
-                            .iter()
-                            .any(|end| text.contains(&format!("{item} {name}{end}")))
+                        let mut ends = " (<:\n;".chars();
+                        ends.any(|end| text.contains(&format!("{item} {name}{end}")))
                     };
                     // A method's type may be defined beside it, in another file.
-                    let is_type = text.contains(&format!("impl {name}"))
-                        || text.contains(&format!("> {name}"));
-                    if !items.iter().any(|item| is_defined(item)) && !is_type {
+                    let mut uses = [format!("impl {name}"), format!("> {name}")].into_iter();
+                    if !items.any(is_defined) && !uses.any(|used| text.contains(&used)) {
                         missing.push(format!("{name}: {files:?}", files = fields[3]));
                     }
                     n_functions += 1;
@@ -215,14 +199,13 @@ const MAX_RESULTS_BYTES: u64 = 12_000_000;
 #[test]
 fn committed_results_are_small_and_every_picture_is_shown() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let listed = Command::new("git")
-        .args(["ls-files", "-z", "results"])
-        .current_dir(root)
-        .output();
+    let mut git = Command::new("git");
+    let git = git.args(["ls-files", "-z", "results"]).current_dir(root);
+    let listed = git.output();
     let names = listed.map(|listed| String::from_utf8(listed.stdout).unwrap());
     let names = names.unwrap_or_default();
     if names.is_empty() {
-        println!("SKIPPED: the source is no git repository, or there is no git");
+        skip("the source is no git repository, or there is no git");
         return;
     }
     let names: Vec<&str> = names.split_terminator('\0').collect();
@@ -236,9 +219,8 @@ fn committed_results_are_small_and_every_picture_is_shown() {
         shown.extend(linked.map(str::to_owned));
     }
     let is_table = |name: &str| {
-        [".csv", ".toml", ".json", ".md"]
-            .iter()
-            .any(|end| name.ends_with(end))
+        let mut ends = [".csv", ".toml", ".json", ".md"].iter();
+        ends.any(|end| name.ends_with(end))
     };
     for name in names {
         let is_shown = shown.iter().any(|shown| shown == name);

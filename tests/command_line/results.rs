@@ -38,10 +38,9 @@ fn every_edit_of_a_folder_of_results_is_noticed_and_its_file_named() {
         let longer = [&bytes[..], b"\n1,2,3\n"].concat();
         // Charts and pages are drawn again from the tables and the study.
         let is_result = name.ends_with(".csv") || name.ends_with(".toml");
-        let commands = if is_result {
-            &["verify", "report"][..]
-        } else {
-            &["verify"]
+        let commands = match is_result {
+            true => &["verify", "report"][..],
+            false => &["verify"],
         };
         let is_refused = |said: &str| {
             for command in commands {
@@ -68,11 +67,8 @@ fn every_edit_of_a_folder_of_results_is_noticed_and_its_file_named() {
 fn edits_that_the_manifest_hides_are_noticed_when_all_work_runs_again() {
     let case = found(STUDY);
     let manifest = case.read("found/manifest.json");
-    for name in [
-        "found/accuracy.csv",
-        "found/summary.csv",
-        "found/confusion.csv",
-    ] {
+    for name in ["accuracy", "summary", "confusion"] {
+        let name = &format!("found/{name}.csv");
         let table = case.read(name);
         let last = table.lines().last().unwrap();
         replace(&case, name, &format!("{table}{last}\n"));
@@ -109,23 +105,17 @@ fn by_configuration(table: &str) -> BTreeMap<&str, Vec<&str>> {
 #[test]
 fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are() {
     // With this noise, objects are confused, and the confusions have a chart.
-    let all = STUDY
-        .replace(
-            "classifier =",
-            "touches_per_decision = [1, 4]\nclassifier =",
-        )
-        .replace("full_scale = 0.05", "full_scale = 0.5");
+    let keys = "touches_per_decision = [1, 4]\nclassifier =";
+    let all = STUDY.replace("classifier =", keys);
+    let all = all.replace("full_scale = 0.05", "full_scale = 0.5");
     let case = Case::with("all.toml", &all);
     case.file("best.toml", all + "\n[report]\nconfusion = \"best\"\n");
     for name in ["all", "best"] {
         case.succeeds(&format!("run {name}.toml --out {name}"));
     }
     let read = |name: &str| ["all", "best"].map(|folder| case.read(&format!("{folder}/{name}")));
-    let chart = case.names_in("best").into_iter();
-    let chart = chart
-        .filter(|name| name.starts_with("accuracy_by"))
-        .min()
-        .unwrap();
+    let mut names = case.names_in("best").into_iter();
+    let chart = names.find(|name| name.starts_with("accuracy_by")).unwrap();
     let same = [
         "accuracy.csv",
         "summary.csv",
@@ -133,10 +123,7 @@ fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are
         "comparison.csv",
         &chart,
     ];
-    for name in same {
-        let [all, best] = read(name);
-        assert_eq!(all, best, "{name}");
-    }
+    case.same_files(["all", "best"], &same);
     let [all, best] = read("confusion.csv");
     let (mut all, best) = (by_configuration(&all), by_configuration(&best));
     assert!((1..=3).contains(&best.len()) && all.len() == 8, "{best:?}");
@@ -147,14 +134,10 @@ fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are
     let tiles = |svg: &str| svg.split_once("Rows: touched").unwrap().0.to_owned();
     assert_eq!(tiles(&all), tiles(&best));
     says(&read(&chart)[1], &["chance (1 in 3)"]);
-    for command in [
-        "report best",
-        "verify best --configurations 2",
-        "verify best --configurations 1000",
-        "advise best --accuracy 0.1",
-    ] {
-        case.succeeds(command);
-    }
+    case.succeeds("report best");
+    case.succeeds("verify best --configurations 2");
+    case.succeeds("verify best --configurations 1000");
+    case.succeeds("advise best --accuracy 0.1");
 }
 
 /// The columns of groups and of repeated splits exist if any row has them; the rows of a few work items may lack them.
@@ -173,10 +156,8 @@ fn verify_takes_a_few_work_items_of_a_study_with_groups_and_repeated_splits() {
         case.succeeds(&verify(draw));
     }
     // A differing row is also found in a table with fewer columns.
-    let n_correct = header
-        .split(',')
-        .position(|name| name == "n_correct")
-        .unwrap();
+    let mut columns = header.split(',');
+    let n_correct = columns.position(|name| name == "n_correct").unwrap();
     let edited = rows.lines().map(|row| {
         let mut fields: Vec<&str> = row.split(',').collect();
         fields[n_correct] = "1";

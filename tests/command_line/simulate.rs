@@ -32,20 +32,8 @@ fn every_shipped_scene_says_what_it_asks_and_runs() {
         let scene = scene.to_str().unwrap();
         let (said, _) = case.succeeds(&format!("simulate {scene} --out {stem} --until-s 0.3"));
         says(&said, &["deepest (mm)", "at the end"]);
-        let mut files = fs::read_dir(case.path(stem))
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect::<Vec<_>>();
-        files.sort();
-        assert_eq!(
-            files,
-            [
-                "manifest.json",
-                "recording.npz",
-                "scene.toml",
-                "wrenches.csv"
-            ]
-        );
+        let files = case.names_in(stem).join(" ");
+        assert_eq!(files, "manifest.json recording.npz scene.toml wrenches.csv");
     }
 }
 
@@ -57,32 +45,27 @@ fn the_files_hold_what_the_library_computes() {
     let scene_name = scene.to_str().unwrap();
     let (said, _) = case.succeeds(&format!("simulate {scene_name} --out o --quiet"));
     assert_eq!(said, "");
-    let plan = ScenePlan::read(scene).unwrap();
-    let mut frames: Vec<Frame> = Vec::new();
-    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
-    simulation.run(&mut [&mut frames]).unwrap();
+    let frames_of = |scene: &Path| {
+        let plan = ScenePlan::read(scene).unwrap();
+        let mut frames: Vec<Frame> = Vec::new();
+        let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+        simulation.run(&mut [&mut frames]).unwrap();
+        frames
+    };
+    let frames = frames_of(scene);
     let recording = crate::stored::read_recording(&case.path("o/recording.npz")).unwrap();
     assert_eq!(recording.time.len(), frames.len());
     for (number, frame) in frames.iter().enumerate() {
         for (stored, reading) in recording.patches.iter().zip(&frame.patches) {
-            for (a, b) in stored
-                .deflection
-                .row(number)
-                .iter()
-                .zip(&reading.deflection)
-            {
-                assert_eq!(*a as f32, *b as f32);
-            }
+            let stored = stored.deflection.row(number).mapv(|d| d as f32).to_vec();
+            let expected = reading.deflection.iter().map(|&d| d as f32);
+            assert_eq!(stored, expected.collect::<Vec<_>>());
         }
     }
     let table = case.read("o/wrenches.csv");
     let mut lines = table.lines();
-    assert!(
-        lines
-            .next()
-            .unwrap()
-            .starts_with("time_s,patch,n_touched,n_saturated,fx_n")
-    );
+    let header = lines.next().unwrap();
+    assert!(header.starts_with("time_s,patch,n_touched,n_saturated,fx_n"));
     let readings = frames.iter().flat_map(|frame| &frame.patches);
     for (line, reading) in lines.clone().zip(readings) {
         let cells: Vec<&str> = line.split(',').collect();
@@ -91,9 +74,5 @@ fn the_files_hold_what_the_library_computes() {
     }
     assert_eq!(lines.count(), 3 * frames.len());
     // The resolved scene equals the original scene from any folder.
-    let resolved = ScenePlan::read(&case.path("o/scene.toml")).unwrap();
-    let mut again: Vec<Frame> = Vec::new();
-    let mut simulation = Simulation::new(&resolved, Stepping::AsNeeded);
-    simulation.run(&mut [&mut again]).unwrap();
-    assert_eq!(frames, again);
+    assert_eq!(frames, frames_of(&case.path("o/scene.toml")));
 }

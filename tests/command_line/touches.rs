@@ -1,6 +1,6 @@
 //! `bubbletouch touches`: the files of a data set agree with each other and with the library, and are written with little memory.
 
-use crate::command::{Case, filled, says};
+use crate::command::{Case, CommandLine, filled, says, skip};
 use crate::study::Study;
 use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::geometry::Pose;
@@ -9,7 +9,6 @@ use bubbletouch::study::simulate_array;
 use glam::{DQuat, DVec3};
 use ndarray::{Array1, Array2, Array3, Array4};
 use ndarray_npy::read_npy;
-use std::io::Write;
 use std::process::Stdio;
 
 /// Study with two arrays; some touches miss the object, some saturate a taxel.
@@ -123,16 +122,8 @@ fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
         features.mapv(|value| f64::from(value as f32))
     );
     assert!(read.frames != clean.frames, "noise is in them");
-    for name in [
-        "labels.npy",
-        "poses.npy",
-        "depths.npy",
-        "touches.csv",
-        "objects.csv",
-    ] {
-        let bytes = |folder: &str| case.bytes(&format!("{folder}/{name}"));
-        assert!(bytes("clean/24x24_at_2_mm") == bytes("read"), "{name}");
-    }
+    let names = "labels.npy poses.npy depths.npy touches.csv objects.csv";
+    case.same_files(["clean/24x24_at_2_mm", "read"], &names.words());
     case.refuses("touches study.toml --out x --configuration 99");
 }
 
@@ -210,17 +201,12 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
 fn one_array_needs_no_folder_of_its_own_and_threads_change_no_byte() {
     let case = Case::new();
     case.file("study.toml", STUDY.replace("[4.0, 2.0]", "4.0"));
-    for threads in ["1", "3"] {
-        case.succeeds(&format!(
-            "touches study.toml --threads {threads} --out {threads}"
-        ));
+    for n in [1, 3] {
+        case.succeeds(&format!("touches study.toml --threads {n} --out {n}"));
     }
     let names = "depths.npy frames.npy labels.npy manifest.json objects.csv poses.npy recorded.toml touches.csv";
     assert_eq!(case.names_in("1").join(" "), names);
-    for name in names.split(' ') {
-        let bytes = |folder| case.bytes(&format!("{folder}/{name}"));
-        assert!(bytes("1") == bytes("3"), "{name}");
-    }
+    case.same_files(["1", "3"], &names.words());
 }
 
 /// Returns a study of touches of two balls on 16 × 16 taxels.
@@ -263,18 +249,11 @@ fn high_water_mark(status: &str) -> Option<u64> {
 fn fifty_thousand_touches_need_no_more_memory_than_five_hundred() {
     let (few, many) = (balls(250), balls(25_000));
     let (Some(small), Some(large)) = (peak_memory(&few), peak_memory(&many)) else {
-        writeln!(
-            std::io::stderr(),
-            "SKIPPED: this system has no /proc/<pid>/status with VmHWM"
-        )
-        .expect("standard error takes a line");
+        skip("this system has no /proc/<pid>/status with VmHWM");
         return;
     };
     let grown = large.saturating_sub(small);
-    println!(
-        "{small} KiB for 500 touches, {large} KiB for 50,000: {} bytes a touch",
-        grown * 1024 / 49_500
-    );
+    println!("{small} KiB for 500 touches, {large} KiB for 50,000");
     // The frames take 50,000 KiB and a list of them would take 8,000. Buffers and the late reading of the peak take a few hundred.
     assert!(grown < 4 * 1024, "{grown} KiB more");
 }
@@ -298,24 +277,16 @@ fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
     for (folder, depth) in [("data/depth_mm_1", "1.0"), ("data/depth_mm_4", "4.0")] {
         let files = files(&case, folder);
         assert!(files.frames == alone(depth), "{folder}");
-        assert!(
-            files
-                .depths
-                .iter()
-                .all(|&d| (1e3 * d - depth.parse::<f64>().unwrap()).abs() < 1e-9)
-        );
+        let depth: f64 = depth.parse().unwrap();
+        assert!(files.depths.iter().all(|&d| (1e3 * d - depth).abs() < 1e-9));
     }
     let names = case.names_in("data").len();
     assert_eq!(names, 3, "two arrays and the manifest");
     // An axis that changes no touch gives no further folders.
-    let same = AXES.replace(
-        "\"touches.depth_mm\" = [1.0, 4.0]",
-        "\"signal.noise_std_full_scale\" = [0.0, 0.1]",
-    );
-    case.file(
-        "same.toml",
-        same.replace("per_object = 20", "per_object = 20\ndepth_mm = 3.0"),
-    );
+    let noise = "\"signal.noise_std_full_scale\" = [0.0, 0.1]";
+    let same = AXES.replace("\"touches.depth_mm\" = [1.0, 4.0]", noise);
+    let same = same.replace("per_object = 20", "per_object = 20\ndepth_mm = 3.0");
+    case.file("same.toml", same);
     case.succeeds("touches same.toml --out same");
     assert_eq!(files(&case, "same").frames.dim(), (40, 8, 8));
     // Several arrays together with an axis.
@@ -323,10 +294,8 @@ fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
     case.file("both.toml", both);
     case.succeeds("touches both.toml --out both");
     for folder in ["8x8_at_4_mm_depth_mm_1", "8x8_at_8_mm_depth_mm_4"] {
-        assert_eq!(
-            files(&case, &format!("both/{folder}")).frames.dim(),
-            (40, 8, 8)
-        );
+        let files = files(&case, &format!("both/{folder}"));
+        assert_eq!(files.frames.dim(), (40, 8, 8));
     }
     assert_eq!(case.names_in("both").len(), 5);
 }
