@@ -199,17 +199,9 @@ fn capacitive(seed: u64) -> Set {
     let base: Vec<f64> = (0..144).map(|_| rng.gen_range(90.0..210.0)).collect();
     let set = Set::new(rng, labels, 1, |_, class, rng| {
         let place = (rng.gen_range(2.0..9.0), rng.gen_range(2.0..9.0));
-        let frame = disc(
-            12,
-            place,
-            1.0 + 0.5 * class as f64,
-            rng.gen_range(20.0..60.0),
-        );
-        frame
-            .iter()
-            .zip(&base)
-            .map(|(x, base)| (x + base + 1.5 * normal(rng)).round())
-            .collect()
+        let depth = rng.gen_range(20.0..60.0);
+        let frame = disc(12, place, 1.0 + 0.5 * class as f64, depth);
+        row(144, |k| (frame[k] + base[k] + 1.5 * normal(rng)).round())
     });
     set.grid((12, 12))
 }
@@ -236,18 +228,11 @@ fn mat(seed: u64) -> Set {
         for part in 0..3 {
             let y = 3.0 + 4.0 * f64::from(part) + normal(rng) * 0.4;
             let x = 5.0 + (class * (part as usize + 1)) as f64 % 5.0 + 0.5 * normal(rng);
-            let own = disc(
-                16,
-                (y, x),
-                rng.gen_range(1.0..2.0),
-                rng.gen_range(20.0..60.0),
-            );
+            let (radius, depth) = (rng.gen_range(1.0..2.0), rng.gen_range(20.0..60.0));
+            let own = disc(16, (y, x), radius, depth);
             frame.iter_mut().zip(own).for_each(|(x, own)| *x += own);
         }
-        frame
-            .into_iter()
-            .map(|x| (x + 0.7 * normal(rng)).max(0.0))
-            .collect()
+        row(256, |k| (frame[k] + 0.7 * normal(rng)).max(0.0))
     });
     set.grid((16, 16))
 }
@@ -277,16 +262,11 @@ fn insoles(seed: u64) -> Set {
         let (force, speed): (f64, f64) = (rng.gen_range(0.8..1.2), rng.gen_range(0.9..1.1));
         let cell = |t: usize, k: usize| {
             let place = (speed * t as f64 / 20.0 - k as f64 / 40.0) * 3.0;
-            if k < 36 {
-                100.0 * force * patterns[(class, k)] * (-place * place).exp()
-            } else {
-                0.0
-            }
+            let load = 100.0 * force * patterns[(class, k)] * (-place * place).exp();
+            if k < 36 { load } else { 0.0 }
         };
-        let cells = (0..20).flat_map(|t| (0..40).map(move |k| (t, k)));
-        cells
-            .map(|(t, k)| (cell(t, k) + 2.0 * normal(rng)).max(0.0))
-            .collect()
+        let reading = |k: usize| (cell(k / 40, k % 40) + 2.0 * normal(rng)).max(0.0);
+        row(800, reading)
     });
     set.groups(groups)
 }
@@ -335,12 +315,8 @@ fn noiseless(seed: u64) -> Set {
     labels.shuffle(&mut rng);
     let set = Set::new(rng, labels, 1, |_, class, rng| {
         let place = (rng.gen_range(3.0..8.0), rng.gen_range(3.0..8.0));
-        disc(
-            12,
-            place,
-            1.0 + 0.6 * class as f64 + rng.gen_range(0.0..0.3),
-            rng.gen_range(0.4..1.0),
-        )
+        let radius = 1.0 + 0.6 * class as f64 + rng.gen_range(0.0..0.3);
+        disc(12, place, radius, rng.gen_range(0.4..1.0))
     });
     set.grid((12, 12))
 }

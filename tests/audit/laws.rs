@@ -1,19 +1,23 @@
 //! Laws of audits: they depend on data and seed alone, and a clock that wraps around continues.
 
 use crate::sets::*;
-use bubbletouch::audit::{AuditData, Verdict};
+use bubbletouch::audit::{AuditData, Finding, Verdict};
 use ndarray::Array2;
 
 #[test]
 fn an_audit_depends_on_data_and_seed_alone() {
     let findings = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        format!("{:?}", pool.install(|| Set::discs(3).findings()))
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let findings = pool.unwrap().install(|| Set::discs(3).findings());
+        format!("{findings:?}")
     };
     assert_eq!(findings(1), findings(3));
+}
+
+/// Returns the finding of a check.
+fn finding(set: Set, check: &str) -> Finding {
+    let mut findings = set.findings().into_iter();
+    findings.find(|finding| finding.check == check).unwrap()
 }
 
 /// The user decides what is part of the claim: the same number is a note or a fault.
@@ -22,17 +26,10 @@ fn what_is_not_claimed_becomes_a_fault_and_the_named_split_a_note() {
     let verdict = |names: Option<&str>| {
         let mut set = Set::discs(1);
         set.options.not_claimed = names.map(|name| vec![name.to_owned()]);
-        let findings = set.findings();
-        findings
-            .iter()
-            .find(|finding| finding.check == "mean")
-            .unwrap()
-            .verdict
+        finding(set, "mean").verdict
     };
-    assert_eq!(
-        [verdict(None), verdict(Some("mean"))],
-        [Verdict::Note, Verdict::Fault]
-    );
+    assert_eq!(verdict(None), Verdict::Note);
+    assert_eq!(verdict(Some("mean")), Verdict::Fault);
 }
 
 /// Readings fall under pressure, and the full scale of the converter is above them; a full scale of 0 is reached.
@@ -42,12 +39,7 @@ fn touches_at_the_full_scale_are_counted_on_its_side_of_rest() {
         let mut set = Set::discs(2);
         set.frames.mapv_inplace(|x| (0.9 - x).max(0.0));
         set.full_scale = Some(full_scale);
-        let findings = set.findings();
-        let mut findings = findings.iter();
-        let saturation = findings
-            .find(|finding| finding.check == "saturation")
-            .unwrap();
-        saturation.value.unwrap()
+        finding(set, "saturation").value.unwrap()
     };
     assert_eq!(share(1.5), 0.0);
     let at_zero = share(0.0);
@@ -72,24 +64,17 @@ fn a_clock_that_wraps_around_continues() {
         let wrapped = |touch: usize| (start + 1000.0 * touch as f64) % 4_294_967_296.0 * factor;
         assert_eq!(sorted(&wrapped), in_order);
     }
-    // Signed counters, and 16 bits.
-    assert_eq!(
-        sorted(&|touch| f64::from((2_147_480_000 + 500 * touch as u32) as i32)),
-        in_order
-    );
-    assert_eq!(
-        sorted(&|touch| f64::from((60_000 + 500 * touch as u32) as u16)),
-        in_order
-    );
-    // A time of day over midnight in seconds, and the second of a minute with two wraps.
-    assert_eq!(
-        sorted(&|touch| (86_000.0 + 37.5 * touch as f64) % 86_400.0),
-        in_order
-    );
-    assert_eq!(
-        sorted(&|touch| (30.0 + 2.2 * touch as f64) % 60.0),
-        in_order
-    );
+    let wrapping: [fn(usize) -> f64; 4] = [
+        // Signed counters, and 16 bits.
+        |touch| f64::from((2_147_480_000 + 500 * touch as u32) as i32),
+        |touch| f64::from((60_000 + 500 * touch as u32) as u16),
+        // A time of day over midnight in seconds, and the second of a minute with two wraps.
+        |touch| (86_000.0 + 37.5 * touch as f64) % 86_400.0,
+        |touch| (30.0 + 2.2 * touch as f64) % 60.0,
+    ];
+    for wrapped in wrapping {
+        assert_eq!(sorted(&wrapped), in_order);
+    }
     // Touches that are listed by class.
     let by_class = sorted(&|touch| (touch % 20 * 3 + touch / 20) as f64);
     let expected: Vec<f64> = (0..60).map(|k| (k / 3 + 20 * (k % 3)) as f64).collect();

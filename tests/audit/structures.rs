@@ -4,6 +4,7 @@ use crate::sets::*;
 use bubbletouch::audit::Verdict;
 use rand::Rng;
 use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
 
 type Structure = (&'static str, fn(u64) -> Set);
 
@@ -38,23 +39,17 @@ const STRUCTURES: [Structure; 17] = [
     ("classes of stiffness with light contacts", |seed| {
         Set::of("stiffness", seed, [5, 40], 20, |_, class, rng| {
             let start = rng.gen_range(4..6);
-            let readings = (0..20).flat_map(|t| (0..8).map(move |k| (t, k)));
-            readings
-                .map(|(t, k): (usize, usize)| {
-                    let depth = t.saturating_sub(start) as f64 / 16.0;
-                    (0.3 + class as f64) * depth * (1.0 - (k as f64 - 3.5).abs() / 8.0)
-                        + 0.05 * normal(rng)
-                })
-                .collect()
+            let reading = |t: usize, k: usize| {
+                let depth = t.saturating_sub(start) as f64 / 16.0;
+                (0.3 + class as f64) * depth * (1.0 - (k as f64 - 3.5).abs() / 8.0)
+            };
+            row(160, |k| reading(k / 8, k % 8) + 0.05 * normal(rng))
         })
     }),
     ("two random groups of each class", |seed| {
         let mut set = Set::discs(seed);
-        let groups = set
-            .labels
-            .clone()
-            .into_iter()
-            .map(|class| 2 * class + set.rng.gen_range(0..2));
+        let classes = set.labels.clone().into_iter();
+        let groups = classes.map(|class| 2 * class + set.rng.gen_range(0..2));
         set.groups = Some(groups.collect());
         set
     }),
@@ -145,16 +140,11 @@ const STRUCTURES: [Structure; 17] = [
         let patterns = patterns("subtracted", seed, 4, 12);
         Set::of("subtracted", seed, [4, 50], 8, |_, class, rng| {
             let force: f64 = rng.gen_range(0.8..1.2);
-            let readings = (0..8).flat_map(|t| (0..12).map(move |k| (t, k)));
-            readings
-                .map(|(t, k)| {
-                    if t == 0 {
-                        0.0
-                    } else {
-                        force * (3.0 + patterns[(class, k)]) * t as f64 + 0.2 * normal(rng)
-                    }
-                })
-                .collect()
+            let reading = |t: usize, k: usize, rng: &mut ChaCha8Rng| match t {
+                0 => 0.0,
+                t => force * (3.0 + patterns[(class, k)]) * t as f64 + 0.2 * normal(rng),
+            };
+            row(96, |k| reading(k / 12, k % 12, rng))
         })
     }),
     ("people lying still on a mat", |seed| {
@@ -163,15 +153,9 @@ const STRUCTURES: [Structure; 17] = [
         let mut postures: Vec<usize> = (0..24).map(|k| k % 3).collect();
         postures.shuffle(&mut rng);
         let labels: Vec<usize> = postures.iter().flat_map(|&class| [class; 12]).collect();
-        let people: Vec<[f64; 3]> = (0..24)
-            .map(|_| {
-                [
-                    rng.gen_range(4.0..7.0),
-                    rng.gen_range(4.0..7.0),
-                    rng.gen_range(0.5..1.5),
-                ]
-            })
-            .collect();
+        let ranges = [4.0..7.0, 4.0..7.0, 0.5..1.5];
+        let mut person = || ranges.clone().map(|range| rng.gen_range(range));
+        let people: Vec<[f64; 3]> = (0..24).map(|_| person()).collect();
         let set = Set::new(rng, labels, 1, |touch, class, rng| {
             let [y, x, weight] = people[touch / 12];
             let frame = disc(12, (y, x), 1.0 + class as f64, weight);
@@ -228,16 +212,11 @@ fn frames_that_are_scaled_one_by_one_are_no_copies() {
 /// Right labels of objects that share a part are a list to look at, and the advice does not change them.
 #[test]
 fn shared_parts_are_no_wrong_labels() {
-    let make = STRUCTURES
-        .iter()
-        .find(|of| of.0 == "objects that share a part")
-        .unwrap()
-        .1;
-    let findings = make(5).findings();
-    let labels = findings
-        .iter()
-        .find(|finding| finding.check == "labels")
-        .unwrap();
+    let mut structures = STRUCTURES.iter();
+    let parts = structures.find(|of| of.0 == "objects that share a part");
+    let findings = (parts.unwrap().1)(5).findings();
+    let mut findings = findings.iter();
+    let labels = findings.find(|finding| finding.check == "labels").unwrap();
     assert_ne!(labels.verdict, Verdict::Fault);
     assert!(!labels.advice.contains("orrect"), "{}", labels.advice);
 }
