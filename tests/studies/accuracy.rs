@@ -14,10 +14,7 @@ const N_OBJECTS: f64 = 8.0;
 fn score(outcome: &Tables, is_wanted: impl Fn(&Configuration) -> bool) -> &ConfigurationScore {
     let mut rows = outcome.summary.iter().filter(|(c, _)| is_wanted(c));
     let (_, score) = rows.next().expect("a configuration with these settings");
-    assert!(
-        rows.next().is_none(),
-        "one configuration with these settings"
-    );
+    assert!(rows.next().is_none(), "two configurations");
     score
 }
 
@@ -32,10 +29,8 @@ fn accuracy_obeys_chance_compression_and_noise() {
     let deaf = at(10.0, 1);
     // One measurement of noise guesses.
     let chance = 1.0 / N_OBJECTS;
-    assert!(
-        deaf.accuracy_low < chance && chance < deaf.accuracy_high,
-        "{deaf:?}"
-    );
+    let has_chance = deaf.accuracy_low < chance && chance < deaf.accuracy_high;
+    assert!(has_chance, "{deaf:?}");
     // Four of 120 test rows.
     let margin = 4.0 / deaf.n_test as f64;
     for accuracies in &table[..3] {

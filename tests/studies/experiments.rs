@@ -18,11 +18,9 @@ const HEADER: [&str; 4] = ["# Question", "# Source", "# Expected", "# Run time"]
 
 fn experiments() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments");
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
-        .collect();
+    let entries = fs::read_dir(folder).unwrap();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     paths.sort();
     assert!(paths.len() >= 10, "{paths:?}");
     paths
@@ -33,18 +31,12 @@ fn every_experiment_says_what_it_asks_from_where_what_to_expect_and_how_long_it_
     for path in experiments() {
         let text = fs::read_to_string(&path).unwrap();
         let header: Vec<&str> = text.lines().take_while(|l| l.starts_with('#')).collect();
-        let keys: Vec<&str> = header
-            .iter()
-            .filter_map(|line| HEADER.into_iter().find(|key| line.starts_with(key)))
-            .collect();
-        assert_eq!(keys, HEADER, "{}", path.display());
-        for (line, key) in header.iter().filter_map(|line| {
-            let key = HEADER.into_iter().find(|key| line.starts_with(key))?;
-            Some((line, key))
-        }) {
-            let said = line[key.len()..].trim();
-            assert!(!said.is_empty(), "{}: {key}", path.display());
-        }
+        let part = |line: &&str| {
+            let mut keys = HEADER.into_iter();
+            keys.find_map(|key| Some((key, !line.strip_prefix(key)?.trim().is_empty())))
+        };
+        let parts: Vec<(&str, bool)> = header.iter().filter_map(part).collect();
+        assert_eq!(parts, HEADER.map(|key| (key, true)), "{}", path.display());
     }
 }
 
@@ -68,9 +60,8 @@ fn n_compared(path: &Path, text: &str, study: &Table) -> Result<Option<usize>> {
         }
         Some("stability") => {
             let spec = StabilityStudySpec::parse(&place, text)?;
-            StabilityPlan::new(&place, folder, spec)?
-                .configurations
-                .len()
+            let plan = StabilityPlan::new(&place, folder, spec)?;
+            plan.configurations.len()
         }
         _ => {
             let files = tempfile::tempdir().unwrap();

@@ -165,19 +165,13 @@ fn what_is_kept_together_is_never_on_both_sides() {
 /// Returns a study with drawn poses, except for two listed values of a tilt.
 fn with_drawn_poses(keys: &str) -> String {
     let offsets = "{ uniform = [-20.0, 20.0] }";
+    let along = format!("{offsets}\nper_object = 120");
+    let across = format!("offset_y_mm = {offsets}");
+    let yaw = "yaw_deg = { uniform = [0.0, 360.0] }";
     let changes = [
-        (
-            "[-6.0, 0.0, 6.0, 400.0]",
-            &format!("{offsets}\nper_object = 120")[..],
-        ),
-        (
-            "offset_y_mm = [0.0, 10.0]",
-            &format!("offset_y_mm = {offsets}"),
-        ),
-        (
-            "yaw_deg = [0.0, 30.0]",
-            "yaw_deg = { uniform = [0.0, 360.0] }",
-        ),
+        ("[-6.0, 0.0, 6.0, 400.0]", &along[..]),
+        ("offset_y_mm = [0.0, 10.0]", &across),
+        ("yaw_deg = [0.0, 30.0]", yaw),
     ];
     changed(STUDY, &changes) + keys
 }
@@ -222,10 +216,7 @@ fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together
         // Some groups contain several touches, so neighbours exist.
         let keys = study.sweep.group_keys.as_ref().unwrap();
         let n_groups = keys.iter().collect::<BTreeSet<_>>().len();
-        assert!(
-            n_groups > 6 && n_groups < touches.len(),
-            "{kind}: {n_groups}"
-        );
+        assert!((7..touches.len()).contains(&n_groups), "{kind}: {n_groups}");
     }
     // A random split separates neighbours, so the law is not trivial.
     let study = Study::new(&with_drawn_poses(""));
@@ -278,11 +269,9 @@ fn a_study_tests_what_its_splits_hold_out() {
 
 #[test]
 fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
+    let damped = "stroke_mm = 3.5\nstiffness_n_per_m = 200.0\ndamping_n_s_per_m = 4.0";
     let text = STUDY
-        .replace(
-            "stroke_mm = 3.5",
-            "stroke_mm = 3.5\nstiffness_n_per_m = 200.0\ndamping_n_s_per_m = 4.0",
-        )
+        .replace("stroke_mm = 3.5", damped)
         .replace("[2.0, 4.0]\n", "4.0\nspeed_mm_per_s = 50.0\n")
         .replace("[sensing]", "[signal]\nsteps = [\"force\"]\n\n[sensing]");
     let study = Study::new(&text);
@@ -304,8 +293,5 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
             n_saturated += usize::from(is_saturated);
         }
     }
-    assert!(
-        n_moving > 20 && n_saturated > 0,
-        "{n_moving}, {n_saturated}"
-    );
+    assert!(n_moving > 20 && n_saturated > 0, "{n_moving} {n_saturated}");
 }

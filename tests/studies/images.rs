@@ -9,10 +9,8 @@ const STUDY: &str = include_str!("../fixtures/texts/images.toml");
 
 /// Returns the accuracies of raw measurements and of joined invariant features.
 fn two_accuracies(text: &str) -> [f64; 2] {
-    let accuracies = accuracies(&run(text));
-    accuracies
-        .try_into()
-        .expect("a trial of two configurations")
+    let accuracies = accuracies(&run(text)).try_into();
+    accuracies.expect("a trial of two configurations")
 }
 
 #[test]
@@ -33,11 +31,8 @@ fn features_of_a_whole_frame_are_those_of_the_frame() {
     let features = ImageFeatures::new(join, ImageShape { ny: 24, nx: 24 }, 5e-3, Cut::default());
     let mut out = vec![0.0; join.n_values(ImageShape { ny: 24, nx: 24 })];
     for (frame, row) in raw.outer_iter().zip(found.outer_iter()) {
-        features.write(
-            frame.as_slice().unwrap(),
-            &mut FeatureWorkspace::default(),
-            &mut out,
-        );
+        let workspace = &mut FeatureWorkspace::default();
+        features.write(frame.as_slice().unwrap(), workspace, &mut out);
         assert_eq!(row.to_vec(), out);
     }
 }
@@ -45,14 +40,12 @@ fn features_of_a_whole_frame_are_those_of_the_frame() {
 /// Returns the study with a small skin and few touches, whose images are estimated from eight measurements.
 fn estimated(ensemble: &str) -> String {
     let sensed = format!("ensemble = \"{ensemble}\"\nmeasurements = 8");
-    changed(
-        STUDY,
-        &[
-            ("ensemble = \"identity\"", &sensed),
-            ("per_object = 40", "per_object = 8"),
-            ("size_mm = 96.0", "size_mm = 48.0"),
-        ],
-    )
+    let changes = [
+        ("ensemble = \"identity\"", &sensed[..]),
+        ("per_object = 40", "per_object = 8"),
+        ("size_mm = 96.0", "size_mm = 48.0"),
+    ];
+    changed(STUDY, &changes)
 }
 
 /// Tests that image estimators do not depend on test touches.
@@ -128,10 +121,8 @@ fn every_layout_has_images_and_their_invariants_recognise_as_those_of_the_grid()
 fn what_has_no_image_stands_in_the_same_tables_as_what_is_behind_the_foremost_point() {
     let windows = "depth_window_full_scale = [0.3, 1.0]\nclassifier =";
     let tables = run(&STUDY.replace("classifier =", windows));
-    let seen = tables
-        .summary
-        .iter()
-        .map(|(of, _)| of.depth_window_full_scale);
+    let summary = tables.summary.iter();
+    let seen = summary.map(|(of, _)| of.depth_window_full_scale);
     assert_eq!(seen.collect::<Vec<_>>(), [Some(1.0), Some(0.3), Some(1.0)]);
     table(&tables_of(&tables).unwrap(), "summary.csv");
 }
@@ -157,16 +148,16 @@ fn copies_follow_all_touches_are_as_deep_as_those_that_they_are_of_and_change_no
     assert_eq!((n_touches, n_train), (360, 6 * 20));
     let records = &copied.data.records;
     assert_eq!(records.nrows(), n_touches + 2 * n_train);
-    assert_eq!(
-        records.slice(ndarray::s![..n_touches, ..]),
-        none.data.records
-    );
+    let read = records.slice(ndarray::s![..n_touches, ..]);
+    assert_eq!(read, none.data.records);
     assert_eq!(copied.split.test, none.split.test);
     assert_eq!(copied.split.train[..n_train], none.split.train);
     let of_copies = &copied.split.train[n_train..];
-    assert_eq!(
-        of_copies,
-        (n_touches..n_touches + 2 * n_train).collect::<Vec<_>>()
+    assert!(
+        of_copies
+            .iter()
+            .copied()
+            .eq(n_touches..n_touches + 2 * n_train)
     );
     // The largest value is the first of the descriptors.
     let deepest = 216 + 416;

@@ -22,36 +22,6 @@ fn study(signal: &str, sensing: &str, recognition: &str) -> String {
     text + recognition + "\n"
 }
 
-/// Regression test: configurations of other test sensors shared the measurements of the first one if something was fitted before measuring.
-#[test]
-fn every_configuration_alone_scores_what_it_scores_in_its_sweep() {
-    let text = |skin: &str, ensemble: &str, features: &str| {
-        let signal = format!(
-            "steps = [\"gain\", \"noise\"]\ngain_std = 0.6\nnoise_std_full_scale = 0.02\ntest_sensor = [{skin}]"
-        );
-        let sensing = format!("ensemble = [{ensemble}]\nratio = 4");
-        study(&signal, &sensing, &format!("features = [{features}]"))
-    };
-    let skins = ["\"same_skin\"", "\"another_skin\""];
-    let ensembles = ["\"gaussian\"", "\"principal_components\""];
-    let features = ["\"raw\"", "\"descriptors\""];
-    let [all_skins, all_ensembles, all_features] =
-        [skins, ensembles, features].map(|values| values.join(", "));
-    let swept = scores(&run(&text(&all_skins, &all_ensembles, &all_features)));
-    let mut alone = Vec::new();
-    for skin in skins {
-        for ensemble in ensembles {
-            for features in features {
-                alone.extend(scores(&run(&text(skin, ensemble, features))));
-            }
-        }
-    }
-    assert_eq!(swept, alone);
-    let n_correct: Vec<usize> = alone.iter().map(|score| score.n_correct).collect();
-    let (same, another) = n_correct.split_at(n_correct.len() / 2);
-    assert_ne!(same, another);
-}
-
 fn n_correct(set: &FeatureSet) -> usize {
     let classifier = Classifier::new(ClassifierKind::LinearSvm);
     let trained = classifier.train(&set.training(None).unwrap(), &Seed::new(0));
@@ -110,12 +80,8 @@ fn trials_that_repeat_splits_make_no_claim_stronger() {
     }
     // Drawn splits are all different, so the table has no such column.
     let drawn = run(&text(6, "random"));
-    let drawn_scores = scores(&drawn);
-    assert!(
-        drawn_scores
-            .iter()
-            .all(|score| score.distinct_split.is_none())
-    );
+    let mut repeats = scores(&drawn).into_iter().map(|score| score.distinct_split);
+    assert!(repeats.all(|split| split.is_none()));
     for row in &drawn.comparison {
         assert!(row.n_trials == 6 && row.p_value.is_some());
     }
@@ -163,11 +129,23 @@ fn a_choice_among_one_value_is_that_value() {
             assert_eq!(scaled(keys), given, "{scaling}: {keys}");
         }
     }
-    // If γ is chosen among several values, it is also a multiple of the default γ of all training rows.
-    let rows = |keys: &str| fits(&format!("scaling = \"none\"\n{keys}"));
     let gammas = |scores: &[TrialScore]| -> Vec<f64> {
         scores.iter().filter_map(|score| score.gamma_used).collect()
     };
+    // For standardised features, the default γ is 1 / m (m = 36), and a useless multiple of it is not chosen.
+    for keys in [
+        "c = 10.0",
+        "c_grid = [10.0]\ngamma_grid = [1.0, 1e6]\ncv_folds = 3",
+    ] {
+        let found = gammas(&fits(keys));
+        assert_eq!(found.len(), 2, "the trials of the RBF SVM");
+        assert!(
+            found.iter().all(|gamma| (36.0 * gamma - 1.0).abs() < 1e-9),
+            "{found:?}"
+        );
+    }
+    // If γ is chosen among several values, it is also a multiple of the default γ of all training rows.
+    let rows = |keys: &str| fits(&format!("scaling = \"none\"\n{keys}"));
     let chosen = rows("c_grid = [1.0, 10.0]\ngamma_grid = [1.0, 2.0]\ncv_touches = 5");
     let scale = gammas(&rows("c = 10.0"));
     for (chosen, scale) in gammas(&chosen).iter().zip(&scale) {
@@ -181,13 +159,10 @@ fn a_name_is_the_name_of_one_column() {
         let axes = "\n[axes]\n\"recognition.split\" = [\"random\", \"half_of_yaws\"]\n";
         let text = study("steps = []", "ratio = 4", axes);
         let text = text.replace("trials = 2", &format!("trials = 4\n{keys}"));
-        let columns = StudySpec::parse("study.toml", &text)
-            .unwrap()
-            .axis_columns();
-        columns
-            .iter()
-            .map(|column| column.name.to_string())
-            .collect()
+        let spec = StudySpec::parse("study.toml", &text).unwrap();
+        let columns = spec.axis_columns();
+        let names = columns.iter().map(|column| column.name.to_string());
+        names.collect()
     };
     assert_eq!(names(""), ["split"]);
     assert_eq!(names("projections_per_split = 2"), ["recognition_split"]);

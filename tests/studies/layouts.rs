@@ -26,11 +26,8 @@ fn a_layout_is_an_axis_and_its_grid_is_the_grid() {
     let of_layout = |number: usize| scores_of_variant(&layouts.accuracy, number);
     let expected = scores(&run(STUDY));
     assert_eq!(of_layout(1), expected);
-    let sides: Vec<_> = layouts
-        .summary
-        .iter()
-        .map(|(of, _)| (of.nx, of.ny))
-        .collect();
+    let summary = layouts.summary.iter();
+    let sides: Vec<_> = summary.map(|(of, _)| (of.nx, of.ny)).collect();
     assert_eq!(sides[1..3], [(8, 8), (7, 9)]);
     assert_eq!(sides[4], (8, 8));
     for (nx, ny) in [sides[0], sides[3]] {
@@ -62,9 +59,8 @@ fn frames_are_those_of_the_skin_pressed_by_hand() {
             let pose = touch.patch_from_object(&object.rests[touch.rest]);
             for depth in [0.5 * touch.depth, touch.depth] {
                 let model = [object.object.model.clone()];
-                approach
-                    .press_to_depth(&model, &[pose], depth, &mut workspace)
-                    .unwrap();
+                let pressed = approach.press_to_depth(&model, &[pose], depth, &mut workspace);
+                pressed.unwrap();
                 let expected = workspace.deflections().iter().map(|&d| f64::from(d as f32));
                 assert!(frames.row(row).iter().copied().eq(expected), "row {row}");
                 row += 1;

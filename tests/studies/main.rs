@@ -1,5 +1,7 @@
 //! Studies of every kind from file to results, and the classifiers that they train.
 
+#[path = "../fixtures/chart_tables/mod.rs"]
+mod chart_tables;
 #[path = "../fixtures/command/mod.rs"]
 mod command;
 #[path = "../fixtures/kinds/mod.rs"]

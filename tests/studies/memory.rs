@@ -1,6 +1,6 @@
 //! Studies within a memory limit.
 
-use crate::command::{Case, says};
+use crate::command::{Case, says, skip};
 use crate::study::{Study, changed};
 use bubbletouch::kinds::recognition::recognition_scale;
 use std::time::{Duration, Instant};
@@ -27,15 +27,12 @@ fn a_study_stays_below_its_ceiling_and_finds_the_same() {
     let ceiling = least.parse::<f64>().unwrap() * f64::from(1 << 30);
     assert!(ceiling < 0.5e9, "{least} GiB");
     case.succeeds("run large.toml --out free --quiet");
-    case.succeeds(&format!(
-        "run large.toml --out below --quiet --memory-gib {least}"
-    ));
-    for table in ["accuracy.csv", "confusion.csv", "summary.csv"] {
-        let read = |folder: &str| case.bytes(&format!("{folder}/{table}"));
-        assert_eq!(read("free"), read("below"), "{table}");
-    }
+    let limit = format!("--memory-gib {least}");
+    case.succeeds(&format!("run large.toml --out below --quiet {limit}"));
+    let tables = ["accuracy.csv", "confusion.csv", "summary.csv"];
+    case.same_files(["free", "below"], &tables);
     let Some(peak) = peak(&case, "below") else {
-        println!("SKIPPED: this system does not tell how much memory a process took");
+        skip("this system does not tell how much memory a process took");
         return;
     };
     assert!((peak as f64) < ceiling, "{peak} bytes, ceiling {ceiling}");
@@ -114,7 +111,7 @@ fn a_plan_states_the_memory_of_a_run_within_a_fifth() {
         let output = run.output().unwrap();
         assert!(output.status.success(), "{output:?}");
         let Some(peak) = peak(&case, "out") else {
-            println!("SKIPPED: this system does not tell how much memory a process took");
+            skip("this system does not tell how much memory a process took");
             return;
         };
         let peak = peak as f64 / f64::from(1 << 20);

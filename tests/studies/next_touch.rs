@@ -24,11 +24,8 @@ fn with(keys: &str) -> String {
 }
 
 /// Counts the correct decisions of a configuration, computed touch by touch.
-fn n_correct_by_hand(
-    study: &Study,
-    set: &FeatureSet,
-    (configuration, trial): (&Configuration, usize),
-) -> usize {
+fn n_correct_by_hand(study: &Study, set: &FeatureSet, cell: (&Configuration, usize)) -> usize {
+    let (configuration, trial) = cell;
     let classifier = Classifier {
         c: Cost::Fixed(1.0),
         ..Classifier::new(ClassifierKind::LinearSvm)
@@ -63,19 +60,14 @@ fn n_correct_by_hand(
     let numbers = |places: &[usize]| -> Vec<usize> {
         places.iter().map(|&place| set.split.test[place]).collect()
     };
-    let seed = Seed::new(2018)
-        .named("fused_touches")
-        .numbered(trial as u64);
-    let fused = fuse_rows(
-        test.targets.view(),
-        configuration.touches_per_decision,
-        &seed,
-    );
+    let seed = Seed::new(2018).named("fused_touches");
+    let n_touches = configuration.touches_per_decision;
+    let fused = fuse_rows(test.targets.view(), n_touches, &seed.numbered(trial as u64));
     let mut n_correct = 0;
     for group in &fused.groups {
         let object = test.targets[group[0]];
         let mut made = vec![group[0]];
-        while made.len() < configuration.touches_per_decision {
+        while made.len() < n_touches {
             let all = 0..test.targets.len();
             let left = all.filter(|place| test.targets[*place] == object && !made.contains(place));
             let left: Vec<usize> = left.collect();
@@ -119,15 +111,10 @@ fn random_is_what_a_study_without_the_key_does_and_neither_changes_beside_others
     let random = run("next_touch = \"random\"");
     let among = run(&format!("{ALL}\nc = [0.1, 1.0]"));
     for (configuration, score) in &run("").accuracy {
-        let named = Configuration {
-            next_touch: Some(NextTouch::Random),
-            ..configuration.clone()
-        };
+        let mut named = configuration.clone();
+        named.next_touch = Some(NextTouch::Random);
         assert!(trials_of(&random, &named).contains(&score));
-        let named = Configuration {
-            c: Some(1.0),
-            ..named
-        };
+        named.c = Some(1.0);
         assert!(trials_of(&among, &named).contains(&score));
     }
 }

@@ -1,9 +1,9 @@
 //! Tables of single decisions, of recall, and the further measures of recognition.
 
 use crate::command::Case;
-use crate::study::{Study, centroid_distances};
+use crate::study::{Study, assert_reads_back, centroid_distances, laid_out, table};
 use bubbletouch::recognition::data::dataset::dataset;
-use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
+use bubbletouch::studies::recognition::charts::tables_of;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::table::Table;
 use ndarray::{Array1, Array3, Axis};
@@ -114,19 +114,10 @@ fn a_study_that_asks_for_nothing_has_the_rows_of_one_that_asks_and_no_more_colum
 
 #[test]
 fn a_folder_gives_the_predictions_that_were_written() {
-    let folder = tempfile::tempdir().unwrap();
-    let made = tables(&format!("{STUDY}{REPORT}"));
-    std::fs::write(folder.path().join("study.toml"), format!("{STUDY}{REPORT}")).unwrap();
-    for table in made.values().filter(|table| !table.csv.is_empty()) {
-        std::fs::write(folder.path().join(table.file), &table.csv).unwrap();
-    }
-    let read = read_tables(folder.path()).unwrap();
-    for file in ["predictions.csv", "recall.csv", "summary.csv"] {
-        let read = read.iter().find(|table| table.file == file).unwrap();
-        let made = &made[file];
-        assert_eq!((&read.csv, read.n_rows), (&made.csv, made.n_rows));
-        assert_eq!(read.columns, made.columns);
-    }
+    let study = laid_out(&format!("{STUDY}{REPORT}")).unwrap();
+    let made = tables_of(&study.run(&Silent).unwrap()).unwrap();
+    assert!(table(&made, "predictions.csv").n_rows > 0);
+    assert_reads_back(&study, &made);
 }
 
 #[test]
@@ -137,11 +128,7 @@ fn merged_shards_give_the_predictions_of_one_run() {
         case.succeeds(&["run", "study.toml", "--out", "parts", "--shard", shard]);
     }
     case.succeeds("merge study.toml --out parts");
-    for file in ["predictions.csv", "recall.csv"] {
-        let [whole, parts] =
-            ["whole", "parts"].map(|folder| case.bytes(&format!("{folder}/{file}")));
-        assert!(!whole.is_empty() && whole == parts, "{file}");
-    }
+    case.same_files(["whole", "parts"], &["predictions.csv", "recall.csv"]);
 }
 
 /// Study of the touches of [`mixed`].
@@ -196,10 +183,7 @@ pub fn with_wrong_splits() -> Case {
 /// Returns the predictions of a study of recorded touches.
 fn predictions_of(case: &Case, study: &str) -> Table {
     let tables = case.load_study(study).unwrap().run(&Silent).unwrap();
-    let mut tables = tables_of(&tables).unwrap().into_iter();
-    tables
-        .find(|table| table.file == "predictions.csv")
-        .unwrap()
+    table(&tables_of(&tables).unwrap(), "predictions.csv").clone()
 }
 
 #[test]

@@ -29,9 +29,8 @@ fn simulated(
         let at = |share: f64, n: usize| (0.5 + 0.3 * share) * n as f64;
         let (y, x) = (at(place.0, rows), at(place.1, columns));
         let radius = 0.2 * rows.max(columns) as f64;
-        let own: Vec<f64> = (0..rows * columns)
-            .map(|_| rng.sample(StandardNormal))
-            .collect();
+        let own = (0..rows * columns).map(|_| rng.sample(StandardNormal));
+        let own: Vec<f64> = own.collect();
         for frame in 0..n_frames {
             let readings = frames.row_mut(number * n_frames + frame);
             for (taxel, reading) in readings.into_iter().enumerate() {
@@ -158,13 +157,9 @@ fn postures_are_tested_with_frames_at_random_and_with_new_people() {
     // 2 groups × 2 labels × 3 features × 4 classifiers × 5 folds.
     assert_eq!(rows.len(), 240);
     let of = |groups| {
-        let wanted = [
-            ("groups", groups),
-            ("labels", "postures.npy"),
-            ("classifier", "k_nearest"),
-            ("features", "raw"),
-        ];
-        accuracy(&rows, &wanted)
+        let labels = ("labels", "postures.npy");
+        let plain = [("classifier", "k_nearest"), ("features", "raw")];
+        accuracy(&rows, &[&[("groups", groups), labels], &plain[..]].concat())
     };
     // The frames of a sequence share a pattern, which only a split by people keeps apart.
     assert_eq!(of("touches.npy"), 1.0);
@@ -183,12 +178,8 @@ fn grasps_are_tested_at_random_by_object_and_on_the_given_objects() {
     // 2 groups × 4 choices of sensors × 4 classifiers × 5 folds.
     assert_eq!(split.len(), 160);
     let of = |groups| {
-        let wanted = [
-            ("groups", groups),
-            ("sensor", "all"),
-            ("classifier", "k_nearest"),
-        ];
-        accuracy(&split, &wanted)
+        let plain = [("sensor", "all"), ("classifier", "k_nearest")];
+        accuracy(&split, &[&[("groups", groups)], &plain[..]].concat())
     };
     let [at_random, by_object] = ["grasps.npy", "objects.npy"].map(of);
     assert!(at_random > by_object + 0.1, "{at_random} {by_object}");
@@ -204,10 +195,7 @@ fn events_are_counted_in_windows_and_tested_on_the_given_set() {
     let rows = rows("real_events");
     assert_eq!(rows.len(), 16);
     assert!(rows.iter().all(|row| row["n_test"] == "36"));
-    let stacked = [
-        ("temporal_features", "stacked_25"),
-        ("classifier", "linear_svm"),
-    ];
-    let stacked = accuracy(&rows, &stacked);
+    let stacked = ("temporal_features", "stacked_25");
+    let stacked = accuracy(&rows, &[stacked, ("classifier", "linear_svm")]);
     assert!(stacked > 0.9, "{stacked}");
 }

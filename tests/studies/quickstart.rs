@@ -1,10 +1,10 @@
 //! Test that recomputes the first trial of the quickstart study and compares it with the committed results.
 
+use crate::command::skip;
 use crate::study::Study;
 use bubbletouch::report::csv_tables::read_rows;
 use bubbletouch::study::table::TrialScore;
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 
 #[test]
@@ -12,12 +12,7 @@ fn the_quickstart_still_gives_its_committed_results() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let committed = root.join("results/quickstart/accuracy.csv");
     if !committed.exists() {
-        writeln!(
-            std::io::stderr(),
-            "SKIPPED: there is no {}",
-            committed.display()
-        )
-        .expect("standard error takes a line");
+        skip(format!("there is no {}", committed.display()));
         return;
     }
     let committed: Vec<TrialScore> = read_rows(&committed).unwrap();

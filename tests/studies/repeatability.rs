@@ -21,11 +21,8 @@ fn another_seed_is_another_experiment_and_the_study_that_it_wrote_down_repeats_i
     case.succeeds("run study.toml --out seven");
     case.succeeds("run study.toml --seed 2019 --out eight");
     case.succeeds("run eight/study.toml --out again");
-    let read = |folder: &str, name: &str| case.bytes(&format!("{folder}/{name}"));
-    assert!(read("seven", "accuracy.csv") != read("eight", "accuracy.csv"));
-    for name in REPEATABLE {
-        assert!(read("eight", name) == read("again", name), "{name}");
-    }
+    assert!(case.bytes("seven/accuracy.csv") != case.bytes("eight/accuracy.csv"));
+    case.same_files(["eight", "again"], &REPEATABLE);
 }
 
 /// Study with one configuration per ensemble; the tests add values to its axes.

@@ -99,10 +99,7 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
             let shape = ImageShape { ny: 10, nx: 10 };
             let projection = Projection::learned(ensemble, shape, 5, (training, &seed));
             let expected = projection.unwrap().measure(frames.data.records.view());
-            assert_eq!(
-                found.data.records, expected,
-                "configuration {number} of {text}"
-            );
+            assert_eq!(found.data.records, expected, "{number} of {text}");
             fits.insert(format!("{:?}", expected.row(0)));
         }
         // Only greedy selection uses labels.
@@ -118,11 +115,8 @@ fn ensembles_are_fitted_to_exactly_the_touches_that_train() {
 #[test]
 fn taxels_selected_on_one_touch_of_each_object_are_those_of_a_study_of_one_touch() {
     let curve = |touches: &str| {
-        let text = STUDY.replace(
-            "classifier =",
-            &format!("train_touches = {touches}\nclassifier ="),
-        );
-        let tables = Study::new(&text).run();
+        let keys = format!("train_touches = {touches}\nclassifier =");
+        let tables = Study::new(&STUDY.replace("classifier =", &keys)).run();
         let scores = tables.accuracy.iter();
         let of_one = scores.filter(|(configuration, _)| configuration.train_touches == 1);
         of_one.map(|(_, score)| score.clone()).collect::<Vec<_>>()
@@ -146,9 +140,8 @@ fn adaptive_blocks_give_a_frame_per_touch_at_any_budget() {
     let text = text.replace("classifier =", images);
     let tables = Study::new(&text).run();
     let summary = tables.summary.iter();
-    let costs: Vec<_> = summary
-        .map(|(c, _)| (c.measurements, c.readout_ms))
-        .collect();
+    let costs = summary.map(|(c, _)| (c.measurements, c.readout_ms));
+    let costs: Vec<_> = costs.collect();
     let expected = [(8, 0.5), (8, 0.5), (24, 1.5), (24, 1.5)].map(|(m, ms)| (m, Some(ms)));
     assert_eq!(costs, expected);
     let coarse = features(&text, (0, 0)).data.records;
@@ -168,15 +161,10 @@ fn a_learned_estimate_of_adaptive_blocks_is_a_frame_of_equal_readings() {
     let text = STUDY.replace("\"selected\"", "[\"adaptive\", \"adaptive_learned\"]");
     let text = text.replace("classifier =", "features = \"descriptors\"\nclassifier =");
     let tables = Study::new(&text).run();
-    let summary = tables.summary.iter();
-    let accuracies: Vec<_> = summary
-        .map(|(c, score)| (c.measurements, score.accuracy))
-        .collect();
+    let accuracies = tables.summary.iter().map(|(_, score)| score.accuracy);
+    let accuracies: Vec<f64> = accuracies.collect();
     assert_eq!(accuracies.len(), 4);
-    assert!(
-        accuracies.iter().all(|(_, accuracy)| *accuracy > 0.3),
-        "{accuracies:?}"
-    );
+    assert!(accuracies.iter().all(|&one| one > 0.3), "{accuracies:?}");
     let text = STUDY.replace("\"selected\"", "\"adaptive_learned\"");
     assert_eq!(features(&text, (0, 0)).data.records.ncols(), 576);
 }
@@ -187,22 +175,19 @@ fn with_all_readings_adaptive_blocks_are_the_identity() {
     let images = "features = [\"raw\", \"descriptors\"]\nclassifier =";
     let text = text.replace("classifier =", images);
     for configuration in [0, 1] {
-        let of =
-            |ensemble: &str| features(&text.replace("\"selected\"", ensemble), (configuration, 0));
-        assert_eq!(
-            of("\"adaptive\"").data.records,
-            of("\"identity\"").data.records
-        );
+        let [adaptive, identity] = ["\"adaptive\"", "\"identity\""].map(|ensemble| {
+            let text = text.replace("\"selected\"", ensemble);
+            features(&text, (configuration, 0)).data.records
+        });
+        assert_eq!(adaptive, identity);
     }
 }
 
 #[test]
 fn a_foveated_array_has_the_taxels_of_the_grid_and_its_blocks() {
     let text = STUDY.replace("stroke_mm", "layout = \"foveated\"\nstroke_mm");
-    let text = text.replace(
-        "\"selected\"",
-        "[\"adaptive\", \"block_average\", \"selected\"]",
-    );
+    let ensembles = "[\"adaptive\", \"block_average\", \"selected\"]";
+    let text = text.replace("\"selected\"", ensembles);
     let text = text.replace("classifier =", "features = \"descriptors\"\nclassifier =");
     let tables = Study::new(&text).run();
     assert_eq!(tables.summary.len(), 6);

@@ -38,39 +38,28 @@ fn test_rows_are_those_of_the_study_with_the_keys_in_place_and_training_rows_are
     let [learned, plain] = rows(&base);
     let faults = "steps = [\"noise\", \"smoothing\", \"faults\"]";
     let noise = "noise_std_full_scale = 0.01";
-    // Keys of `[test]`, and the change of the study that they stand for.
+    let depth = "depth_mm = 2.0";
+    let offset = "offset_y_mm = { uniform = [-6.0, 6.0] }";
+    let wide = "offset_y_mm = { uniform = [-20.0, 20.0] }";
+    let tilted = "tilt_x_deg = { uniform = [-20.0, 20.0] }\ndepth_mm = 2.0";
+    let dead = format!("{faults}\n{noise}\ndead_fraction = 0.4");
+    let [error, stroke] = ["surface_error_mm = 0.5", "stroke_mm = 5.0"];
+    let faults = format!("signal.{faults}\nsignal.dead_fraction = 0.4");
+    // Keys of `[test]`, and the change of the study that they stand for; none if the key is replaced by the same key.
     for (test, old, new) in [
-        ("touches.depth_mm = 1.0", "depth_mm = 2.0", "depth_mm = 1.0"),
-        (
-            "touches.offset_y_mm = { within = 20.0 }",
-            "offset_y_mm = { uniform = [-6.0, 6.0] }",
-            "offset_y_mm = { uniform = [-20.0, 20.0] }",
-        ),
-        (
-            "touches.tilt_x_deg.within = 20.0",
-            "depth_mm",
-            "tilt_x_deg = { uniform = [-20.0, 20.0] }\ndepth_mm",
-        ),
-        (
-            "signal.noise_std_full_scale = 0.2",
-            noise,
-            "noise_std_full_scale = 0.2",
-        ),
+        ("touches.depth_mm = 1.0", depth, ""),
+        ("touches.offset_y_mm = { within = 20.0 }", offset, wide),
+        ("touches.tilt_x_deg.within = 20.0", depth, tilted),
+        ("signal.noise_std_full_scale = 0.2", noise, ""),
         // Another unit replaces the unit of the study.
-        ("signal.noise_std_mm = 0.3", noise, "noise_std_mm = 0.3"),
-        (
-            &format!("signal.{faults}\nsignal.dead_fraction = 0.4"),
-            noise,
-            &format!("{faults}\n{noise}\ndead_fraction = 0.4"),
-        ),
-        (
-            "objects.surface_error_mm = 4.0",
-            "surface_error_mm = 0.5",
-            "surface_error_mm = 4.0",
-        ),
-        ("skin.stroke_mm = 3.0", "stroke_mm = 5.0", "stroke_mm = 3.0"),
+        ("signal.noise_std_mm = 0.3", noise, ""),
+        (&faults, noise, &dead),
+        ("objects.surface_error_mm = 4.0", error, ""),
+        ("skin.stroke_mm = 3.0", stroke, ""),
     ] {
         let mixed = rows(&format!("{base}\n[test]\n{test}"));
+        let (_, own) = test.split_once('.').unwrap();
+        let new = if new.is_empty() { own } else { new };
         let [_, driven] = rows(&changed(&base, &[(old, new)]));
         assert!(mixed[0] == learned, "{test}: training rows");
         assert!(mixed[1] == driven, "{test}: test rows");
@@ -95,12 +84,8 @@ fn a_test_table_with_the_studys_own_values_changes_no_score() {
 #[test]
 fn what_is_learned_for_features_is_learned_from_training_touches() {
     // Principal components are fitted to training touches, so other test touches do not change them.
-    let learned = |test: &str| {
-        base(test).replace(
-            "[sensing]",
-            "[sensing]\nensemble = \"principal_components\"",
-        )
-    };
+    let sensing = "[sensing]\nensemble = \"principal_components\"";
+    let learned = |test: &str| base(test).replace("[sensing]", sensing);
     let [plain, _] = rows(&learned(""));
     let [mixed, _] = rows(&learned("[test]\nsignal.noise_std_full_scale = 5.0"));
     assert!(plain == mixed);
@@ -168,9 +153,8 @@ fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
     assert_eq!(scores[6..8], accuracies(&run(&base(test)))[..]);
     let made = tables_of(&tables).unwrap();
     let robustness = table(&made, "robustness.csv");
-    let conditions: Vec<&str> = (0..robustness.n_rows)
-        .map(|row| robustness.word("condition", row))
-        .collect();
+    let conditions = (0..robustness.n_rows).map(|row| robustness.word("condition", row));
+    let conditions: Vec<&str> = conditions.collect();
     assert!(conditions.contains(&"noise_std") && conditions.contains(&"test_offset_xy_mm"));
     assert_reads_back(&study, &made);
 }
@@ -191,8 +175,6 @@ fn another_axis_or_value_leaves_the_names_of_what_was_done() {
     different.dedup();
     assert_eq!(different.len(), all.len());
     let one = names("[axes]\ncombine = \"one_at_a_time\"\n\"test.touches.depth_mm\" = [1.0, 3.0]");
-    assert!(
-        plain.iter().all(|name| one.contains(name)),
-        "the study as it is"
-    );
+    // The study as it is.
+    assert!(plain.iter().all(|name| one.contains(name)));
 }

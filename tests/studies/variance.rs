@@ -1,10 +1,9 @@
 //! Variance of the accuracy due to splits, separated from the variance due to projections.
 
-use crate::study::{Study, changed};
-use bubbletouch::report::folder::{table_files, write_files};
-use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
+use crate::study::{Study, assert_reads_back, changed, laid_out};
+use bubbletouch::studies::recognition::charts::tables_of;
+use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::{Comparison, PStatus, Source, Tables, TrialScore, Variance};
-use std::path::Path;
 
 /// Returns a study of four objects that are hard to distinguish, with few measurements.
 fn text(repeats: &str, ensemble: &str, noise: f64) -> String {
@@ -91,26 +90,22 @@ fn crossed_trials_share_splits_and_projections_and_the_first_is_that_of_trials_o
 
 #[test]
 fn the_table_is_written_only_where_it_has_rows_and_is_read_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let study = |repeats| Study::new(&text(repeats, r#""gaussian""#, 0.02)).run();
-    let crossed = study("trials = 25\nprojections_per_split = 5");
-    assert!(crossed.summary[0].1.bootstrap_low.unwrap() < crossed.summary[0].1.accuracy);
-    let written = |folder: &Path, tables| {
-        let made = tables_of(tables).unwrap();
-        write_files(folder, table_files(&made)).unwrap();
-        let read = read_tables(folder).unwrap();
-        assert_eq!(read.len(), made.len());
-        assert!(read.iter().zip(&made).all(|(a, b)| a.csv == b.csv));
+    let study = |repeats| {
+        let study = laid_out(&text(repeats, r#""gaussian""#, 0.02)).unwrap();
+        let outcome = study.run(&Silent).unwrap();
+        let made = tables_of(&outcome).unwrap();
+        assert_reads_back(&study, &made);
+        let has_rows = made
+            .iter()
+            .any(|table| table.file == "variance.csv" && !table.csv.is_empty());
+        let has_column = made[0].column("split").is_some();
+        (outcome.summary[0].1.clone(), has_rows, has_column)
     };
-    written(folder.path(), &crossed);
-    let other = tempfile::tempdir().unwrap();
-    let own = study("trials = 4");
+    let (crossed, has_rows, has_column) = study("trials = 25\nprojections_per_split = 5");
+    assert!(crossed.bootstrap_low.unwrap() < crossed.accuracy);
+    assert!(has_rows && has_column);
+    let (own, has_rows, has_column) = study("trials = 4");
     // Four trials are too few.
-    assert_eq!(own.summary[0].1.bootstrap_low, None);
-    written(other.path(), &own);
-    assert!(folder.path().join("variance.csv").exists());
-    assert!(!other.path().join("variance.csv").exists());
-    let header = std::fs::read_to_string(other.path().join("accuracy.csv")).unwrap();
-    let header = header.lines().next().unwrap();
-    assert!(!header.contains("split"), "{header}");
+    assert_eq!(own.bootstrap_low, None);
+    assert!(!has_rows && !has_column);
 }

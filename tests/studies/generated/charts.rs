@@ -1,6 +1,7 @@
 //! Law: every point of a chart is a row of its table at the correct position. Every other row is counted on the chart.
 
 use super::generator::{Generator, is_sample, n_studies};
+use crate::chart_tables;
 use crate::study::table;
 use bubbletouch::report::chart::{Place, draw, omitted, places};
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
@@ -174,4 +175,11 @@ fn every_point_is_a_row_and_every_row_is_a_point_or_is_counted() {
         n_charts >= n_studies() && (is_sample() || n_counting > 0),
         "{n_charts} {n_counting}"
     );
+}
+
+#[test]
+fn every_row_of_synthetic_tables_is_a_point_or_is_counted() {
+    for spec in chart_tables::charts() {
+        check(&spec, &chart_tables::tables(), "chart_tables");
+    }
 }

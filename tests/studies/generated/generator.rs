@@ -98,6 +98,12 @@ impl GeneratedStudy {
         changed
     }
 
+    /// Returns the study without these keys, which are separated by spaces.
+    pub fn without_all(&self, keys: &str) -> Self {
+        let keys = keys.split_whitespace();
+        keys.fold(self.clone(), |study, key| study.without(key))
+    }
+
     /// Returns the study with `values` of `key` as an axis.
     pub fn swept(&self, key: &str, values: Vec<Value>) -> Self {
         let mut changed = self.without(key);
@@ -110,9 +116,10 @@ impl GeneratedStudy {
 
     /// Returns the study with another classifier, without the keys of the previous classifier.
     pub fn classified_by(&self, classifier: impl Into<Value>) -> Self {
-        let keys = "c gamma c_grid cv_folds n_neighbours n_trees".split(' ');
-        let keys = keys.map(|key| format!("recognition.{key}"));
-        let plain = keys.fold(self.clone(), |study, key| study.without(&key));
+        let plain = self.without_all(
+            "recognition.c recognition.gamma recognition.c_grid recognition.cv_folds \
+             recognition.n_neighbours recognition.n_trees",
+        );
         plain.with("recognition.classifier", classifier)
     }
 
@@ -205,16 +212,9 @@ impl Generator {
         if set == "household" {
             study = study.with("objects.surface_error_mm", 2.0);
         }
-        let always = [
-            "skin.pitch_mm",
-            "skin.taxels",
-            "skin.stroke_mm",
-            "touches.per_object",
-            "touches.depth_mm",
-            "sensing.ensemble",
-            "recognition.classifier",
-        ];
-        for key in always {
+        let always = "skin.pitch_mm skin.taxels skin.stroke_mm touches.per_object touches.depth_mm \
+                      sensing.ensemble recognition.classifier";
+        for key in always.split_whitespace() {
             study = self.with_any(study, key);
         }
         for key in ["touches.offset_x_mm", "touches.offset_y_mm"] {

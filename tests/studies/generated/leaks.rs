@@ -16,9 +16,8 @@ const SIDE: usize = 6;
 /// Returns frames of blobs at a position of each class, shape (n, 6, 6), and the class of each frame.
 fn recording(generator: &mut Generator) -> (Array3<f64>, Vec<usize>) {
     // Class by class, the order of exported rows.
-    let labels: Vec<usize> = (0..N_TOUCHES)
-        .map(|touch| touch * N_CLASSES / N_TOUCHES)
-        .collect();
+    let class = |touch: usize| touch * N_CLASSES / N_TOUCHES;
+    let labels: Vec<usize> = (0..N_TOUCHES).map(class).collect();
     let mut frames = Array3::zeros((N_TOUCHES, SIDE, SIDE));
     for (mut frame, label) in frames.outer_iter_mut().zip(&labels) {
         let centre = 1.0 + 1.5 * *label as f64 + generator.rng.gen_range(-1.0..1.0);
@@ -97,8 +96,6 @@ fn changed_test_rows_change_no_answer_to_other_rows() {
         n_changed += u64::from(before != after);
         n_checked += 1;
     }
-    assert!(
-        n_changed * 4 > n_checked,
-        "other numbers give other answers: {n_changed}"
-    );
+    // Other numbers give other answers.
+    assert!(n_changed * 4 > n_checked, "{n_changed} of {n_checked}");
 }

@@ -79,16 +79,12 @@ fn of_own_balls(case: &Case, study: &GeneratedStudy, names: [&str; 3]) -> Genera
         study.table.remove(table);
     }
     let listed = |values: &[f64]| values.iter().map(|&v| v.into()).collect::<Vec<Value>>();
+    let drawn = "touches.per_object touches.speed_mm_per_s skin.damping_n_s_per_m \
+                 skin.stiffness_n_per_m recognition.readings_per_touch";
+    let sets = vec![Value::from(file.display().to_string())];
     study
-        .without("touches.per_object")
-        .without("touches.speed_mm_per_s")
-        .without("skin.damping_n_s_per_m")
-        .without("skin.stiffness_n_per_m")
-        .without("recognition.readings_per_touch")
-        .with(
-            "objects.sets",
-            vec![Value::from(file.display().to_string())],
-        )
+        .without_all(drawn)
+        .with("objects.sets", sets)
         .with("signal.steps", Vec::<Value>::new())
         .with("touches.offset_x_mm", listed(&[-4.0, 0.0, 5.0]))
         .with("touches.offset_y_mm", listed(&[-3.0, 0.0, 2.0, 6.0]))

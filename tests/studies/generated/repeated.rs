@@ -20,16 +20,11 @@ fn trials_that_are_the_same_make_no_claim_stronger() {
         let fixed = |study: &GeneratedStudy| {
             let yaws: Vec<Value> = [0.0, 20.0, 40.0, 60.0].map(Value::from).to_vec();
             let classifiers = ["linear_svm", "nearest_centroid"].map(Value::from);
+            let drawn = "recognition.test_fraction recognition.train_touches recognition.mislabelled_fraction \
+                         recognition.class_imbalance recognition.readings_per_touch recognition.touches_per_decision \
+                         recognition.folds recognition.tilt_augmentation sensing.ratio";
             let mut study = study
-                .without("recognition.test_fraction")
-                .without("recognition.train_touches")
-                .without("recognition.mislabelled_fraction")
-                .without("recognition.class_imbalance")
-                .without("recognition.readings_per_touch")
-                .without("recognition.touches_per_decision")
-                .without("recognition.folds")
-                .without("recognition.tilt_augmentation")
-                .without("sensing.ratio")
+                .without_all(drawn)
                 .classified_by(classifiers.to_vec())
                 .with("sensing.ensemble", "identity")
                 .with("recognition.split", "half_of_yaws")

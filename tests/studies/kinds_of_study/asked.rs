@@ -79,17 +79,15 @@ fn the_advisor_reads_a_study_that_recognises_objects() {
     }
     let smallest = "the smallest here is measurements a decision 8";
     let few = format!("measurements a decision 7; {smallest}");
-    refuses_options(
-        &case,
-        &[
-            ("--max-measurements 7", &few),
-            ("--accuracy 0.1 --budget 7 --cost measurements", smallest),
-            ("--max-taxels -1", "a positive number"),
-            ("--accuracy 1.5", "at most 1"),
-            ("", "--accuracy"),
-            ("--accuracy 0.5 --reach 0.5", "cannot be used with"),
-        ],
-    );
+    let refusals = [
+        ("--max-measurements 7", &few[..]),
+        ("--accuracy 0.1 --budget 7 --cost measurements", smallest),
+        ("--max-taxels -1", "a positive number"),
+        ("--accuracy 1.5", "at most 1"),
+        ("", "--accuracy"),
+        ("--accuracy 0.5 --reach 0.5", "cannot be used with"),
+    ];
+    refuses_options(&case, &refusals);
 }
 
 #[test]
@@ -116,44 +114,35 @@ fn conditions_of_the_world_are_given_and_never_advised() {
         says(&said, &[given.trim_end()]);
     }
     let worst = advise("--worst");
-    assert!(
-        worst.starts_with("With the worst of 3 conditions:\n"),
-        "{worst}"
-    );
+    let head = "With the worst of 3 conditions:\n";
+    assert!(worst.starts_with(head), "{worst}");
     // The fewest measurements, and the fewest taxels; all belong to one array.
     let few = advise("--cost measurements --given noise=0");
     says(&few, &["measurements a decision 8", "m = 8"]);
     let taxels = advice(&case, "--accuracy 0.1 --cost taxels --given noise=0");
     assert_eq!(taxels["answers"][0]["choice"]["taxels"], 64.0);
-    let given = |given: &str| format!("--accuracy 0.1 --given {given}");
-    refuses_options(
-        &case,
-        &[
-            (&given("smoothing_mm=0"), "is a choice"),
-            (&given("noise=0.07"), "one of 0, 0.05, 0.2"),
-            (
-                &given("gain_std=0.1"),
-                "is no condition of this study; one of noise_std",
-            ),
-            (&given("noise"), "a condition and its value"),
-        ],
-    );
+    let other = "is no condition of this study; one of noise_std";
+    for (given, words) in [
+        ("smoothing_mm=0", "is a choice"),
+        ("noise=0.07", "one of 0, 0.05, 0.2"),
+        ("gain_std=0.1", other),
+        ("noise", "a condition and its value"),
+    ] {
+        let options = format!("--accuracy 0.1 --given {given}");
+        refuses_options(&case, &[(&options, words)]);
+    }
 }
 
 #[test]
 fn training_touches_that_follow_the_split_are_no_choice() {
     let offsets = "offset_x_mm = { grid = [-6.0, 6.0, 4] }\nyaw_deg = { grid = [0.0, 45.0, 4] }";
+    let drawn = "per_object = 16\noffset_x_mm = { uniform = [-9.0, 9.0] }";
+    let axes = "classifier = [\"linear_svm\", \"nearest_centroid\"]\n[axes]\n\"recognition.split\" = [\"random\", \"half_of_yaws\"]";
     let changes = [
         ("question = \"?\"", "question = \"?\"\ntrials = 2"),
-        (
-            "per_object = 16\noffset_x_mm = { uniform = [-9.0, 9.0] }",
-            offsets,
-        ),
+        (drawn, offsets),
         ("[sensing]\nratio = [2, 8]\n", ""),
-        (
-            "classifier = \"linear_svm\"",
-            "classifier = [\"linear_svm\", \"nearest_centroid\"]\n[axes]\n\"recognition.split\" = [\"random\", \"half_of_yaws\"]",
-        ),
+        ("classifier = \"linear_svm\"", axes),
     ];
     let case = found("", &changes);
     let advice = advice(&case, "--max-measurements 64 --worst");

@@ -60,15 +60,9 @@ fn a_study_of_packed_meshes_packs_once() {
     // Without the cache, the packings are the same.
     case.create_folder("elsewhere");
     case.succeeds("run study.toml --out elsewhere/3");
-    let read = |folder: &str, name: &str| case.bytes(&format!("{folder}/{name}"));
-    for name in ["accuracy.csv", "summary.csv", "confusion.csv", "study.toml"] {
-        assert!(!read("1", name).is_empty());
-        assert!(read("1", name) == read("2", name), "{name}");
-        assert!(
-            read("1", name) == read("elsewhere/3", name),
-            "{name}, packed anew"
-        );
-    }
+    let names = ["accuracy.csv", "summary.csv", "confusion.csv", "study.toml"];
+    case.same_files(["1", "2"], &names);
+    case.same_files(["1", "elsewhere/3"], &names);
     let press = "press --mesh meshes/box.ply --model packed --surface-error-mm 2 --out a.csv";
     case.succeeds(press);
 }

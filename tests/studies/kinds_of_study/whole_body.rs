@@ -21,10 +21,8 @@ fn case(study: &str) -> Case {
 fn tables_obey_their_laws() {
     let case = case(STUDY);
     let (said, _) = case.succeeds("run study.toml --threads 1 --out 1");
-    says(
-        &said,
-        &["From touch to answer on 18118 taxels", "bytes a taxel"],
-    );
+    let body = "From touch to answer on 18118 taxels";
+    says(&said, &[body, "bytes a taxel"]);
     let cases: Vec<BodyCase> = case.rows("1/whole_body.csv");
     let counts: Vec<BodyCount> = case.rows("1/whole_body.csv");
     // 900 of 2,000 taxels are too many for a cushion.

@@ -110,10 +110,8 @@ fn a_prior_counts_once_however_many_touches_are_summed() {
         let model = exact.fit(&data).unwrap();
         let scores = model.scores(data.records.view()).unwrap();
         let differences = &scores.column(0) - &scores.column(1);
-        assert!(
-            differences.iter().all(|d| d.abs() < 1e-3),
-            "{kind:?}: {differences}"
-        );
+        let are_equal = differences.iter().all(|d| d.abs() < 1e-3);
+        assert!(are_equal, "{kind:?}: {differences}");
         let labels = model.labels(data.records.view()).unwrap();
         assert!(labels.iter().all(|&label| label == 0));
     }

@@ -22,10 +22,8 @@ fn random_answers(rng: &mut ChaCha8Rng) -> Array2<f64> {
 /// Returns Σ_a P(a) H(O | a) after some touches, from the joint probabilities of an object and all labels.
 fn expected_entropy(tables: &[Array2<f64>], answers: &[usize], made: &[usize], next: usize) -> f64 {
     let so_far = |object: usize| -> f64 {
-        let told = made
-            .iter()
-            .map(|&touch| tables[touch][[object, answers[touch]]]);
-        told.product()
+        let told = |&touch: &usize| tables[touch][[object, answers[touch]]];
+        made.iter().map(told).product()
     };
     let joint = |object: usize, answer: usize| so_far(object) * tables[next][[object, answer]];
     let all: f64 = (0..N_OBJECTS).map(so_far).sum();
@@ -84,12 +82,9 @@ fn a_pose_that_parts_two_objects_tells_one_bit_and_one_that_does_not_nothing() {
     // Three objects: one pose separates the first from both others, another one separates the second. The current belief determines which pose is more
     // informative.
     let part = |object: usize| {
-        let row = |o: usize| {
-            if o == object {
-                [0.98, 0.01, 0.01]
-            } else {
-                [0.01, 0.01, 0.98]
-            }
+        let row = |o: usize| match o == object {
+            true => [0.98, 0.01, 0.01],
+            false => [0.01, 0.01, 0.98],
         };
         PoseAnswers::new(Array2::from_shape_fn((3, 3), |(o, a)| row(o)[a]))
     };

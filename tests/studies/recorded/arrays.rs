@@ -82,19 +82,15 @@ fn frames_of_every_type_and_file_are_the_same_touches() {
     case.file("named.csv", names.join(",") + "\n" + &table);
     case.write_array("last.npy", &frames.clone().insert_axis(Axis(3)));
     case.write_array("moved.npy", &permuted(&frames, [1, 2, 0]));
-    for (name, more) in [
-        ("half.npy", ""),
-        ("big.npy", ""),
-        ("big_u2.npy", ""),
-        ("u8.npy", ""),
-        ("i1.npy", ""),
-        ("fortran.npy", ""),
+    let binary = "half.npy big.npy big_u2.npy u8.npy i1.npy fortran.npy".split(' ');
+    let ordered = [
         ("frames.csv", "grid = [8, 8]"),
         ("named.csv", "grid = [8, 8]"),
         ("frames.csv", ""),
         ("last.npy", "order = \"n y x c\""),
         ("moved.npy", "order = \"y x n\""),
-    ] {
+    ];
+    for (name, more) in binary.map(|name| (name, "")).chain(ordered) {
         let found = scores(&case, &(of_file(name) + more));
         assert_eq!(n_correct(&found), n_correct(&usual), "{name} {more}");
     }
@@ -140,15 +136,11 @@ fn labels_of_every_form_are_the_same_classes() {
         assert_eq!(class_names(name), NAMES, "{name}");
         // A name that no touch has does not rename a class.
         let said = error(&case, &(keys + &named.replace("ball", "bal")));
-        says(
-            &said,
-            &["key recorded.names: no name \"ball\"; each text of "],
-        );
+        let words = "key recorded.names: no name \"ball\"; each text of ";
+        says(&said, &[words]);
     }
-    assert_eq!(
-        class_names("any.npy"),
-        ["class -70", "class 30", "class 130"]
-    );
+    let classes = class_names("any.npy").join(", ");
+    assert_eq!(classes, "class -70, class 30, class 130");
     let lines = |texts: [&[u8]; 3]| {
         let lines = (0..N).map(|touch| [texts[label(touch)], b"\n"].concat());
         lines.collect::<Vec<_>>().concat()
@@ -208,11 +200,8 @@ fn archives_and_groups_of_texts_are_read_by_the_names_of_their_arrays() {
     let two = [("frames", "frames.npy"), ("labels", "labels.npy")];
     archive(&case, "stored.npz", &two);
     archive(&case, "compressed.npz", &two);
-    archive(
-        &case,
-        "all.npz",
-        &[two[0], two[1], ("groups", "groups.npy")],
-    );
+    let all = [two[0], two[1], ("groups", "groups.npy")];
+    archive(&case, "all.npz", &all);
     archive(&case, "one.npz", &[("arr_0", "frames.npy")]);
     for name in ["stored.npz", "compressed.npz"] {
         let alone = format!("frames = {name:?}\n");

@@ -19,7 +19,11 @@ const PRESSED_LABELS: &str =
     "labels = \"touches/labels.npy\"\nnames = [\"golf\", \"tennis\", \"baseball\"]\n";
 
 /// Returns the rows of a study in which some decisions are wrong.
-fn rows_with_errors(case: &Case, recorded: &str, rest: &str) -> Vec<(Configuration, TrialScore)> {
+pub fn rows_with_errors(
+    case: &Case,
+    recorded: &str,
+    rest: &str,
+) -> Vec<(Configuration, TrialScore)> {
     let rows = case.scored_rows(recorded, rest);
     assert!(rows.iter().any(|(_, score)| score.n_correct < score.n_test));
     rows
@@ -78,22 +82,17 @@ fn taxels_that_are_no_grid_have_images_and_neighbours_by_their_layout() {
     // Positions of a grid in another order are no grid, but have nearly the same image.
     let swapped: Vec<usize> = (0..64).map(|k| (37 * k) % 64).collect();
     case.write_array("swapped.npy", &list().select(Axis(1), &swapped));
-    let places = swapped
-        .iter()
-        .map(|k| (4.0 * (k % 8) as f64, 4.0 * (k / 8) as f64));
-    case.file("swapped.csv", layout(places));
+    let place = |k: &usize| (4.0 * (k % 8) as f64, 4.0 * (k / 8) as f64);
+    case.file("swapped.csv", layout(swapped.iter().map(place)));
     let alone = of_file("swapped.npy");
     let recorded = format!("{alone}layout = \"swapped.csv\"\n");
     let rest = format!("{SKIN}{IMAGES}");
     let [swapped, grid] = [&recorded, &of_file("frames.npy")].map(|keys| case.scores(keys, &rest));
     assert_eq!(n_correct(&swapped), n_correct(&grid));
     let rest = format!("{SKIN}{COUPLED}{RAW}");
-    let uncoupled =
-        format!("{SKIN}[signal]\nsteps = [\"noise\"]\nnoise_std_full_scale = 0.05\n{RAW}");
-    assert_ne!(
-        case.scores(&recorded, &rest),
-        case.scores(&alone, &uncoupled)
-    );
+    let noise = "[signal]\nsteps = [\"noise\"]\nnoise_std_full_scale = 0.05\n";
+    let uncoupled = case.scores(&alone, &format!("{SKIN}{noise}{RAW}"));
+    assert_ne!(case.scores(&recorded, &rest), uncoupled);
     // The sample picture has three cells per pitch, and shows each taxel.
     let study = case.recorded(&recorded, &rest).unwrap();
     let cells = study.first().plan.arrays[0].picture_cells();
@@ -113,12 +112,9 @@ fn in_archive(recorded: &str) -> String {
 fn write_archive(case: &Case) {
     let list = list();
     let mut archive = case.archive("all.npz");
-    archive
-        .add_array("left", &list.slice(s![.., ..24]))
-        .unwrap();
-    archive
-        .add_array("right", &list.slice(s![.., 24..]))
-        .unwrap();
+    for (name, taxels) in [("left", s![.., ..24]), ("right", s![.., 24..])] {
+        archive.add_array(name, &list.slice(taxels)).unwrap();
+    }
     archive.finish().unwrap();
 }
 
@@ -145,10 +141,8 @@ fn each_sensor_alone_is_a_value_of_an_axis() {
     let (left, right) = ("grid = [3, 8]", "grid = [5, 8]\npitch_mm = 4.0");
     let recorded = sensors(left, right);
     let coupled = "[signal]\nsteps = [\"crosstalk\"]\ncrosstalk = 0.2\n";
-    for rest in [
-        format!("{SKIN}{NOISE}{RAW}"),
-        format!("{SKIN}{coupled}{IMAGES}"),
-    ] {
+    for rest in [[NOISE, RAW], [coupled, IMAGES]] {
+        let rest = format!("{SKIN}{}", rest.concat());
         let axis = "[axes]\n\"recorded.sensor\" = [\"all\", \"left\", \"right\"]\n";
         let found = case.scored_rows(&recorded, &format!("{rest}{axis}"));
         let left = of_file("left.npy") + "grid = [3, 8]\n";
@@ -159,9 +153,8 @@ fn each_sensor_alone_is_a_value_of_an_axis() {
         }
     }
     // Each sensor has an image of its own, and a frame has the features of all images.
-    let study = case
-        .recorded(&recorded, &format!("{SKIN}{IMAGES}"))
-        .unwrap();
+    let study = case.recorded(&recorded, &format!("{SKIN}{IMAGES}"));
+    let study = study.unwrap();
     let array = &study.first().plan.arrays[0];
     let shapes = [3, 5].map(|ny| ImageShape { ny, nx: 8 });
     assert_eq!(array.image_shapes(), shapes);

@@ -48,16 +48,13 @@ fn written<D: Dimension>(frames: &Array<f32, D>, labels: &[usize]) -> Case {
 }
 
 #[test]
-fn frames_of_our_own_skin_are_recognised_as_that_study_recognises_them_to_the_bit() {
+fn counts_of_our_own_skin_are_recognised_as_that_study_recognises_its_deflections() {
     let (simulated, labels, frames) = simulated();
-    let names = "names = [\"golf\", \"tennis\", \"baseball\"]\n";
-    let case = written(&frames, &labels);
-    let replayed = study(&case, &format!("{names}full_scale = 5e-3"), REST);
     let expected = scores(&simulated.of_items());
     assert!(has_errors(&expected), "{expected:?}");
-    assert_eq!(scores(&replayed), expected);
     // In counts of a converter with the zero 100, the skin is the same up to the last digits.
     let case = written(&frames.mapv(|metres| 100.0 + 65536.0 * metres), &labels);
+    let names = "names = [\"golf\", \"tennis\", \"baseball\"]\n";
     let counted = study(
         &case,
         &format!("{names}zero = 100.0\nfull_scale = 427.68"),
