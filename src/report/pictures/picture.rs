@@ -1,9 +1,8 @@
 //! Raster picture and its PNG file.
 
 use crate::error::{Error, Result};
-use bubbletouch_sim::raster::pixels::{halved, without_opacity};
+use bubbletouch_sim::raster::pixels::{halved, indexed, without_opacity};
 use bubbletouch_sim::raster::{BACKGROUND, Canvas, Hit, Lighting, Rgb};
-use std::collections::HashMap;
 
 /// Opaque raster picture: rows of pixels from the top, 3 bytes per pixel.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +27,7 @@ impl Picture {
     /// Returns the picture as a PNG file of about a third of the size, with a palette of at most 256 colours. Colours are rounded as little as this requires.
     pub(crate) fn small_png(&self) -> Result<Vec<u8>> {
         let mut steps = [1, 2, 4, 8, 16].into_iter();
-        match steps.find_map(|step| self.indexed(step)) {
+        match steps.find_map(|step| indexed(&self.rgb, step)) {
             Some((indices, palette)) => self.encoded(png::ColorType::Indexed, &indices, palette),
             None => self.png(),
         }
@@ -47,25 +46,6 @@ impl Picture {
         writer.write_image_data(data).map_err(unfit)?;
         writer.finish().map_err(unfit)?;
         Ok(bytes)
-    }
-
-    /// Returns the index of each pixel's colour, and the palette, if channels are rounded to multiples of `step`; `None` if there are more than 256 colours.
-    fn indexed(&self, step: u16) -> Option<(Vec<u8>, Vec<u8>)> {
-        let mut known = HashMap::new();
-        let mut palette = Vec::new();
-        let pixels = self.rgb.as_chunks().0.iter();
-        let indices = pixels.map(|pixel: &Rgb| {
-            let rounded = |channel| (u16::from(channel) + step / 2) / step * step;
-            let colour = pixel.map(|channel| rounded(channel).min(255) as u8);
-            let next = known.len();
-            let index = *known.entry(colour).or_insert(next);
-            if index == next {
-                palette.extend(colour);
-            }
-            u8::try_from(index).ok()
-        });
-        let indices: Option<Vec<u8>> = indices.collect();
-        Some((indices?, palette))
     }
 
     /// Decodes an opaque PNG file.

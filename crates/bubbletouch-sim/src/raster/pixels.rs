@@ -2,6 +2,7 @@
 
 use super::Rgb;
 use glam::DVec2;
+use std::collections::HashMap;
 
 /// Shape of the cells (taxels) of a map, such as a pressure map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,24 @@ pub fn halved(rgb: &[u8], width: usize) -> Vec<u8> {
         }
     }
     half
+}
+
+/// Returns the index of each pixel's colour, and the palette, if channels are rounded to multiples of `step`; `None` if there are more than 256 colours.
+pub fn indexed(rgb: &[u8], step: u16) -> Option<(Vec<u8>, Vec<u8>)> {
+    let mut known = HashMap::new();
+    let mut palette = Vec::new();
+    let indices = rgb.as_chunks().0.iter().map(|pixel: &Rgb| {
+        let rounded = |channel| (u16::from(channel) + step / 2) / step * step;
+        let colour = pixel.map(|channel| rounded(channel).min(255) as u8);
+        let next = known.len();
+        let index = *known.entry(colour).or_insert(next);
+        if index == next {
+            palette.extend(colour);
+        }
+        u8::try_from(index).ok()
+    });
+    let indices: Option<Vec<u8>> = indices.collect();
+    Some((indices?, palette))
 }
 
 /// Returns the first three of every `n_samples` values, which are the colours of pixels without their opacity.
