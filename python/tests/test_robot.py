@@ -407,10 +407,10 @@ def test_wrong_attached_models_are_named(tmp_path: Path) -> None:
     (tmp_path / "sub.xml").write_text(SUB)
     for attach, words in [
         ('<attach model="sup" prefix="x_"/>', r"main.xml, line 1: `model` .sup., which is no <model> of <asset>; perhaps `sub`"),
-        ('<attach model="sub" body="b9" prefix="x_"/>', "`body` .b9., which is no body of the model `sub`"),
-        ('<attach model="sub" prefix="x_"/><attach model="sub" prefix="x_"/>', "a second body `x_b0`"),
-        ('<body><attach model="sub" body="ball" prefix="x_"/></body>', "the free joint `free`; a free joint of a body in <worldbody>"),
-        ('<attach model="self" prefix="x_"/>', "models that attach each other, 20 deep"),
+        ('<attach model="sub" body="b9" prefix="x_"/>', "`body` .b9., which is no body of the model; perhaps `b0`"),
+        ('<attach model="sub" prefix="x_"/><attach model="sub" prefix="x_"/>', "main.xml, line 1: .*sub.xml, line 6: a second site `x_base`"),
+        ('<body><attach model="sub" body="ball" prefix="x_"/></body>', "the free joint `x_free`; the only joint of a body in <worldbody>"),
+        ('<attach model="self" prefix="x_"/>', "too many models inside each other; at most 20"),
         ('<attach model="none" prefix="x_"/>', "none.xml: cannot be read"),
     ]:
         models = "".join(f'<model name="{name}" file="{of}.xml"/>' for name, of in (("sub", "sub"), ("self", "main"), ("none", "none")))
@@ -470,7 +470,7 @@ def test_wrong_copies_within_a_model_are_named(tmp_path: Path) -> None:
         ('<attach body="b3" prefix="p_"/>', "`body` .b3., which is no body of the model"),
         ('<attach frame="g" prefix="p_"/>', "`frame` .g., which is no frame of the model; perhaps `f`"),
         ('<attach body="b"/>', "a second body `b`"),
-        ('<body name="x"><attach body="x" prefix="p_"/></body>', "elements inside each other, 500 deep"),
+        ('<body name="x"><attach body="x" prefix="p_"/></body>', "too many elements inside each other; at most 500"),
     ]:
         file.write_text(f"<mujoco>{COPIED.replace('BODIES', attach)}</mujoco>")
         with pytest.raises(ValueError, match=words):

@@ -112,6 +112,22 @@ impl JointKind {
 }
 
 impl Joint {
+    /// Creates the joint that fixes a link, with the index and name of the `child`, to its parent.
+    pub(super) fn fixed(child_name: &str, parent: usize, child: usize, origin: Pose) -> Self {
+        Self {
+            name: format!("{child_name}_fixed"),
+            kind: JointKind::Fixed,
+            parent,
+            child,
+            origin,
+            axis: DVec3::X,
+            anchor: DVec3::ZERO,
+            reference: 0.0,
+            limits: None,
+            mimic: None,
+        }
+    }
+
     /// Returns the pose `parent_from_child` for the given coordinates; their number depends on the kind of joint.
     pub(super) fn pose(&self, coordinates: &[f64]) -> Pose {
         let motion = match (self.kind, coordinates) {

@@ -1,7 +1,8 @@
 //! Links: rigid bodies, with the shapes that skin can cover.
 
-use super::xml::Element;
-use crate::error::{Error, Result};
+use super::origin::origin_of;
+use super::xml::{Element, LENGTHS, NOT_ZERO};
+use crate::error::Result;
 use crate::geometry::Pose;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -96,6 +97,14 @@ impl LinkGeometry {
 }
 
 impl Link {
+    /// Creates a link without shapes.
+    pub(super) fn new(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            shapes: Vec::new(),
+        }
+    }
+
     /// Returns the link's collision shapes with a volume, which skin can cover.
     pub(crate) fn solids(&self) -> impl Iterator<Item = &LinkShape> {
         let is_solid =
@@ -106,54 +115,51 @@ impl Link {
 
 /// Reads a `<link>` element.
 pub(super) fn read_link(element: &Element) -> Result<Link> {
-    let name = element.name()?.to_owned();
-    let slips = element.check_tags(&["visual", "collision", "inertial"]);
+    let mut link = Link::new(element.name()?);
+    let slips = element.check_tags("visual collision inertial");
     element.or_note(slips, (), "the element is passed over");
-    let visual = element.children("visual").map(|it| (it, ShapeRole::Visual));
-    let collision = element
-        .children("collision")
-        .map(|it| (it, ShapeRole::Collision));
-    let mut written: Vec<_> = visual.chain(collision).collect();
-    written.sort_by_key(|(shape, _)| shape.node.range().start);
-    // Shapes do not determine poses of links, so unreadable shapes are omitted.
-    let shapes = written.iter().filter_map(|(shape, role)| {
-        let read = read_shape(shape, *role).map(Some);
-        shape.or_note(read, None, "this shape is left out")
-    });
-    let shapes = shapes.collect();
-    Ok(Link { name, shapes })
+    for shape in element.elements() {
+        let role = match shape.tag() {
+            "visual" => ShapeRole::Visual,
+            "collision" => ShapeRole::Collision,
+            _ => continue,
+        };
+        // Shapes do not determine poses of links, so unreadable shapes are omitted.
+        let read = read_shape(shape, role).map(Some);
+        link.shapes
+            .extend(shape.or_note(read, None, "this shape is left out"));
+    }
+    Ok(link)
 }
 
-fn read_shape(element: &Element, role: ShapeRole) -> Result<LinkShape> {
-    element.check_tags(&["origin", "geometry", "material", "name", "verbose"])?;
-    let geometry = element.needed_child("geometry")?;
+fn read_shape(element: Element, role: ShapeRole) -> Result<LinkShape> {
+    element.check_tags("origin geometry material name verbose")?;
     Ok(LinkShape {
         role,
-        geometry: read_geometry(&geometry)?,
-        origin: element.origin()?,
+        geometry: read_geometry(element.needed_child("geometry")?)?,
+        origin: origin_of(element)?,
     })
 }
 
-fn read_geometry(element: &Element) -> Result<LinkGeometry> {
+fn read_geometry(element: Element) -> Result<LinkGeometry> {
     let mut forms = Vec::new();
     for tag in ["box", "cylinder", "capsule", "sphere", "mesh"] {
-        forms.extend(element.child(tag)?.map(|form| (tag, form)));
+        forms.extend(element.child(tag)?);
     }
-    let [(tag, form)] = forms.as_slice() else {
+    let &[form] = forms.as_slice() else {
         return Err(element.refuse(
             format!("<geometry> with {} forms", forms.len()),
             "exactly one of box, cylinder, capsule, sphere, mesh",
         ));
     };
-    let length = |attribute| length_of(form, attribute);
-    Ok(match *tag {
-        "box" => {
-            let size = DVec3::from(form.needed_numbers::<3>("size")?);
-            if size.min_element() < 0.0 {
-                return Err(negative(form, "size", size));
-            }
-            LinkGeometry::Box { size }
-        }
+    let length = |attribute| {
+        let number = form.needed_in(attribute, &LENGTHS);
+        number.map(|[length]| length)
+    };
+    Ok(match form.tag() {
+        "box" => LinkGeometry::Box {
+            size: DVec3::from(form.needed_in("size", &LENGTHS)?),
+        },
         "cylinder" => LinkGeometry::Cylinder {
             radius: length("radius")?,
             length: length("length")?,
@@ -169,34 +175,16 @@ fn read_geometry(element: &Element) -> Result<LinkGeometry> {
     })
 }
 
-fn read_mesh(form: &Element) -> Result<LinkGeometry> {
-    form.check_attributes(&["filename", "scale"])?;
+fn read_mesh(form: Element) -> Result<LinkGeometry> {
+    form.check_attributes("filename scale")?;
     let file = form.text("filename")?.trim().to_owned();
     if file.is_empty() {
         return Err(form.refuse("an empty `filename`", "the path of a mesh"));
     }
-    let scale = DVec3::from(form.numbers("scale")?.unwrap_or([1.0; 3]));
-    if scale.to_array().contains(&0.0) {
-        return Err(form.refuse(format!("`scale` {scale}"), "three numbers other than zero"));
-    }
+    let scale = form.numbers_in("scale", &NOT_ZERO)?;
     Ok(LinkGeometry::Mesh {
         file,
         mesh_from_file: Pose::IDENTITY,
-        scale,
+        scale: scale.map_or(DVec3::ONE, DVec3::from),
     })
-}
-
-fn length_of(form: &Element, attribute: &str) -> Result<f64> {
-    let [value] = form.needed_numbers(attribute)?;
-    if value >= 0.0 {
-        return Ok(value);
-    }
-    Err(negative(form, attribute, value))
-}
-
-fn negative(form: &Element, attribute: &str, value: impl std::fmt::Display) -> Error {
-    form.refuse(
-        format!("`{attribute}` {value}"),
-        "lengths in metres, zero or positive",
-    )
 }

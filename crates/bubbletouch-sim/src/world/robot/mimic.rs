@@ -1,8 +1,9 @@
 //! Position that drives each joint, found through chains of mimicking joints.
 
-use super::xml::Element;
-use super::{Joint, Mimic};
+use super::Joint;
+use super::tree::{chain_words, cycle};
 use crate::error::{Error, Result};
+use std::iter::successors;
 
 /// Source of a joint's coordinates: its own positions, or `multiplier · position + offset` of the joint at the end of a chain of mimicking joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,14 +16,15 @@ pub(super) struct Drive {
     pub offset: f64,
 }
 
-/// Returns the source of the coordinates of each joint. A joint that mimics a fixed joint stays at its offset.
+/// Returns the source of the coordinates of each joint. A joint that mimics a fixed joint stays at its offset. `place` returns the location of a joint for
+/// messages.
 ///
 /// # Errors
 /// If a mimic chain is a cycle or its numbers are too large. The error contains the line of a joint of the chain.
 ///
 /// # Panics
 /// If a joint mimics a joint of several coordinates.
-pub(super) fn drives(joints: &[Joint], elements: &[Element]) -> Result<Vec<Drive>> {
+pub(super) fn drives(joints: &[Joint], place: impl Fn(usize) -> String) -> Result<Vec<Drive>> {
     let mut known: Vec<Option<Drive>> = vec![None; joints.len()];
     let mut first = 0;
     for (joint, drive) in joints.iter().zip(&mut known) {
@@ -36,53 +38,34 @@ pub(super) fn drives(joints: &[Joint], elements: &[Element]) -> Result<Vec<Drive
             first += n_coordinates;
         }
     }
-    let mut on_chain = vec![false; joints.len()];
-    let mut drives = Vec::with_capacity(joints.len());
     for start in 0..joints.len() {
-        let mut chain = Vec::new();
-        let mut end = start;
-        let mut drive = loop {
-            match (known[end], joints[end].mimic) {
-                (Some(drive), _) => break drive,
-                (None, Some(mimic)) if !on_chain[end] => {
-                    on_chain[end] = true;
-                    chain.push((end, mimic));
-                    end = mimic.joint;
-                }
-                _ => return Err(circle(&chain, end, joints, elements)),
-            }
-        };
-        for (joint, mimic) in chain.into_iter().rev() {
-            let element = &elements[joint];
-            let followed = &joints[mimic.joint].kind;
-            assert!(followed.coordinates().len() < 2, "one position to follow");
+        let unknown = |joint: usize| joints[joint].mimic.filter(|_| known[joint].is_none());
+        let chain = successors(Some(start), |&joint| Some(unknown(joint)?.joint));
+        let chain: Vec<usize> = chain.take(joints.len() + 1).collect();
+        if chain.len() > joints.len() {
+            let round = cycle(start, |joint| {
+                joints[joint].mimic.map_or(joint, |m| m.joint)
+            });
+            let names = chain_words(&round, |joint| &joints[joint].name);
+            let given = format!("joints mimic each other in a circle: {names}");
+            let allowed = "a chain that ends in a joint without <mimic>";
+            return Err(Error::input(place(round[0]), given, allowed));
+        }
+        for pair in chain.windows(2).rev() {
+            let (joint, mimic) = (pair[0], joints[pair[0]].mimic.expect("a follower"));
+            let followed = joints[mimic.joint].kind.coordinates();
+            assert!(followed.len() < 2, "one position to follow");
+            let mut drive = known[mimic.joint].expect("known from the end of the chain");
             drive.offset = mimic.multiplier * drive.offset + mimic.offset;
             drive.multiplier *= mimic.multiplier;
             if !(drive.multiplier.is_finite() && drive.offset.is_finite()) {
-                let given = format!(
-                    "joint `{}` mimics with numbers too large",
-                    joints[joint].name
-                );
-                return Err(element.refuse(given, "a finite product along the chain"));
+                let name = &joints[joint].name;
+                let given = format!("joint `{name}` mimics with numbers too large");
+                let allowed = "a finite product along the chain";
+                return Err(Error::input(place(joint), given, allowed));
             }
             known[joint] = Some(drive);
         }
-        drives.push(drive);
     }
-    Ok(drives)
-}
-
-fn circle(chain: &[(usize, Mimic)], end: usize, joints: &[Joint], elements: &[Element]) -> Error {
-    let round = chain
-        .iter()
-        .map(|&(joint, _)| joint)
-        .skip_while(|&joint| joint != end);
-    let names: Vec<String> = round
-        .chain([end])
-        .map(|joint| format!("`{}`", joints[joint].name))
-        .collect();
-    elements[end].refuse(
-        format!("joints mimic each other in a circle: {}", names.join(" → ")),
-        "a chain that ends in a joint without <mimic>",
-    )
+    Ok(known.into_iter().flatten().collect())
 }

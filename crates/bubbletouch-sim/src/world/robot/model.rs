@@ -49,13 +49,9 @@ pub struct Robot {
 impl Robot {
     /// Creates a robot that is one link without joints, so that only its base moves.
     pub fn floating(name: &str) -> Self {
-        let link = Link {
-            name: name.to_owned(),
-            shapes: Vec::new(),
-        };
         Self {
             name: name.to_owned(),
-            links: vec![link],
+            links: vec![Link::new(name)],
             joints: Vec::new(),
             tree: Tree {
                 root: 0,

@@ -1,10 +1,10 @@
 //! Tactile sensors of a URDF file: `<sensor>` with `<tactile>`, in the syntax of urdf_tactile (github.com/ubi-agni/tactile_toolbox).
 
-use super::xml::Element;
+use super::origin::{origin_of, pose_of};
+use super::xml::{Element, POSITIVE};
 use crate::error::Result;
-use crate::geometry::{Pose, rotation_from_rpy};
+use crate::geometry::Pose;
 use glam::DVec3;
-use roxmltree::Node;
 use std::collections::HashMap;
 
 /// Tactile sensor that a robot's file declares: the poses of its taxels on a link.
@@ -33,11 +33,9 @@ const MAX_TAXELS: usize = 1_000_000;
 /// unreadable. A sensor with the name of an earlier sensor is unreadable. Notes name each unreadable sensor and its link.
 pub(super) fn read_tactile_sensors(robot: Element) -> Vec<(String, Result<TactileSensor>)> {
     let mut first_lines = HashMap::new();
-    let all = robot.node.descendants();
-    let elements = all.filter(|node| node.tag_name().name() == "tactile");
-    let sensors = elements.map(|node| {
-        let tactile = Element { node, ..robot };
-        let place = Place::new(node);
+    let elements = robot.whole_document();
+    let sensors = elements.filter(|it| it.tag() == "tactile").map(|tactile| {
+        let place = Place::new(tactile);
         let name = place.name.unwrap_or("without a name");
         let first_line = place.name.and_then(|name| first_lines.get(name));
         let sensor = match first_line {
@@ -65,25 +63,18 @@ pub(super) fn read_tactile_sensors(robot: Element) -> Vec<(String, Result<Tactil
 
 /// Origin of a tactile sensor in the file: its XML element, its name, and the name of its link.
 struct Place<'a> {
-    sensor: Option<Node<'a, 'a>>,
+    sensor: Option<Element<'a>>,
     name: Option<&'a str>,
     link: Option<&'a str>,
 }
 
 impl<'a> Place<'a> {
-    fn new(node: Node<'a, 'a>) -> Self {
-        let above = |tag: &str| {
-            let mut ancestors = node.ancestors();
-            ancestors.find(|node| node.tag_name().name() == tag)
-        };
-        let sensor = above("sensor");
-        let parent = sensor.and_then(|sensor| {
-            let mut children = sensor.children();
-            let parent = children.find(|node| node.tag_name().name() == "parent")?;
-            parent.attribute("link")
-        });
-        let link = above("link").and_then(|link| link.attribute("name"));
-        let gazebo = above("gazebo").and_then(|element| element.attribute("reference"));
+    fn new(tactile: Element<'a>) -> Self {
+        let around = |tag: &str| tactile.around().find(|element| element.tag() == tag);
+        let sensor = around("sensor");
+        let parent = sensor.and_then(|sensor| sensor.children("parent").next()?.attribute("link"));
+        let link = around("link").and_then(|link| link.attribute("name"));
+        let gazebo = around("gazebo").and_then(|element| element.attribute("reference"));
         Self {
             sensor,
             name: sensor.and_then(|sensor| sensor.attribute("name")),
@@ -97,31 +88,21 @@ fn read_sensor(tactile: Element, place: &Place) -> Result<TactileSensor> {
         let allowed = "a <sensor> with a name and <parent link=\"…\"/> around it";
         return Err(tactile.refuse("<tactile>", allowed));
     };
-    let sensor = Element {
-        node: sensor,
-        ..tactile
-    };
     let mut listed = tactile
         .children("taxel")
         .enumerate()
         .map(|(number, taxel)| {
-            let index = taxel.number("idx")?.unwrap_or(number as f64);
-            if index < 0.0 || index.fract() != 0.0 || index >= MAX_TAXELS as f64 {
-                return Err(taxel.refuse(format!("`idx` {index}"), "an integer from 0"));
-            }
-            let xyz = taxel.numbers("xyz")?.unwrap_or([0.0; 3]);
-            let rpy = taxel.numbers("rpy")?.unwrap_or([0.0; 3]);
-            let pose = Pose::new(rotation_from_rpy(DVec3::from(rpy)), DVec3::from(xyz));
-            Ok((index, pose, sphere_radius(taxel)?, taxel))
+            let index = taxel.integer("idx", 0, MAX_TAXELS - 1)?.unwrap_or(number);
+            Ok((index, pose_of(taxel)?, sphere_radius(taxel)?, taxel))
         })
         .collect::<Result<Vec<_>>>()?;
-    listed.sort_by(|one, other| one.0.total_cmp(&other.0));
+    listed.sort_by_key(|(index, ..)| *index);
     if let Some(twice) = listed.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         let given = format!("a second taxel with `idx` {}", twice[1].0);
         return Err(twice[1].3.refuse(given, "one taxel for each channel"));
     }
     let mut notes = Vec::new();
-    let n_channels = listed.last().map_or(0, |(index, ..)| *index as usize + 1);
+    let n_channels = listed.last().map_or(0, |(index, ..)| index + 1);
     if n_channels > listed.len() {
         let given = format!("{} taxels for {n_channels} channels", listed.len());
         let allowed = "channels without a taxel are left out";
@@ -154,7 +135,7 @@ fn read_sensor(tactile: Element, place: &Place) -> Result<TactileSensor> {
     Ok(TactileSensor {
         name: name.to_owned(),
         link: link.to_owned(),
-        link_from_sensor: sensor.origin()?,
+        link_from_sensor: origin_of(sensor)?,
         taxels,
         radii,
         pixels,
@@ -170,34 +151,20 @@ fn sphere_radius(taxel: Element) -> Result<Option<f64>> {
     let Some(sphere) = geometry.child("sphere")? else {
         return Ok(None);
     };
-    let [radius] = sphere.needed_numbers::<1>("radius")?;
-    match radius > 0.0 && radius.is_finite() {
-        true => Ok(Some(radius)),
-        false => Err(sphere.refuse(format!("`radius` {radius}"), "a positive number of metres")),
-    }
+    let [radius] = sphere.needed_in("radius", &POSITIVE)?;
+    Ok(Some(radius))
 }
 
 /// Returns the poses, and the rows and columns, of the taxels of `<array rows cols order size spacing offset>`. Rows run along x and columns along y. The
 /// taxel (0, 0) is at −offset.
 fn array_taxels(array: Element) -> Result<Vec<(Pose, [usize; 2])>> {
-    let count = |attribute: &str| -> Result<usize> {
-        let [number] = array.needed_numbers::<1>(attribute)?;
-        let is_count = number >= 1.0 && number.fract() == 0.0 && number <= MAX_TAXELS as f64;
-        match is_count {
-            true => Ok(number as usize),
-            false => Err(array.refuse(format!("`{attribute}` {number}"), "an integer from 1")),
-        }
-    };
-    let (rows, columns) = (count("rows")?, count("cols")?);
+    let rows = array.needed_integer("rows", 1, MAX_TAXELS)?;
+    let columns = array.needed_integer("cols", 1, MAX_TAXELS)?;
     if rows * columns > MAX_TAXELS {
         let given = format!("{rows} × {columns} taxels");
         return Err(array.refuse(given, format!("at most {MAX_TAXELS}")));
     }
-    let size = array.numbers::<2>("size")?;
-    if let Some(size) = size.filter(|size| size.iter().any(|length| *length <= 0.0)) {
-        let given = format!("`size` {} {}", size[0], size[1]);
-        return Err(array.refuse(given, "positive lengths in metres"));
-    }
+    let size = array.numbers_in("size", &POSITIVE)?;
     let spacing = array.numbers::<2>("spacing")?.or(size);
     let Some([along_x, along_y]) = spacing else {
         return Err(array.refuse("<array> without size and spacing", "one of them"));
@@ -208,14 +175,12 @@ fn array_taxels(array: Element) -> Result<Vec<(Pose, [usize; 2])>> {
         return Err(array.refuse(given, allowed));
     }
     let [x, y] = array.numbers::<2>("offset")?.unwrap_or([0.0; 2]);
-    let is_by_rows = match array.node.attribute("order") {
-        None | Some("row-major") => true,
-        Some("column-major" | "col-major") => false,
-        Some(other) => {
-            let given = format!("`order` \"{other}\"");
-            return Err(array.refuse(given, "row-major or column-major"));
-        }
-    };
+    const ORDERS: [(&str, bool); 3] = [
+        ("row-major", true),
+        ("column-major", false),
+        ("col-major", false),
+    ];
+    let is_by_rows = array.one_of("order", &ORDERS)?.unwrap_or(true);
     let taxels = (0..rows * columns).map(|index| {
         let (row, column) = match is_by_rows {
             true => (index / columns, index % columns),

@@ -1,8 +1,8 @@
 //! Tree of links and joints: one root, and exactly one joint that moves each other link.
 
-use super::xml::Element;
 use super::{Joint, Link};
 use crate::error::{Error, Result};
+use std::collections::HashSet;
 
 /// Root of a robot's tree, and the joints ordered from the root outwards.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,85 +14,60 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Checks that the joints connect the links to one tree. `elements` (one per joint) give the location in error messages.
-    pub fn new(links: &[Link], joints: &[Joint], elements: &[Element]) -> Result<Self> {
-        let moved_by = moved_by(links, joints, elements)?;
-        let is_root = |link: &usize| moved_by[*link].is_none();
-        let roots: Vec<usize> = (0..links.len()).filter(is_root).collect();
-        let Some(&root) = roots.first() else {
-            return Err(circle(0, links, joints, &moved_by, elements));
+    /// Checks that the joints connect the links, at least one, to one tree. `place` returns the location of a joint for messages.
+    pub fn new(links: &[Link], joints: &[Joint], place: impl Fn(usize) -> String) -> Result<Self> {
+        let mut moved_by: Vec<Option<usize>> = vec![None; links.len()];
+        let mut carried: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
+        for (index, joint) in joints.iter().enumerate() {
+            carried[joint.parent].push(index);
+            if let Some(first) = moved_by[joint.child].replace(index) {
+                let (link, first) = (&links[joint.child].name, &joints[first].name);
+                let second = &joint.name;
+                let given = format!("link `{link}` is the child of `{first}` and of `{second}`");
+                let allowed = "one joint that moves a link: a tree";
+                return Err(Error::input(place(index), given, allowed));
+            }
+        }
+        let root = moved_by.iter().position(Option::is_none);
+        let mut outward = root.map_or(Vec::new(), |root| carried[root].clone());
+        let mut next = 0;
+        while let Some(&joint) = outward.get(next) {
+            outward.extend_from_slice(&carried[joints[joint].child]);
+            next += 1;
+        }
+        let children = outward.iter().map(|&joint| joints[joint].child);
+        let reached: HashSet<usize> = children.chain(root).collect();
+        let Some(lost) = (0..links.len()).find(|link| !reached.contains(link)) else {
+            let root = root.expect("a link that is reached");
+            return Ok(Self { root, outward });
         };
-        let outward = outward(root, links.len(), joints);
-        let mut is_reached = vec![false; links.len()];
-        is_reached[root] = true;
-        for &joint in &outward {
-            is_reached[joints[joint].child] = true;
-        }
-        match is_reached.iter().position(|reached| !reached) {
-            // No link in this chain can be reached from the root, so the chain is a cycle.
-            Some(link) => Err(circle(link, links, joints, &moved_by, elements)),
-            None => Ok(Self { root, outward }),
-        }
+        // No joint from the root leads to this link, so the joints towards it form a cycle.
+        let joint_to = |link: usize| moved_by[link].expect("a joint moves each link of a cycle");
+        let mut round = cycle(lost, |link| joints[joint_to(link)].parent);
+        round.reverse();
+        let names = chain_words(&round, |link| &links[link].name);
+        let given = format!("links in a circle: {names}");
+        let place = place(joint_to(round[0]));
+        Err(Error::input(place, given, "a tree: no link carries itself"))
     }
 }
 
-/// Returns the index of the joint that moves each link, if any. Returns an error if two joints move one link.
-fn moved_by(links: &[Link], joints: &[Joint], elements: &[Element]) -> Result<Vec<Option<usize>>> {
-    let mut moved_by: Vec<Option<usize>> = vec![None; links.len()];
-    for (index, joint) in joints.iter().enumerate() {
-        if let Some(first) = moved_by[joint.child].replace(index) {
-            let (link, first) = (&links[joint.child].name, &joints[first].name);
-            return Err(elements[index].refuse(
-                format!(
-                    "link `{link}` is the child of `{first}` and of `{}`",
-                    joint.name
-                ),
-                "one joint that moves a link: a tree",
-            ));
-        }
+/// Returns the cycle that a walk from `start` enters: its first node, the nodes after it, and its first node again.
+pub(super) fn cycle(start: usize, next: impl Fn(usize) -> usize) -> Vec<usize> {
+    let (mut path, mut node) = (Vec::new(), start);
+    let mut seen = HashSet::new();
+    while seen.insert(node) {
+        path.push(node);
+        node = next(node);
     }
-    Ok(moved_by)
+    path.push(node);
+    path.into_iter()
+        .skip_while(|&other| other != node)
+        .collect()
 }
 
-/// Returns the indices of the joints reached from the root, parents first; joints of one link keep the order of the file.
-fn outward(root: usize, n_links: usize, joints: &[Joint]) -> Vec<usize> {
-    let mut carried: Vec<Vec<usize>> = vec![Vec::new(); n_links];
-    for (index, joint) in joints.iter().enumerate() {
-        carried[joint.parent].push(index);
-    }
-    let mut order: Vec<usize> = carried[root].clone();
-    let mut next = 0;
-    while let Some(&joint) = order.get(next) {
-        order.extend_from_slice(&carried[joints[joint].child]);
-        next += 1;
-    }
-    order
-}
-
-/// Returns the error for a cycle of links, found from a link that leads into the cycle.
-fn circle(
-    start: usize,
-    links: &[Link],
-    joints: &[Joint],
-    moved_by: &[Option<usize>],
-    elements: &[Element],
-) -> Error {
-    let inward = |link: usize| moved_by[link].map_or(link, |joint| joints[joint].parent);
-    // After as many steps as there are links, the search is inside the cycle.
-    let inside = (0..links.len()).fold(start, |link, _| inward(link));
-    let mut round = vec![inside];
-    while inward(round[round.len() - 1]) != inside {
-        round.push(inward(round[round.len() - 1]));
-    }
-    round.push(inside);
-    let names: Vec<String> = round
-        .iter()
-        .rev()
-        .map(|&link| format!("`{}`", links[link].name))
-        .collect();
-    let joint = moved_by[inside].unwrap_or(0);
-    elements[joint].refuse(
-        format!("links in a circle: {}", names.join(" → ")),
-        "a tree: no link carries itself",
-    )
+/// Returns the names of the nodes of a chain, for messages.
+pub(super) fn chain_words<'n>(chain: &[usize], name: impl Fn(usize) -> &'n String) -> String {
+    let names: Vec<String> = chain.iter().map(|&k| format!("`{}`", name(k))).collect();
+    names.join(" → ")
 }

@@ -5,16 +5,16 @@
 
 use super::link::read_link;
 use super::mimic::{Drive, drives};
+use super::origin::{check_origin, origin_ignoring_slips};
+use super::source::Source;
 use super::tactile::{TactileSensor, read_tactile_sensors};
-use super::text::{parsed, repaired, unreadable};
 use super::tree::Tree;
-use super::xml::{Element, Lines};
+use super::xml::{Element, NOT_NEGATIVE, unit_direction};
 use super::{Joint, JointKind, Limits, Link, Mimic, Robot};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::text::spelling::nearest_names;
 use glam::DVec3;
-use roxmltree::Node;
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
@@ -29,25 +29,21 @@ const ALONE: &str = "the joint mimics none";
 /// Reads a robot, and all tactile sensors by name, from the text of a URDF file; errors begin with `place`, the file's name. An unreadable sensor is an error in
 /// the list, and the robot does not have it.
 pub(super) fn read_urdf(place: &str, text: &str) -> Result<(Robot, Vec<NamedSensor>)> {
-    let lines = Lines::new(place, text);
-    let text = repaired(place, text, &lines);
-    let document = parsed(&text).map_err(|e| unreadable(place, &text, &e, "URDF"))?;
-    let root = Element {
-        node: document.root_element(),
-        lines: &lines,
-    };
+    let source = Source::one_file("URDF", place, text);
+    let document = source.document()?;
+    let root = Element::root(&document, &source.lines);
     // Missing parts may be parts that xacro would have created.
-    let not_expanded = not_expanded(root);
-    let (name, links, joints, tree, drives) =
-        read_parts(root).map_err(|error| match &not_expanded {
-            Some(element) => xacro_error(*element),
-            None => error,
-        })?;
+    let not_expanded = root.whole_document().find(is_of_xacro);
+    let parts = read_parts(root).map_err(|error| match &not_expanded {
+        Some(element) => xacro_error(*element),
+        None => error,
+    });
+    let (name, links, joints, tree, drives) = parts?;
     if let Some(element) = not_expanded {
-        lines.note(format!("{}: it is passed over", xacro_error(element)));
+        root.or_note(Err(xacro_error(element)), (), "it is passed over");
     }
     let sensors = read_tactile_sensors(root);
-    let notes = lines.into_notes();
+    let notes = source.lines.take_notes();
     let robot = Robot::assembled((name, place), links, joints, tree, drives, notes)?;
     let readable = sensors
         .iter()
@@ -62,58 +58,68 @@ pub(super) type NamedSensor = (String, Result<TactileSensor>);
 type Parts = (String, Vec<Link>, Vec<Joint>, Tree, Vec<Drive>);
 
 fn read_parts(root: Element) -> Result<Parts> {
-    if root.node.tag_name().name() != "robot" {
+    if root.tag() != "robot" {
         return Err(root.refuse(
             format!("{} as the root", root.called()),
             "URDF: a <robot>, or MJCF: a <mujoco>",
         ));
     }
-    root.check_tags(&["link", "joint", "material", "transmission", "gazebo"])?;
-    let elements = distinct(root, "link", |_| String::new())?;
-    let mut links = elements.iter().map(read_link).collect::<Result<Vec<_>>>()?;
+    root.check_tags("link joint material transmission gazebo")?;
+    let mut names = Named::read(root, "link", |_| String::new())?;
+    let links = names.elements.iter().map(read_link);
+    let mut links = links.collect::<Result<Vec<_>>>()?;
     if links.is_empty() {
         return Err(root.refuse("a robot without a <link>", "at least one"));
     }
-    let names = elements.iter().map(Element::name);
-    let names = names.collect::<Result<Vec<_>>>()?;
-    let mut link_of = index_of_each("link", names.into_iter(), &elements)?;
-    add_missing_parent(root, &mut links, &mut link_of);
-    let (mut joints, mut elements) = read_joints(root, &links, &link_of)?;
+    add_missing_parent(root, &mut links, &mut names.index_of);
+    let (mut joints, mut elements) = read_joints(root, &links, &names.index_of)?;
     join_roots(root, &links, &mut joints, &mut elements);
     drop_mimics_of_several(&mut joints, &elements);
-    let tree = Tree::new(&links, &joints, &elements)?;
-    let drives = drives(&joints, &elements)?;
+    let place = |joint: usize| elements[joint].place();
+    let tree = Tree::new(&links, &joints, place)?;
+    let drives = drives(&joints, place)?;
     let name = root.or_note(root.name(), "robot", "the robot is called `robot`");
     Ok((name.to_owned(), links, joints, tree, drives))
 }
 
-/// Returns the elements with a tag, without repeated elements, which have the name and the `meaning` of an earlier element. Repeated elements become notes.
-fn distinct<'a>(
-    root: Element<'a>,
-    tag: &'a str,
-    meaning: impl Fn(&Element) -> String,
-) -> Result<Vec<Element<'a>>> {
-    let mut first: HashMap<(&str, String), usize> = HashMap::new();
-    let mut all = Vec::new();
-    for element in root.children(tag) {
-        let line = element.line();
-        match first.entry((element.name()?, meaning(&element))) {
-            Entry::Vacant(place) => {
-                place.insert(line);
-                all.push(element);
-            }
-            Entry::Occupied(place) => {
-                let given = format!(
-                    "a second {tag} `{}` (the first is on line {})",
-                    place.key().0,
-                    place.get()
-                );
-                let repeated = Err(element.refuse(given, "a name of its own"));
-                element.or_note(repeated, (), "it is passed over");
+/// Elements with a tag, and their indices by name.
+struct Named<'a> {
+    elements: Vec<Element<'a>>,
+    index_of: HashMap<&'a str, usize>,
+}
+
+impl<'a> Named<'a> {
+    /// Reads the elements with a tag, without repeated elements, which have the name and the `meaning` of an earlier element. Repeated elements become notes.
+    ///
+    /// # Errors
+    /// If an element has no name, or the name of an element of another meaning.
+    fn read(
+        root: Element<'a>,
+        tag: &'a str,
+        meaning: impl Fn(Element<'a>) -> String,
+    ) -> Result<Self> {
+        let (mut elements, mut index_of) = (Vec::new(), HashMap::new());
+        for element in root.children(tag) {
+            let name = element.name()?;
+            match index_of.entry(name) {
+                Entry::Vacant(place) => {
+                    place.insert(elements.len());
+                    elements.push(element);
+                }
+                Entry::Occupied(place) => {
+                    let first: Element = elements[*place.get()];
+                    let line = first.line();
+                    let given = format!("a second {tag} `{name}` (the first is on line {line})");
+                    let allowed = "a name of its own";
+                    if meaning(first) != meaning(element) {
+                        return Err(element.refuse(given, allowed));
+                    }
+                    element.note(given, allowed, "it is passed over");
+                }
             }
         }
+        Ok(Self { elements, index_of })
     }
-    Ok(all)
 }
 
 /// Adds the missing parent link of a joint, if the link is `world` or the only base of the robot. Some tools define `world` implicitly, and files of grippers
@@ -124,31 +130,25 @@ fn add_missing_parent<'a>(
     link_of: &mut HashMap<&'a str, usize>,
 ) {
     const WORLD: &str = "world";
-    let joints: Vec<Element> = root.children("joint").collect();
     let ends = |tag| {
-        let all = joints.iter().flat_map(move |joint| joint.children(tag));
-        all.filter_map(|end| Some((end, end.node.attribute("link")?)))
+        let all = root.children("joint").flat_map(move |it| it.children(tag));
+        all.filter_map(|end| Some((end, end.attribute("link")?)))
     };
     let children: HashSet<&str> = ends("child").map(|(_, name)| name).collect();
     let mut missing = ends("parent").filter(|(_, name)| !link_of.contains_key(name));
     let Some((parent, name)) = missing.next() else {
         return;
     };
-    let is_only_base = missing.all(|(_, other)| other == name)
-        && links
-            .iter()
-            .all(|link| children.contains(link.name.as_str()));
+    let is_moved = |link: &Link| children.contains(link.name.as_str());
+    let is_only_base = missing.all(|(_, other)| other == name) && links.iter().all(is_moved);
     if name != WORLD && !is_only_base {
         return;
     }
     let given = format!("parent `{name}`, which is no link");
-    let missing = Err(parent.refuse(given, "a <link> of that name"));
-    parent.or_note(missing, (), "it is the base of the robot");
+    let consequence = "it is the base of the robot";
+    parent.note(given, "a <link> of that name", consequence);
     link_of.insert(name, links.len());
-    links.push(Link {
-        name: name.to_owned(),
-        shapes: Vec::new(),
-    });
+    links.push(Link::new(name));
 }
 
 /// Adds a fixed joint without offset from the first link without a joint to each further link without a joint, as MuJoCo does.
@@ -166,20 +166,9 @@ fn join_roots<'a>(
     for other in roots {
         let (name, base_name) = (&links[other].name, &links[base].name);
         let given = format!("links `{base_name}` and `{name}`, which no joint moves");
-        let several = Err(root.refuse(given, "one of them"));
-        root.or_note(several, (), &format!("`{name}` is fixed to `{base_name}`"));
-        joints.push(Joint {
-            name: format!("{name}_fixed"),
-            kind: JointKind::Fixed,
-            parent: base,
-            child: other,
-            origin: Pose::IDENTITY,
-            axis: DVec3::X,
-            anchor: DVec3::ZERO,
-            reference: 0.0,
-            limits: None,
-            mimic: None,
-        });
+        let consequence = format!("`{name}` is fixed to `{base_name}`");
+        root.note(given, "one of them", &consequence);
+        joints.push(Joint::fixed(name, base, other, Pose::IDENTITY));
         elements.push(root);
     }
 }
@@ -190,48 +179,28 @@ fn read_joints<'a>(
     links: &[Link],
     link_of: &HashMap<&str, usize>,
 ) -> Result<(Vec<Joint>, Vec<Element<'a>>)> {
-    let ends = |joint: &Element| {
-        let tags = ["parent", "child"].into_iter();
-        let ends = tags.flat_map(|tag| joint.children(tag));
-        ends.filter_map(|end| end.node.attribute("link"))
-            .collect::<Vec<_>>()
-            .join("\0")
+    let end = |joint: Element<'a>, tag| {
+        let mut ends = joint.children(tag);
+        ends.next()?.attribute("link")
     };
-    let elements = distinct(root, "joint", ends)?;
-    let names = elements.iter().map(Element::name);
-    let names = names.collect::<Result<Vec<_>>>()?;
-    let joint_of = index_of_each("joint", names.iter().copied(), &elements)?;
-    let parents = elements.iter().filter_map(|joint| {
-        let mut parents = joint.children("parent");
-        parents.next()?.node.attribute("link")
-    });
-    let ends = Ends {
+    let ends = |joint| ["parent", "child"].map(|tag| end(joint, tag).unwrap_or_default());
+    let Named { elements, index_of } = Named::read(root, "joint", |joint| ends(joint).join("\0"))?;
+    let parents = elements.iter().filter_map(|joint| end(*joint, "parent"));
+    let known = Known {
         links,
         link_of,
+        joint_of: &index_of,
         parents: parents.collect(),
     };
-    let joints = elements.iter().zip(names);
-    let joints = joints.map(|(element, name)| read_joint(*element, name, &ends, &joint_of));
+    let joints = elements.iter().map(|element| read_joint(*element, &known));
     Ok((joints.collect::<Result<_>>()?, elements))
 }
 
-fn read_joint(
-    element: Element,
-    name: &str,
-    ends: &Ends,
-    joint_of: &HashMap<&str, usize>,
-) -> Result<Joint> {
-    element.check_tags(&[
-        "origin",
-        "parent",
-        "child",
-        "axis",
-        "limit",
-        "mimic",
-        "dynamics",
-        "calibration",
-        "safety_controller",
-    ])?;
+fn read_joint(element: Element, known: &Known) -> Result<Joint> {
+    let name = element.name()?;
+    element.check_tags(
+        "origin parent child axis limit mimic dynamics calibration safety_controller",
+    )?;
     let (kind, axis) = match element.or_note(read_kind(&element, name), JointKind::Fixed, FIXED) {
         // Fixed, floating and spherical joints have no axis; an `<axis>` in the file is ignored.
         kind @ (JointKind::Fixed | JointKind::Floating | JointKind::Ball) => (kind, DVec3::X),
@@ -240,26 +209,22 @@ fn read_joint(
             element.or_note(read, (JointKind::Fixed, DVec3::X), FIXED)
         }
     };
-    let mimic = read_mimic(element, name, kind, joint_of);
-    let [parent, child] = ["parent", "child"].map(|tag| ends.read(element, name, tag));
+    let mimic = read_mimic(element, kind, known);
+    let [parent, child] = ["parent", "child"].map(|tag| known.end(element, tag));
     let (parent, child) = (parent?, child?);
-    let slip = element.check_origin();
-    match kind == JointKind::Fixed && ends.is_frame(child) {
+    let slip = check_origin(element);
+    match kind == JointKind::Fixed && known.is_frame(child) {
         // A pose that only a frame without shapes has; all readers of URDF ignore unknown attributes.
         true => element.or_note(slip, (), "the attribute is ignored"),
         false => slip?,
     }
     Ok(Joint {
-        name: name.to_owned(),
         kind,
-        parent,
-        child,
-        origin: element.origin_ignoring_slips()?,
         axis,
-        anchor: DVec3::ZERO,
-        reference: 0.0,
         limits: read_limits(element, name, kind),
         mimic: element.or_note(mimic, None, ALONE),
+        name: name.to_owned(),
+        ..Joint::fixed(name, parent, child, origin_ignoring_slips(element)?)
     })
 }
 
@@ -273,27 +238,24 @@ fn drop_mimics_of_several(joints: &mut [Joint], elements: &[Element]) {
         if followed.kind.coordinates().len() < 2 {
             continue;
         }
-        let wrong: Result<()> = Err(elements[index].refuse(
-            format!(
-                "joint `{name}` mimics `{}`, which has several coordinates",
-                followed.name
-            ),
-            "a revolute, continuous or prismatic joint to follow",
-        ));
-        elements[index].or_note(wrong, (), ALONE);
+        let other = &followed.name;
+        let given = format!("joint `{name}` mimics `{other}`, which has several coordinates");
+        let allowed = "a revolute, continuous or prismatic joint to follow";
+        elements[index].note(given, allowed, ALONE);
         joints[index].mimic = None;
     }
 }
 
-/// Links that a joint can connect, by their names.
-struct Ends<'a> {
+/// Links and joints to which a joint can refer, by their names.
+struct Known<'a> {
     links: &'a [Link],
     link_of: &'a HashMap<&'a str, usize>,
+    joint_of: &'a HashMap<&'a str, usize>,
     /// Names of the links that joints have as parents.
     parents: HashSet<&'a str>,
 }
 
-impl Ends<'_> {
+impl Known<'_> {
     /// Returns whether a link is only a coordinate frame: a link without shapes that moves no other link.
     fn is_frame(&self, link: usize) -> bool {
         let Link { name, shapes } = &self.links[link];
@@ -301,16 +263,11 @@ impl Ends<'_> {
     }
 
     /// Returns the index of the link that a joint's `<parent>` or `<child>` element names.
-    fn read(&self, joint: Element, name: &str, tag: &'static str) -> Result<usize> {
+    fn end(&self, joint: Element, tag: &'static str) -> Result<usize> {
         let end = joint.needed_child(tag)?;
-        let wanted = end.text("link")?;
-        self.link_of.get(wanted).copied().ok_or_else(|| {
-            let known = self.links.iter().map(|link| link.name.as_str());
-            end.refuse(
-                format!("joint `{name}` with {tag} `{wanted}`, which is no link"),
-                nearest_names(wanted, known),
-            )
-        })
+        let found = self.link_of.get(end.text("link")?).copied();
+        let names = self.links.iter().map(|link| link.name.as_str());
+        found.ok_or_else(|| end.unknown("link", "link", names))
     }
 }
 
@@ -330,11 +287,8 @@ fn read_axis(element: Element, joint: &str) -> Result<DVec3> {
     let Some(axis) = element.child("axis")? else {
         return Ok(DVec3::X);
     };
-    axis.check_attributes(&["xyz"])?;
-    let xyz = DVec3::from(axis.numbers("xyz")?.unwrap_or([1.0, 0.0, 0.0]));
-    // Scaled first, so that no square overflows or underflows.
-    let largest = xyz.abs().max_element();
-    (xyz / largest).try_normalize().ok_or_else(|| {
+    axis.check_attributes("xyz")?;
+    unit_direction(axis.vector("xyz", DVec3::X)?).ok_or_else(|| {
         let given = format!("joint `{joint}` with an axis of length zero");
         axis.refuse(given, "a direction")
     })
@@ -350,35 +304,23 @@ fn read_limits(element: Element, joint: &str, kind: JointKind) -> Option<Limits>
     let Some(limit) = limit else {
         if has_ends {
             let given = format!("joint `{joint}` without <limit>");
-            let missing = Err(element.refuse(given, "lower and upper"));
-            element.or_note(missing, (), "its position is not limited");
+            element.note(given, "lower and upper", "its position is not limited");
         }
         return None;
     };
-    let slips = limit.check_attributes(&[
-        "lower",
-        "upper",
-        "velocity",
-        "effort",
-        "acceleration",
-        "deceleration",
-        "jerk",
-    ]);
+    let slips =
+        limit.check_attributes("lower upper velocity effort acceleration deceleration jerk");
     limit.or_note(slips, (), UNLIMITED);
     let endless = (f64::NEG_INFINITY, f64::INFINITY);
     let (lower, upper) = match has_ends {
         true => limit.or_note(read_ends(limit, joint), endless, UNLIMITED),
         false => endless,
     };
-    let not_negative = |attribute: &str| {
-        let value = limit.number(attribute)?.unwrap_or(f64::INFINITY);
-        if value >= 0.0 {
-            return Ok(value);
-        }
-        let given = format!("joint `{joint}` with `{attribute}` {value}");
-        Err(limit.refuse(given, "zero or a positive number"))
+    let most = |attribute| {
+        let most = limit.numbers_in(attribute, &NOT_NEGATIVE);
+        let most = limit.or_note(most, None, UNLIMITED);
+        most.map_or(f64::INFINITY, |[most]| most)
     };
-    let most = |attribute| limit.or_note(not_negative(attribute), f64::INFINITY, UNLIMITED);
     Some(Limits {
         lower,
         upper,
@@ -402,79 +344,35 @@ fn read_ends(limit: Element, joint: &str) -> Result<(f64, f64)> {
     Ok((lower, upper))
 }
 
-fn read_mimic(
-    element: Element,
-    joint: &str,
-    kind: JointKind,
-    joint_of: &HashMap<&str, usize>,
-) -> Result<Option<Mimic>> {
+fn read_mimic(element: Element, kind: JointKind, known: &Known) -> Result<Option<Mimic>> {
     let Some(mimic) = element.child("mimic")? else {
         return Ok(None);
     };
-    mimic.check_attributes(&["joint", "multiplier", "offset"])?;
+    mimic.check_attributes("joint multiplier offset")?;
     if !kind.has_one_coordinate() {
+        let joint = element.name()?;
         let given = format!("<mimic> in the {kind:?} joint `{joint}`").to_lowercase();
         return Err(mimic.refuse(given, "a revolute, continuous or prismatic joint"));
     }
-    let followed = mimic.text("joint")?;
-    let Some(&index) = joint_of.get(followed) else {
-        return Err(mimic.refuse(
-            format!("joint `{joint}` mimics `{followed}`, which is no joint"),
-            nearest_names(followed, in_order(joint_of)),
-        ));
+    let Some(&joint) = known.joint_of.get(mimic.text("joint")?) else {
+        // The order of a hash map varies between runs.
+        let mut names: Vec<(&usize, &str)> = known.joint_of.iter().map(|(n, k)| (k, *n)).collect();
+        names.sort_unstable();
+        return Err(mimic.unknown("joint", "joint", names.into_iter().map(|(_, name)| name)));
     };
     Ok(Some(Mimic {
-        joint: index,
+        joint,
         multiplier: mimic.number("multiplier")?.unwrap_or(1.0),
         offset: mimic.number("offset")?.unwrap_or(0.0),
     }))
 }
 
-/// Returns the names sorted by their index, because the order of a hash map varies between runs.
-fn in_order<'n>(index_of: &HashMap<&'n str, usize>) -> Vec<&'n str> {
-    let mut names: Vec<(usize, &str)> = index_of
-        .iter()
-        .map(|(name, index)| (*index, *name))
-        .collect();
-    names.sort_unstable();
-    names.into_iter().map(|(_, name)| name).collect()
-}
-
-/// Returns a map from names of elements to their indices. If two names are equal, the error shows the second element.
-fn index_of_each<'n>(
-    what: &str,
-    names: impl Iterator<Item = &'n str>,
-    elements: &[Element],
-) -> Result<HashMap<&'n str, usize>> {
-    let mut index_of: HashMap<&str, usize> = HashMap::new();
-    for (index, name) in names.enumerate() {
-        if let Some(first) = index_of.insert(name, index) {
-            let first = elements[first].line();
-            return Err(elements[index].refuse(
-                format!("a second {what} `{name}` (the first is on line {first})"),
-                "a name of its own",
-            ));
-        }
-    }
-    Ok(index_of)
-}
-
-/// Returns the first xacro element, or the first element with a xacro expression in an attribute; `None` if there is none. The elements that xacro would
-/// generate are missing from the file.
-fn not_expanded(root: Element) -> Option<Element> {
-    let is_xacro = |node: &Node| {
-        let space = node.tag_name().namespace();
-        space.is_some_and(|space| space.contains(XACRO))
-            || node.attributes().any(|attribute| {
-                let value = attribute.value();
-                value.contains("${") || value.contains("$(")
-            })
-    };
-    let found = root.node.descendants().find(is_xacro)?;
-    Some(Element {
-        node: found,
-        ..root
-    })
+/// Returns whether an element belongs to xacro or has a xacro expression in an attribute. The elements that xacro would generate are missing from the file.
+fn is_of_xacro(element: &Element) -> bool {
+    let space = element.node.tag_name().namespace();
+    let mut values = element.node.attributes().map(|attribute| attribute.value());
+    space.is_some_and(|space| space.contains(XACRO))
+        || values.any(|value| value.contains("${") || value.contains("$("))
 }
 
 fn xacro_error(element: Element) -> Error {

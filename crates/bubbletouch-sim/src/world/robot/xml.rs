@@ -1,10 +1,9 @@
 //! XML elements with their line numbers: typed access to their parts, and error messages.
 
 use crate::error::{Error, Result};
-use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
 use crate::text::spelling::{nearest_names, slip_of};
-use glam::{DQuat, DVec3};
-use roxmltree::Node;
+use glam::DVec3;
+use roxmltree::{Document, Node};
 use std::cell::RefCell;
 use std::ops::Range;
 use std::str::FromStr;
@@ -61,9 +60,9 @@ impl Lines {
         self.notes.borrow_mut().push(note);
     }
 
-    /// Returns the notes added so far, in their order.
-    pub fn into_notes(self) -> Vec<String> {
-        self.notes.into_inner()
+    /// Returns the notes added so far, in their order, and forgets them.
+    pub fn take_notes(&self) -> Vec<String> {
+        self.notes.take()
     }
 
     fn at(&self, offset: usize) -> &LineStart {
@@ -79,17 +78,78 @@ pub(super) struct Element<'a> {
     pub lines: &'a Lines,
 }
 
+/// Range of the numbers of an attribute: the test of a number, and the words of a message.
+pub(super) struct Allowed(fn(f64) -> bool, &'static str);
+
+/// Lengths of shapes.
+pub(super) const LENGTHS: Allowed = Allowed(
+    |number| number >= 0.0,
+    "lengths in metres, zero or positive",
+);
+/// Lengths of shapes with a volume.
+pub(super) const POSITIVE: Allowed = Allowed(|number| number > 0.0, "positive lengths in metres");
+/// Largest velocities and forces.
+pub(super) const NOT_NEGATIVE: Allowed =
+    Allowed(|number| number >= 0.0, "zero or a positive number");
+/// Scales of meshes.
+pub(super) const NOT_ZERO: Allowed =
+    Allowed(|number| number != 0.0, "three numbers other than zero");
+
 impl<'a> Element<'a> {
+    /// Returns the root element of a document.
+    pub fn root(document: &'a Document<'a>, lines: &'a Lines) -> Self {
+        Self {
+            node: document.root_element(),
+            lines,
+        }
+    }
+
+    /// Returns the name of the element's tag.
+    pub fn tag(&self) -> &'a str {
+        self.node.tag_name().name()
+    }
+
+    /// Returns the text of an attribute, or `None` if it is missing.
+    pub fn attribute(&self, name: &str) -> Option<&'a str> {
+        self.node.attribute(name)
+    }
+
+    /// Returns the byte range of the element in the text.
+    pub fn range(&self) -> Range<usize> {
+        self.node.range()
+    }
+
     /// Returns the line number of the element, from 1.
     pub fn line(&self) -> usize {
-        self.lines.at(self.node.range().start).line
+        self.lines.at(self.range().start).line
+    }
+
+    /// Returns the file and the line of the element, for messages.
+    pub fn place(&self) -> String {
+        let start = self.lines.at(self.range().start);
+        format!("{}, line {}", self.lines.places[start.place], start.line)
     }
 
     /// Returns an input error that names the file and the line of this element.
     pub fn refuse(&self, given: impl ToString, allowed: impl ToString) -> Error {
-        let start = self.lines.at(self.node.range().start);
-        let place = format!("{}, line {}", self.lines.places[start.place], start.line);
-        Error::input(place, given, allowed)
+        Error::input(self.place(), given, allowed)
+    }
+
+    /// Returns the error of an attribute with the name of a thing that does not exist; `names` are the names of all things of its kind.
+    pub fn unknown<'n>(
+        &self,
+        attribute: &str,
+        kind: &str,
+        names: impl IntoIterator<Item = &'n str>,
+    ) -> Error {
+        let name = self.attribute(attribute).unwrap_or_default();
+        let given = format!("`{attribute}` \"{name}\", which is no {kind}");
+        self.refuse(given, nearest_names(name, names))
+    }
+
+    /// Adds a note about a fault that is no error; `consequence` is the end of the note.
+    pub fn note(&self, given: impl ToString, allowed: impl ToString, consequence: &str) {
+        self.or_note(Err(self.refuse(given, allowed)), (), consequence);
     }
 
     /// Returns the value of an optional part of the file. If the part is invalid, the error becomes a note that ends with `consequence`, and `instead` is
@@ -101,11 +161,18 @@ impl<'a> Element<'a> {
         })
     }
 
+    /// Returns the child elements. Elements in another namespace than the root's namespace belong to other tools and are left out.
+    pub fn elements(self) -> impl Iterator<Item = Self> {
+        let namespace = |node: &Node<'a, 'a>| node.tag_name().namespace();
+        let own = namespace(&self.node.document().root_element());
+        let is_own = move |node: &Node<'a, 'a>| node.is_element() && namespace(node) == own;
+        let children = self.node.children().filter(is_own);
+        children.map(move |node| Self { node, ..self })
+    }
+
     /// Returns the child elements with this tag.
     pub fn children(self, tag: &'a str) -> impl Iterator<Item = Self> {
-        let is_it = move |node: &Node| is_own(node) && node.tag_name().name() == tag;
-        let children = self.node.children().filter(is_it);
-        children.map(move |node| Self { node, ..self })
+        self.elements().filter(move |child| child.tag() == tag)
     }
 
     /// Returns the only child element with this tag, or `None`; returns an error if there are several.
@@ -124,9 +191,26 @@ impl<'a> Element<'a> {
             .ok_or_else(|| self.refuse(format!("{} without <{tag}>", self.called()), "exactly one"))
     }
 
+    /// Returns all elements of the document, in the order of the file.
+    pub fn whole_document(self) -> impl Iterator<Item = Self> {
+        let all = self.node.document().root_element().descendants();
+        all.filter(Node::is_element)
+            .map(move |node| Self { node, ..self })
+    }
+
+    /// Returns the elements around this element, from the inside out.
+    pub fn around(self) -> impl Iterator<Item = Self> {
+        let all = self.node.ancestors().skip(1).filter(Node::is_element);
+        all.map(move |node| Self { node, ..self })
+    }
+
     /// Returns the value of a required attribute.
     pub fn text(&self, attribute: &str) -> Result<&'a str> {
-        self.node.attribute(attribute).ok_or_else(|| {
+        self.needed(attribute, self.attribute(attribute))
+    }
+
+    fn needed<T>(&self, attribute: &str, value: Option<T>) -> Result<T> {
+        value.ok_or_else(|| {
             let given = format!("{} without `{attribute}`", self.called());
             self.refuse(given, format!("the attribute `{attribute}`"))
         })
@@ -143,23 +227,79 @@ impl<'a> Element<'a> {
 
     /// Returns the N finite numbers in the value of an attribute, or `None` if the attribute is missing.
     pub fn numbers<const N: usize>(&self, attribute: &str) -> Result<Option<[f64; N]>> {
-        let Some(text) = self.node.attribute(attribute) else {
+        let Some(text) = self.attribute(attribute) else {
             return Ok(None);
         };
         let numbers = finite_numbers(text).and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
-        let allowed = || match N {
-            1 => "a finite number".to_owned(),
-            _ => format!("{N} finite numbers with spaces between"),
-        };
-        match numbers {
-            Some(numbers) => Ok(Some(numbers)),
-            None => Err(self.refuse(format!("`{attribute}` \"{}\"", shortened(text)), allowed())),
+        numbers.map(Some).ok_or_else(|| {
+            let allowed = match N {
+                1 => "a finite number".to_owned(),
+                _ => format!("{N} finite numbers with spaces between"),
+            };
+            self.refuse(format!("`{attribute}` \"{}\"", shortened(text)), allowed)
+        })
+    }
+
+    /// Returns the numbers of an attribute as `numbers` does, or an error if a number is out of range.
+    pub fn numbers_in<const N: usize>(
+        &self,
+        attribute: &str,
+        allowed: &Allowed,
+    ) -> Result<Option<[f64; N]>> {
+        let &Allowed(is_allowed, words) = allowed;
+        match self.numbers(attribute)? {
+            Some(numbers) if !numbers.into_iter().all(is_allowed) => {
+                let text = self.attribute(attribute).unwrap_or_default();
+                Err(self.refuse(format!("`{attribute}` {}", shortened(text)), words))
+            }
+            numbers => Ok(numbers),
         }
+    }
+
+    /// Returns the N finite numbers in the value of a required attribute.
+    pub fn needed_numbers<const N: usize>(&self, attribute: &str) -> Result<[f64; N]> {
+        self.needed(attribute, self.numbers(attribute)?)
+    }
+
+    /// Returns the N numbers of a required attribute, which must be in a range.
+    pub fn needed_in<const N: usize>(
+        &self,
+        attribute: &str,
+        allowed: &Allowed,
+    ) -> Result<[f64; N]> {
+        self.needed(attribute, self.numbers_in(attribute, allowed)?)
+    }
+
+    /// Returns the finite number in the value of an attribute, or `None` if the attribute is missing.
+    pub fn number(&self, attribute: &str) -> Result<Option<f64>> {
+        Ok(self.numbers::<1>(attribute)?.map(|[number]| number))
+    }
+
+    /// Returns the integer from `least` to `most` in the value of an attribute, or `None` if the attribute is missing.
+    pub fn integer(&self, attribute: &str, least: usize, most: usize) -> Result<Option<usize>> {
+        let Some(number) = self.number(attribute)? else {
+            return Ok(None);
+        };
+        if (least as f64..=most as f64).contains(&number) && number.fract() == 0.0 {
+            return Ok(Some(number as usize));
+        }
+        let given = format!("`{attribute}` {number}");
+        Err(self.refuse(given, format!("an integer from {least} to {most}")))
+    }
+
+    /// Returns the integer of a required attribute as `integer` does.
+    pub fn needed_integer(&self, attribute: &str, least: usize, most: usize) -> Result<usize> {
+        self.needed(attribute, self.integer(attribute, least, most)?)
+    }
+
+    /// Returns the vector in the value of an attribute, or `default` if the attribute is missing.
+    pub fn vector(&self, attribute: &str, default: DVec3) -> Result<DVec3> {
+        Ok(self.numbers(attribute)?.map_or(default, DVec3::from))
     }
 
     /// Returns the numbers in the value of an attribute, which are at most `n` finite numbers; none if the attribute is missing.
     pub fn up_to(&self, n: usize, attribute: &str) -> Result<Vec<f64>> {
-        let text = self.node.attribute(attribute).unwrap_or_default();
+        let text = self.attribute(attribute).unwrap_or_default();
         let numbers = finite_numbers(text).filter(|numbers| numbers.len() <= n);
         numbers.ok_or_else(|| {
             let given = format!("`{attribute}` \"{}\"", shortened(text));
@@ -169,109 +309,65 @@ impl<'a> Element<'a> {
 
     /// Returns the value that belongs to the word of an attribute, or `None` if the attribute is missing.
     pub fn one_of<T: Copy>(&self, attribute: &str, words: &[(&str, T)]) -> Result<Option<T>> {
-        let Some(given) = self.node.attribute(attribute) else {
+        let Some(given) = self.attribute(attribute) else {
             return Ok(None);
         };
-        match words.iter().find(|(word, _)| *word == given) {
-            Some((_, value)) => Ok(Some(*value)),
-            None => {
-                let names = words.iter().map(|(word, _)| *word);
-                let given = format!("`{attribute}` \"{}\"", shortened(given));
-                Err(self.refuse(given, nearest_names("", names)))
-            }
-        }
-    }
-
-    /// Returns the N finite numbers in the value of a required attribute.
-    pub fn needed_numbers<const N: usize>(&self, attribute: &str) -> Result<[f64; N]> {
-        self.text(attribute)?;
-        Ok(self.numbers(attribute)?.expect("the attribute is there"))
-    }
-
-    /// Returns the finite number in the value of an attribute, or `None` if the attribute is missing.
-    pub fn number(&self, attribute: &str) -> Result<Option<f64>> {
-        Ok(self.numbers::<1>(attribute)?.map(|[number]| number))
-    }
-
-    /// Returns the pose in the child element `<origin>`; the identity if there is none. The attribute `rpy` rotates about the fixed axes x, y, z in this
-    /// order; `quat_xyzw` (URDF 1.1) replaces this attribute.
-    pub fn origin(self) -> Result<Pose> {
-        self.check_origin()?;
-        self.origin_ignoring_slips()
-    }
-
-    /// Returns an error if an attribute of `<origin>` is a misspelling.
-    pub fn check_origin(self) -> Result<()> {
-        let origin = self.child("origin")?;
-        origin.map_or(Ok(()), |origin| {
-            origin.check_attributes(&["xyz", "rpy", "quat_xyzw"])
+        let found = words.iter().find(|(word, _)| *word == given);
+        found.map(|&(_, value)| Some(value)).ok_or_else(|| {
+            let names = words.iter().map(|(word, _)| *word);
+            let given = format!("`{attribute}` \"{}\"", shortened(given));
+            self.refuse(given, nearest_names("", names))
         })
     }
 
-    /// Returns the pose as [`origin`](Self::origin) does, but ignores misspelt attributes.
-    pub fn origin_ignoring_slips(self) -> Result<Pose> {
-        let Some(origin) = self.child("origin")? else {
-            return Ok(Pose::IDENTITY);
-        };
-        let xyz = origin.numbers("xyz")?.unwrap_or([0.0; 3]);
-        let rotation = match (origin.numbers("rpy")?, origin.numbers("quat_xyzw")?) {
-            (Some(_), Some(_)) => {
-                return Err(origin.refuse("both `rpy` and `quat_xyzw`", "one of them"));
-            }
-            (None, Some(xyzw)) => {
-                let quaternion = DQuat::from_array(xyzw);
-                written_rotation(quaternion).ok_or_else(|| {
-                    let given = format!("a quaternion of length {}", quaternion.length());
-                    origin.refuse(given, "length 1")
-                })?
-            }
-            (rpy, None) => rotation_from_rpy(DVec3::from(rpy.unwrap_or([0.0; 3]))),
-        };
-        Ok(Pose::new(rotation, DVec3::from(xyz)))
+    /// Returns an error if the tag of a child element is a misspelling of one of the `known` words. Unknown elements are ignored, because every simulator adds
+    /// its own.
+    pub fn check_tags(&self, known: &str) -> Result<()> {
+        self.elements()
+            .try_for_each(|child| match slip(child.tag(), known) {
+                Some(meant) => {
+                    let given = format!("<{}>", child.tag());
+                    Err(child.refuse(given, format!("perhaps <{meant}>")))
+                }
+                None => Ok(()),
+            })
     }
 
-    /// Returns an error if the tag of a child element is a misspelling of a known tag. Unknown elements are ignored, because every simulator adds its own.
-    pub fn check_tags(&self, known: &[&str]) -> Result<()> {
-        for node in self.node.children().filter(is_own) {
-            let tag = node.tag_name().name();
-            if !known.contains(&tag)
-                && let Some(meant) = slip_of(tag, known)
-            {
-                let child = Self { node, ..*self };
-                return Err(child.refuse(format!("<{tag}>"), format!("perhaps <{meant}>")));
-            }
-        }
-        Ok(())
-    }
-
-    /// Returns an error if the name of an attribute is a misspelling of a known name.
-    pub fn check_attributes(&self, known: &[&str]) -> Result<()> {
-        for attribute in self.node.attributes() {
-            let name = attribute.name();
-            if !known.contains(&name)
-                && let Some(meant) = slip_of(name, known)
-            {
+    /// Returns an error if the name of an attribute is a misspelling of one of the `known` words.
+    pub fn check_attributes(&self, known: &str) -> Result<()> {
+        let mut names = self.node.attributes().map(|attribute| attribute.name());
+        names.try_for_each(|name| match slip(name, known) {
+            Some(meant) => {
                 let given = format!("`{name}` in {}", self.called());
-                return Err(self.refuse(given, format!("perhaps `{meant}`")));
+                Err(self.refuse(given, format!("perhaps `{meant}`")))
             }
-        }
-        Ok(())
+            None => Ok(()),
+        })
     }
 
     /// Returns the tag of the element, and its name if it has one, for error messages.
     pub fn called(&self) -> String {
-        let tag = self.node.tag_name().name();
-        match self.node.attribute("name") {
+        let tag = self.tag();
+        match self.attribute("name") {
             Some(name) => format!("<{tag}> `{name}`"),
             None => format!("<{tag}>"),
         }
     }
 }
 
-/// Returns whether a node is an element of URDF. Elements in another namespace than the root's namespace belong to other tools.
-fn is_own(node: &Node) -> bool {
-    let root = node.document().root_element();
-    node.is_element() && node.tag_name().namespace() == root.tag_name().namespace()
+/// Returns the word of a list of words, separated by spaces, of which an unknown word is a misspelling; `None` for a known word.
+fn slip<'k>(word: &str, known: &'k str) -> Option<&'k str> {
+    let known: Vec<&str> = known.split_whitespace().collect();
+    match known.contains(&word) {
+        true => None,
+        false => slip_of(word, &known),
+    }
+}
+
+/// Returns the unit vector along a direction of any length; `None` if the length is zero.
+pub(super) fn unit_direction(direction: DVec3) -> Option<DVec3> {
+    // Scaled first, so that no square overflows or underflows.
+    (direction / direction.abs().max_element()).try_normalize()
 }
 
 /// Returns the numbers of a text; `None` if a word is not a finite number.

@@ -1,5 +1,6 @@
 //! Laws of touch placement.
 
+use super::cases::cases;
 use crate::standard_errors::{assert_expected, mean_and_std, of_mean, of_share};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::random::Seed;
@@ -30,6 +31,20 @@ fn grid() -> Placement {
         depth: listed(&[0.003, 0.004]),
         per_object: None,
     }
+}
+
+/// Returns a placement that draws a number of touches.
+fn drawing(placement: Placement, per_object: usize) -> Placement {
+    Placement {
+        per_object: Some(per_object),
+        ..placement
+    }
+}
+
+/// Returns a placement that draws a number of touches whose yaw is spread uniformly.
+fn turning(per_object: usize, low: f64, high: f64) -> Placement {
+    let yaw = Spread::Uniform { low, high };
+    drawing(Placement { yaw, ..grid() }, per_object)
 }
 
 fn made(placement: &Placement, probabilities: &[f64]) -> Vec<Touch> {
@@ -65,16 +80,7 @@ fn lists_alone_give_every_combination_with_the_last_axis_fastest() {
 #[test]
 fn a_number_of_combinations_is_drawn_without_repetition_and_nests() {
     let all = made(&grid(), &[0.7, 0.3]);
-    let drawn = |count| {
-        let per_object = Some(count);
-        made(
-            &Placement {
-                per_object,
-                ..grid()
-            },
-            &[0.7, 0.3],
-        )
-    };
+    let drawn = |count| made(&drawing(grid(), count), &[0.7, 0.3]);
     let every = drawn(24);
     for touch in &every {
         assert!(all.contains(touch));
@@ -90,10 +96,7 @@ fn a_number_of_combinations_is_drawn_without_repetition_and_nests() {
 fn each_combination_is_equally_likely_to_be_drawn() {
     let mut count = [0; 24];
     for seed in 0..4000 {
-        let placement = Placement {
-            per_object: Some(6),
-            ..grid()
-        };
+        let placement = drawing(grid(), 6);
         let drawn = touches(&placement, &rests(&[0.7, 0.3]), &Seed::new(seed)).unwrap();
         for touch in drawn {
             let index = |axis| touch.group(&[axis]).unwrap()[0];
@@ -110,16 +113,7 @@ fn each_combination_is_equally_likely_to_be_drawn() {
 
 #[test]
 fn uniform_spreads_fill_their_range_and_resting_poses_follow_their_probability() {
-    let yaw = Spread::Uniform {
-        low: -1.0,
-        high: 3.0,
-    };
-    let placement = Placement {
-        yaw,
-        per_object: Some(20_000),
-        ..grid()
-    };
-    let all = made(&placement, &[0.7, 0.1, 0.2]);
+    let all = made(&turning(20_000, -1.0, 3.0), &[0.7, 0.1, 0.2]);
     let n = all.len();
     let yaws: Vec<f64> = all.iter().map(|t| t.yaw).collect();
     let (mean, _) = mean_and_std(&yaws);
@@ -135,20 +129,7 @@ fn uniform_spreads_fill_their_range_and_resting_poses_follow_their_probability()
 
 #[test]
 fn a_touch_is_drawn_alone_by_its_number_and_each_axis_by_its_name() {
-    let yaw = Spread::Uniform {
-        low: 0.0,
-        high: 1.0,
-    };
-    let some = Placement {
-        yaw: yaw.clone(),
-        per_object: Some(5),
-        ..grid()
-    };
-    let more = Placement {
-        yaw,
-        per_object: Some(50),
-        ..grid()
-    };
+    let (some, more) = (turning(5, 0.0, 1.0), turning(50, 0.0, 1.0));
     assert_eq!(made(&some, &[1.0]), made(&more, &[1.0])[..5]);
     let other_depths = Placement {
         depth: listed(&[0.001]),
@@ -161,16 +142,7 @@ fn a_touch_is_drawn_alone_by_its_number_and_each_axis_by_its_name() {
 
 #[test]
 fn touches_group_by_their_listed_values_but_not_by_uniform_ones() {
-    let yaw = Spread::Uniform {
-        low: 0.0,
-        high: 1.0,
-    };
-    let placement = Placement {
-        yaw,
-        per_object: Some(30),
-        ..grid()
-    };
-    for touch in made(&placement, &[0.5, 0.5]) {
+    for touch in made(&turning(30, 0.0, 1.0), &[0.5, 0.5]) {
         let group = touch.group(&[TouchAxis::Rest, TouchAxis::OffsetX]).unwrap();
         assert_eq!(group[0], touch.rest);
         assert_eq!([0.0, 0.002][group[1]], touch.offset[0]);
@@ -178,84 +150,42 @@ fn touches_group_by_their_listed_values_but_not_by_uniform_ones() {
     }
 }
 
+/// Changed property | its values, or the ends of a uniform range | part of the message.
+const IMPOSSIBLE_PLACEMENTS: &str = "
+    yaw | 0 to 1 | yaw spread uniformly
+    per_object | 0 | 1 to 12
+    per_object | 13 | 1 to 12
+    offset_x | | offset_x: no values
+    yaw | 0.5 0.1 0.5 | yaw: 0.5 twice
+    depth | -0.001 | depth: -0.001
+    tilt_x | 1.6 | quarter turn
+    offset_y | NaN | offset_y: NaN
+    yaw | 2 to 1 | from 2 to 1
+    yaw | 0 to inf | yaw: inf
+";
+
 #[test]
 fn placements_that_cannot_be_made_are_refused_with_their_reason() {
-    let uniform = |low, high| Spread::Uniform { low, high };
-    let cases = [
-        (
-            Placement {
-                yaw: uniform(0.0, 1.0),
-                ..grid()
+    for [property, values, reason] in cases(IMPOSSIBLE_PLACEMENTS) {
+        let number = |word: &str| word.parse().unwrap();
+        let spread = match values.split_once(" to ") {
+            Some((low, high)) => Spread::Uniform {
+                low: number(low),
+                high: number(high),
             },
-            "yaw spread uniformly",
-        ),
-        (
-            Placement {
-                per_object: Some(0),
-                ..grid()
-            },
-            "1 to 12",
-        ),
-        (
-            Placement {
-                per_object: Some(13),
-                ..grid()
-            },
-            "1 to 12",
-        ),
-        (
-            Placement {
-                offset_x: listed(&[]),
-                ..grid()
-            },
-            "offset_x: no values",
-        ),
-        (
-            Placement {
-                yaw: listed(&[0.5, 0.1, 0.5]),
-                ..grid()
-            },
-            "yaw: 0.5 twice",
-        ),
-        (
-            Placement {
-                depth: listed(&[-0.001]),
-                ..grid()
-            },
-            "depth: -0.001",
-        ),
-        (
-            Placement {
-                tilt_x: listed(&[1.6]),
-                ..grid()
-            },
-            "quarter turn",
-        ),
-        (
-            Placement {
-                offset_y: listed(&[f64::NAN]),
-                ..grid()
-            },
-            "offset_y: NaN",
-        ),
-        (
-            Placement {
-                yaw: uniform(2.0, 1.0),
-                ..grid()
-            },
-            "from 2 to 1",
-        ),
-        (
-            Placement {
-                yaw: uniform(0.0, f64::INFINITY),
-                ..grid()
-            },
-            "yaw: inf",
-        ),
-    ];
-    for (placement, reason) in cases {
+            None => Spread::Values(values.split_whitespace().map(number).collect()),
+        };
+        let mut placement = grid();
+        match property.as_str() {
+            "per_object" => placement.per_object = Some(values.parse().unwrap()),
+            "offset_x" => placement.offset_x = spread,
+            "offset_y" => placement.offset_y = spread,
+            "yaw" => placement.yaw = spread,
+            "tilt_x" => placement.tilt_x = spread,
+            _ => placement.depth = spread,
+        }
         let message = refused(&placement, &[1.0]);
-        assert!(message.contains(reason), "{message}");
+        assert!(message.contains(&reason), "{message}");
     }
     assert!(refused(&grid(), &[]).contains("resting poses: none"));
     assert!(refused(&grid(), &[0.5, -0.5]).contains("probability -0.5"));
@@ -273,9 +203,5 @@ fn a_slip_that_asks_for_endless_combinations_is_refused_before_memory_runs_out()
         ..grid()
     };
     assert!(refused(&placement, &[1.0]).contains("1 to 10000000"));
-    let some = Placement {
-        per_object: Some(7),
-        ..placement
-    };
-    assert_eq!(made(&some, &[1.0]).len(), 7);
+    assert_eq!(made(&drawing(placement, 7), &[1.0]).len(), 7);
 }

@@ -1,6 +1,8 @@
 //! Laws of trajectories of robots and bodies: smooth between waypoints, and within limits at all times.
 
+use super::cases::{cases, replaced};
 use crate::counting::allocations;
+use bubbletouch_sim::Result;
 use bubbletouch_sim::geometry::{Pose, rotation_from_rpy};
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::world::{
@@ -40,44 +42,63 @@ fn free() -> Robot {
 }
 
 /// Returns a trajectory of the hinge through these values at 0, 1, 2, … s; the slide stays at rest.
-fn hinge(
-    robot: &Robot,
-    values: &[f64],
-    kind: Interpolation,
-) -> bubbletouch_sim::Result<JointTrajectory> {
+fn hinge(robot: &Robot, values: &[f64], kind: Interpolation) -> Result<JointTrajectory> {
     let times = (0..values.len()).map(|i| i as f64).collect();
-    let positions = Array2::from_shape_fn(
-        (values.len(), 2),
-        |(i, k)| if k == 0 { values[i] } else { 0.0 },
-    );
+    let mut positions = Array2::zeros((values.len(), 2));
+    positions.column_mut(0).assign(&ndarray::aview1(values));
     JointTrajectory::new(robot, times, positions, kind)
 }
 
 #[test]
 fn splines_are_those_of_an_independent_program() {
     let positions = Array2::from_shape_fn((5, 2), |(i, k)| if k == 0 { VALUES[i] } else { 0.05 });
-    let through =
-        |kind| JointTrajectory::new(&free(), TIMES.to_vec(), positions.clone(), kind).unwrap();
-    let agrees = |found: f64, expected: f64| {
-        assert!((found - expected).abs() < 1e-12, "{found}, {expected}")
-    };
-    let cubic = through(Interpolation::Cubic);
-    for (time, value, velocity) in [
-        (0.25, 0.31198778565799834, 2.247951142631994),
-        (1.0, 2.262217899045617, 1.5405256763856046),
-        (1.9, -0.07585798091235388, -6.592534804307855),
-        (3.1, -1.3458535904255333, 2.495035017730494),
+    for (kind, time, value, velocity) in [
+        (
+            Interpolation::Cubic,
+            0.25,
+            0.31198778565799834,
+            2.247951142631994,
+        ),
+        (
+            Interpolation::Cubic,
+            1.0,
+            2.262217899045617,
+            1.5405256763856046,
+        ),
+        (
+            Interpolation::Cubic,
+            1.9,
+            -0.07585798091235388,
+            -6.592534804307855,
+        ),
+        (
+            Interpolation::Cubic,
+            3.1,
+            -1.3458535904255333,
+            2.495035017730494,
+        ),
+        (
+            Interpolation::Monotone,
+            1.0,
+            1.134460719251675,
+            0.19228763746681832,
+        ),
+        (
+            Interpolation::Monotone,
+            1.9,
+            -0.20740740740740682,
+            -8.44444444444445,
+        ),
     ] {
-        agrees(cubic.positions_at(time)[0], value);
-        agrees(cubic.velocities_at(time)[0], velocity);
-    }
-    let monotone = through(Interpolation::Monotone);
-    for (time, value, velocity) in [
-        (1.0, 1.134460719251675, 0.19228763746681832),
-        (1.9, -0.20740740740740682, -8.44444444444445),
-    ] {
-        agrees(monotone.positions_at(time)[0], value);
-        agrees(monotone.velocities_at(time)[0], velocity);
+        let through = JointTrajectory::new(&free(), TIMES.to_vec(), positions.clone(), kind);
+        let through = through.unwrap();
+        let found = [
+            through.positions_at(time)[0],
+            through.velocities_at(time)[0],
+        ];
+        for (found, expected) in found.into_iter().zip([value, velocity]) {
+            assert!((found - expected).abs() < 1e-12, "{found}, {expected}");
+        }
     }
 }
 
@@ -94,10 +115,8 @@ fn the_ends_hold_and_way_points_are_passed_exactly() {
         assert_eq!(trajectory.end(), 4.0);
     }
     let one = hinge(&free(), &[0.3], Interpolation::Cubic).unwrap();
-    assert_eq!(
-        [one.positions_at(-1.0)[0], one.positions_at(1.0)[0]],
-        [0.3, 0.3]
-    );
+    let found = [-1.0, 1.0].map(|time| one.positions_at(time)[0]);
+    assert_eq!(found, [0.3, 0.3]);
 }
 
 #[test]
@@ -109,11 +128,9 @@ fn a_limit_passed_between_legal_way_points_is_found() {
         hinge(&robot, &values, kind).expect("nothing leaves the way-points");
     }
     let error = hinge(&robot, &values, Interpolation::Cubic).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "joint trajectory: joint `hinge`: 1.250000 rad (71.62°) at 1.5000 s (between way-point 2 and way-point 3); \
-         at most 1.050000 rad (60.16°)"
-    );
+    let expected = "joint trajectory: joint `hinge`: 1.250000 rad (71.62°) at 1.5000 s (between way-point 2 and way-point 3); \
+                    at most 1.050000 rad (60.16°)";
+    assert_eq!(error.to_string(), expected);
 }
 
 #[test]
@@ -121,13 +138,11 @@ fn a_velocity_passed_between_slow_way_points_is_found() {
     let robot = robot(r#"lower="-9" upper="9" velocity="1.2""#);
     // At rest at both ends, one radian in one second has a speed of 1.5 rad/s half-way.
     hinge(&robot, &[0.0, 1.0], Interpolation::Linear).expect("1 rad/s");
+    let expected = "joint trajectory: joint `hinge`: velocity -1.500000 rad/s at 0.5000 s (between way-point 1 and way-point 2); \
+                    at most 1.200000 rad/s";
     for kind in [Interpolation::Cubic, Interpolation::Monotone] {
         let error = hinge(&robot, &[0.0, -1.0], kind).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "joint trajectory: joint `hinge`: velocity -1.500000 rad/s at 0.5000 s (between way-point 1 and way-point 2); \
-             at most 1.200000 rad/s"
-        );
+        assert_eq!(error.to_string(), expected);
     }
 }
 
@@ -137,13 +152,9 @@ fn a_joint_that_mimics_goes_beyond_its_own_limits_with_a_note() {
     assert!(within.notes().is_empty());
     let beyond = hinge(&free(), &[0.0, 4.8], Interpolation::Linear).expect("-9.1 rad");
     assert_eq!(beyond.positions_at(1.0)[0], 4.8);
-    assert_eq!(
-        beyond.notes(),
-        [
-            "joint trajectory: joint `follower`: -9.100000 rad (-521.39°) at 1.0000 s (way-point 2); \
-          at least -9.000000 rad (-515.66°): it mimics `hinge`, whatever its own limits"
-        ]
-    );
+    let expected = "joint trajectory: joint `follower`: -9.100000 rad (-521.39°) at 1.0000 s (way-point 2); \
+                    at least -9.000000 rad (-515.66°): it mimics `hinge`, whatever its own limits";
+    assert_eq!(beyond.notes(), [expected]);
 }
 
 #[test]
@@ -152,12 +163,6 @@ fn a_joint_that_no_column_moves_rests() {
     let csv = "time_s,slide_mm\n0,10\n1,20\n";
     let read = JointTrajectory::read_csv(&robot, "t.csv", csv.as_bytes(), Interpolation::Linear);
     assert_eq!(read.unwrap().positions_at(0.5), [0.2, 0.015]);
-    let none =
-        JointTrajectory::read_csv(&robot, "t.csv", &b"time_s\n0\n"[..], Interpolation::Linear);
-    assert_eq!(
-        none.unwrap_err().to_string(),
-        "t.csv, line 1: no column of a joint; `hinge`, `slide`"
-    );
 }
 
 #[test]
@@ -185,21 +190,13 @@ fn a_trajectory_is_refused_exactly_when_a_fine_search_finds_it_beyond() {
         let velocity = most(&|time| trajectory.velocities_at(time)[0].abs());
         for (position_share, velocity_share) in [(1.001, 1.001), (0.999, 9.0), (9.0, 0.999)] {
             let bound = position * position_share;
-            let limits = format!(
-                r#"lower="-{bound}" upper="{bound}" velocity="{}""#,
-                velocity * velocity_share
-            );
+            let speed = velocity * velocity_share;
+            let limits = format!(r#"lower="-{bound}" upper="{bound}" velocity="{speed}""#);
             let is_legal = hinge(&robot(&limits), &values, kind).is_ok();
-            assert_eq!(
-                is_legal,
-                position_share > 1.0 && velocity_share > 1.0,
-                "{kind:?} {values:?}"
-            );
-            if is_legal {
-                n_legal += 1
-            } else {
-                n_beyond += 1
-            }
+            let expected = position_share > 1.0 && velocity_share > 1.0;
+            assert_eq!(is_legal, expected, "{kind:?} {values:?}");
+            n_legal += usize::from(is_legal);
+            n_beyond += usize::from(!is_legal);
         }
     }
     assert_eq!((n_legal, n_beyond), (120, 240));
@@ -207,7 +204,7 @@ fn a_trajectory_is_refused_exactly_when_a_fine_search_finds_it_beyond() {
 
 const CSV: &str = "time_s,slide_mm,hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45\n";
 
-fn read(text: &str) -> bubbletouch_sim::Result<JointTrajectory> {
+fn read(text: &str) -> Result<JointTrajectory> {
     JointTrajectory::read_csv(&free(), "t.csv", text.as_bytes(), Interpolation::Cubic)
 }
 
@@ -221,106 +218,40 @@ fn csv_columns_come_in_any_order_and_in_their_units() {
     )
     .unwrap();
     for time in [0.3, 1.7] {
-        for (a, b) in trajectory
-            .positions_at(time)
-            .iter()
-            .zip(same.positions_at(time))
-        {
-            assert!((a - b).abs() < 1e-15);
-        }
+        let pairs = trajectory.positions_at(time).into_iter();
+        let mut pairs = pairs.zip(same.positions_at(time));
+        assert!(pairs.all(|(a, b)| (a - b).abs() < 1e-15));
     }
 }
 
+/// Text of `CSV` | wrong text | message after `t.csv`.
+const BAD_TABLES: &str = r#"
+    90 | nan | , line 3, column hinge_deg: `nan`; a finite number
+    90 | | , line 3, column hinge_deg: ``; a finite number
+    20,90 | 20 | , line 3: 2 columns; 3 columns in every row
+    2,0 | 1.5,0 | , line 4: time 1.5 s after 1.5 s; strictly ascending times
+    time_s | time_ms | , line 1: no column time_s; times in seconds
+    hinge_deg | hing_deg | , line 1: column `hing_deg`; one of `hinge`, `slide`
+    hinge_deg | hinge_mm | , line 1: column `hinge_mm`; one of `hinge`, `slide`
+    hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45 | hinge,hinge_deg\n0,10,0,0 | , line 1: a second column for hinge: `hinge_deg`; one column each
+    hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45 | hinge_deg,follower\n0,10,0,0 | , line 1: a column for `follower`, which mimics another joint; only the joint that it follows
+    hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45 | hinge_deg,sldie\n0,10,0,0 | , line 1: column `sldie`; perhaps `slide`
+    ,slide_mm,hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45 | \n0 | , line 1: no column of a joint; `hinge`, `slide`
+    20 | 101 | : joint `slide`: 0.130850 m at 1.1862 s (between line 2 and line 3); at most 0.100000 m
+    0,10,0\n1.5, 20,90\n2,0,-45\n | | : no way-points; at least one
+    time_s,slide_mm,hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45\n | | : an empty file; a header with time_s, then way-points
+    1.5, | 1e-310, | : `hinge` with an endless velocity; way-points farther apart in time
+"#;
+
 #[test]
 fn a_bad_csv_is_refused_with_its_line() {
-    for (old, new, sentence) in [
-        (
-            "90",
-            "nan",
-            "t.csv, line 3, column hinge_deg: `nan`; a finite number",
-        ),
-        (
-            "90",
-            "",
-            "t.csv, line 3, column hinge_deg: ``; a finite number",
-        ),
-        (
-            "20,90",
-            "20",
-            "t.csv, line 3: 2 columns; 3 columns in every row",
-        ),
-        (
-            "2,0",
-            "1.5,0",
-            "t.csv, line 4: time 1.5 s after 1.5 s; strictly ascending times",
-        ),
-        (
-            "time_s",
-            "time_ms",
-            "t.csv, line 1: no column time_s; times in seconds",
-        ),
-        (
-            "hinge_deg",
-            "hing_deg",
-            "t.csv, line 1: column `hing_deg`; one of `hinge`, `slide`",
-        ),
-        (
-            "hinge_deg",
-            "hinge_mm",
-            "t.csv, line 1: column `hinge_mm`; one of `hinge`, `slide`",
-        ),
-        (
-            "hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45",
-            "hinge,hinge_deg\n0,10,0,0",
-            "t.csv, line 1: a second column for hinge: `hinge_deg`; one column each",
-        ),
-        (
-            "hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45",
-            "hinge_deg,follower\n0,10,0,0",
-            "t.csv, line 1: a column for `follower`, which mimics another joint; only the joint that it follows",
-        ),
-        (
-            "hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45",
-            "hinge_deg,sldie\n0,10,0,0",
-            "t.csv, line 1: column `sldie`; perhaps `slide`",
-        ),
-        (
-            "20",
-            "101",
-            "t.csv: joint `slide`: 0.130850 m at 1.1862 s (between line 2 and line 3); at most 0.100000 m",
-        ),
-        (
-            "0,10,0\n1.5, 20,90\n2,0,-45\n",
-            "",
-            "t.csv: no way-points; at least one",
-        ),
-        (
-            CSV,
-            "",
-            "t.csv: an empty file; a header with time_s, then way-points",
-        ),
-        (
-            "1.5,",
-            "1e-310,",
-            "t.csv: `hinge` with an endless velocity; way-points farther apart in time",
-        ),
-    ] {
-        assert!(
-            CSV.contains(old),
-            "the test replaces something that is there: {old}"
-        );
-        let error = read(&CSV.replacen(old, new, 1)).expect_err(new);
-        assert_eq!(
-            (error.to_string().as_str(), error.exit_code()),
-            (sentence, 2)
-        );
+    for [old, new, sentence] in cases(BAD_TABLES) {
+        let error = read(&replaced(CSV, &old, &new)).expect_err(&sentence);
+        assert_eq!(error.to_string(), format!("t.csv{sentence}"));
+        assert_eq!(error.exit_code(), 2);
     }
-    let latin = JointTrajectory::read_csv(
-        &free(),
-        "t.csv",
-        &b"time_s,\xe9\n"[..],
-        Interpolation::Linear,
-    );
+    let latin = &b"time_s,\xe9\n"[..];
+    let latin = JointTrajectory::read_csv(&free(), "t.csv", latin, Interpolation::Linear);
     assert_eq!(latin.unwrap_err().exit_code(), 2);
 }
 
@@ -359,10 +290,8 @@ fn a_pose_passes_its_way_points_and_a_steady_turn_stays_steady() {
         // Far from the ends, the interpolation of a rotation equals the interpolation of a position.
         for time in [1.25, 2.0, 2.6] {
             let angle = 2.0 * trajectory.pose_at(time).rotation.z.asin();
-            assert!(
-                (angle - 0.5 * time).abs() < 1e-12,
-                "{kind:?} {time}: {angle}"
-            );
+            let error = (angle - 0.5 * time).abs();
+            assert!(error < 1e-12, "{kind:?} {time}: {angle}");
         }
         assert_eq!(trajectory.pose_at(-1.0), poses[0]);
         assert_eq!(trajectory.pose_at(5.0), poses[4]);
@@ -394,17 +323,12 @@ fn one_angle_of_the_way_points_turns_by_its_change() {
                 let time = 0.05 * f64::from(step);
                 let share = match kind {
                     Interpolation::Linear => time,
-                    Interpolation::Cubic | Interpolation::Monotone => {
-                        time * time * (3.0 - 2.0 * time)
-                    }
+                    _ => time * time * (3.0 - 2.0 * time),
                 };
                 let expected = rotation_from_rpy(angles(share));
                 for found in [&given, &read].map(|trajectory| trajectory.pose_at(time).rotation) {
                     let apart = 1.0 - found.dot(expected).abs();
-                    assert!(
-                        apart < 1e-13,
-                        "{kind:?}, axis {axis}, {change}°, {time} s: {apart}"
-                    );
+                    assert!(apart < 1e-13, "{kind:?}, {axis}, {change}°, {time} s");
                 }
             }
         }
@@ -433,60 +357,43 @@ fn turns_whose_direction_is_undetermined_are_refused() {
     let allowed =
         "less than 180°, or a change of one of roll, pitch and yaw alone; more way-points";
     assert!(new([100.0, 0.0, 100.0]).is_ok() && new([0.0, 0.0, 360.0]).is_ok());
-    assert_eq!(
-        new([0.0, 10.0, 360.0]).unwrap_err().to_string(),
-        format!(
-            "pose trajectory, way-point 2: several angles change, one by 360.000000°; {allowed}"
-        )
-    );
+    let place = "pose trajectory, way-point 2";
+    let several = format!("{place}: several angles change, one by 360.000000°; {allowed}");
+    let error = new([0.0, 10.0, 360.0]).unwrap_err();
+    assert_eq!(error.to_string(), several);
     let poses = [DQuat::IDENTITY, DQuat::from_rotation_x(PI)].map(Pose::from_rotation);
     let error = PoseTrajectory::new(vec![0.0, 1.0], &poses, Interpolation::Linear).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        format!("pose trajectory, way-point 2: turned by 180°, in either direction; {allowed}")
-    );
+    let half = format!("{place}: turned by 180°, in either direction; {allowed}");
+    assert_eq!(error.to_string(), half);
 }
 
 #[test]
 fn a_pose_csv_takes_quaternions_or_degrees() {
     let read =
         |text: &str| PoseTrajectory::read_csv("p.csv", text.as_bytes(), Interpolation::Linear);
-    let degrees = read(
-        "time_s,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg\n0,0,0,100,90,0,0\n2,0,0,300,90,0,90\n",
-    )
-    .unwrap();
+    let degrees =
+        "time_s,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg\n0,0,0,100,90,0,0\n2,0,0,300,90,0,90\n";
     let quaternions =
-        read("time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0.1,0.7071,0,0,0.7071\n2,0,0,0.3,0.5,0.5,0.5,0.5\n")
-            .unwrap();
+        "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0.1,0.7071,0,0,0.7071\n2,0,0,0.3,0.5,0.5,0.5,0.5\n";
+    let [degrees, quaternions] = [degrees, quaternions].map(|text| read(text).unwrap());
     for time in [0.0, 0.7, 2.0] {
         let (a, b) = (degrees.pose_at(time), quaternions.pose_at(time));
         assert!((a.translation - b.translation).length() < 1e-15);
-        assert!(
-            (a.rotation.dot(b.rotation).abs() - 1.0).abs() < 1e-14,
-            "{time}: {a:?}, {b:?}"
-        );
+        let apart = (a.rotation.dot(b.rotation).abs() - 1.0).abs();
+        assert!(apart < 1e-14, "{time}: {a:?}, {b:?}");
     }
-    for (text, sentence) in [
-        (
-            "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,1,1,0,0\n",
-            "p.csv, line 2: a quaternion of length 1.4142135623730951; length 1",
-        ),
-        (
-            "time_s,x,y,z\n0,0,0,0\n",
-            "p.csv, line 1: no rotation; qx, qy, qz, qw, or roll, pitch, yaw, or roll_deg, pitch_deg, yaw_deg",
-        ),
-        (
-            "time_s,x,y,roll,pitch,yaw\n",
-            "p.csv, line 1: no column z; all of x, y, z",
-        ),
-        (
-            "time_s,x,y,z,qx_deg,qy,qz,qw\n",
-            "p.csv, line 1: no column qx; all of qx, qy, qz, qw",
-        ),
-    ] {
-        assert_eq!(read(text).unwrap_err().to_string(), sentence);
+    for [text, sentence] in cases(BAD_POSE_TABLES) {
+        assert_eq!(read(&text).unwrap_err().to_string(), sentence);
     }
 }
+
+/// Table of poses | message.
+const BAD_POSE_TABLES: &str = r#"
+    time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,1,1,0,0\n | p.csv, line 2: a quaternion of length 1.4142135623730951; length 1
+    time_s,x,y,z\n0,0,0,0\n | p.csv, line 1: no rotation; qx, qy, qz, qw, or roll, pitch, yaw, or roll_deg, pitch_deg, yaw_deg
+    time_s,x,y,roll,pitch,yaw\n | p.csv, line 1: no column z; all of x, y, z
+    time_s,x,y,z,qx_deg,qy,qz,qw\n | p.csv, line 1: no column qx; all of qx, qy, qz, qw
+"#;
 
 #[test]
 fn every_motion_says_where_it_is() {
@@ -503,10 +410,8 @@ fn every_motion_says_where_it_is() {
     let motions = [Motion::Plan(plan), Motion::WayPoints(way_points)];
     for motion in motions {
         let found = motion.pose_at(0.5).translation;
-        assert!(
-            (found - DVec3::new(0.5, 0.0, 1.0)).length() < 1e-15,
-            "{found}"
-        );
+        let apart = (found - DVec3::new(0.5, 0.0, 1.0)).length();
+        assert!(apart < 1e-15, "{found}");
         assert_eq!((motion.pose_at(9.0), motion.end()), (far, 2.0));
     }
     assert_eq!(Motion::Fixed(start).pose_at(7.0), start);
@@ -540,10 +445,11 @@ fn a_mutilated_csv_is_a_trajectory_or_bad_input_and_never_a_panic() {
         let mut bytes = CSV.as_bytes().to_vec();
         for _ in 0..rng.gen_range(1..3) {
             let at = rng.gen_range(0..bytes.len());
+            let byte = b"0123456789.,-e\n\"_\xff"[rng.gen_range(0..18)];
             match rng.gen_range(0..3) {
                 0 => drop(bytes.remove(at)),
-                1 => bytes[at] = b"0123456789.,-e\n\"_\xff"[rng.gen_range(0..18)],
-                _ => bytes.insert(at, b"0123456789.,-e\n\"_\xff"[rng.gen_range(0..18)]),
+                1 => bytes[at] = byte,
+                _ => bytes.insert(at, byte),
             }
         }
         match JointTrajectory::read_csv(&robot, "t.csv", &bytes[..], Interpolation::Cubic) {

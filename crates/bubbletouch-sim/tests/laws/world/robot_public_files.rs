@@ -1,5 +1,6 @@
 //! Public URDF files that a strict reader rejects. Each file is read, omitted parts have a note, and the poses of links equal the poses in the file.
 
+use super::cases::cases;
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{MeshFormat, SizeLimits};
 use bubbletouch_sim::world::{JointKind, LinkGeometry, MeshFolders, Robot};
@@ -42,9 +43,8 @@ fn has_note(robot: &Robot, part: &str) {
 
 /// Returns the pose of the second link at rest.
 fn second(robot: &Robot) -> Pose {
-    robot
-        .forward(&Pose::IDENTITY, &robot.rest_positions())
-        .unwrap()[1]
+    let links = robot.forward(&Pose::IDENTITY, &robot.rest_positions());
+    links.unwrap()[1]
 }
 
 #[test]
@@ -62,91 +62,53 @@ fn the_axis_of_a_fixed_or_floating_joint_means_nothing() {
     }
 }
 
+/// Type of a joint | content of the joint | part of the note.
+const UNREADABLE_MOTIONS: &str = r#"
+    revolute | <axis xyz="0 0 0"/> | r.urdf, line 3: joint `j` with an axis of length zero; a direction: the joint is fixed
+    planar | <axis xyz="0 0 0"/> | axis of length zero
+    continuous | <axis xzy="0 0 1"/> | `xzy` in <axis>; perhaps `xyz`: the joint is fixed
+    universal | | joint `j` of type `universal`
+    continous | | joint `j` of type `continous`; perhaps `continuous`: the joint is fixed
+"#;
+
 #[test]
 fn a_joint_whose_axis_or_type_cannot_be_read_is_fixed_with_a_note() {
-    for (kind, axis, note) in [
-        (
-            "revolute",
-            r#"<axis xyz="0 0 0"/>"#,
-            "r.urdf, line 3: joint `j` with an axis of length zero; a direction: the joint is fixed",
-        ),
-        ("planar", r#"<axis xyz="0 0 0"/>"#, "axis of length zero"),
-        (
-            "continuous",
-            r#"<axis xzy="0 0 1"/>"#,
-            "`xzy` in <axis>; perhaps `xyz`: the joint is fixed",
-        ),
-        ("universal", "", "joint `j` of type `universal`"),
-        (
-            "continous",
-            "",
-            "joint `j` of type `continous`; perhaps `continuous`: the joint is fixed",
-        ),
-    ] {
-        let robot = jointed(kind, axis);
-        assert_eq!(
-            (robot.joints()[0].kind, robot.n_positions()),
-            (JointKind::Fixed, 0)
-        );
-        has_note(&robot, note);
+    for [kind, axis, note] in cases(UNREADABLE_MOTIONS) {
+        let robot = jointed(&kind, &axis);
+        assert_eq!(robot.joints()[0].kind, JointKind::Fixed);
+        assert_eq!(robot.n_positions(), 0);
+        has_note(&robot, &note);
         assert_eq!(second(&robot).translation, DVec3::new(0.0, 0.0, 0.1));
     }
 }
 
+/// Attributes of `<limit>` | lower | upper | velocity | part of the note, if any.
+const LIMITS: &str = r#"
+    lower="0.2" upper="1.5" | 0.2 | 1.5 | inf |
+    lower="-1" upper="1" velocity="-1" effort="2" | -1 | 1 | inf | `velocity` -1; zero or a positive number
+    lower="-1" upper="1" velocity="1e999" | -1 | 1 | inf | `velocity` "1e999"; a finite number
+    effort="1" velocity="3" | -inf | inf | 3 | without `lower` and `upper`
+    lower="1" upper="0" velocity="3" | -inf | inf | 3 | lower limit 1 above upper limit 0; lower ≤ upper
+    upper="2" velocity="3" | 0 | 2 | 3 |
+"#;
+
 #[test]
 fn limits_that_are_missing_or_contradict_themselves_do_not_limit() {
-    let endless = (f64::NEG_INFINITY, f64::INFINITY);
-    for (limit, ends, velocity, note) in [
-        (
-            r#"<limit lower="0.2" upper="1.5"/>"#,
-            (0.2, 1.5),
-            f64::INFINITY,
-            None,
-        ),
-        (
-            r#"<limit lower="-1" upper="1" velocity="-1" effort="2"/>"#,
-            (-1.0, 1.0),
-            f64::INFINITY,
-            Some("`velocity` -1; zero or a positive number"),
-        ),
-        (
-            r#"<limit lower="-1" upper="1" velocity="1e999"/>"#,
-            (-1.0, 1.0),
-            f64::INFINITY,
-            Some("`velocity` \"1e999\"; a finite number"),
-        ),
-        (
-            r#"<limit effort="1" velocity="3"/>"#,
-            endless,
-            3.0,
-            Some("without `lower` and `upper`"),
-        ),
-        (
-            r#"<limit lower="1" upper="0" velocity="3"/>"#,
-            endless,
-            3.0,
-            Some("lower limit 1 above upper limit 0; lower ≤ upper"),
-        ),
-        (r#"<limit upper="2" velocity="3"/>"#, (0.0, 2.0), 3.0, None),
-    ] {
-        let robot = jointed("revolute", limit);
+    for [limit, lower, upper, velocity, note] in cases(LIMITS) {
+        let robot = jointed("revolute", &format!("<limit {limit}/>"));
         let found = robot.joints()[0].limits.expect("a limit");
-        assert_eq!(
-            ((found.lower, found.upper), found.velocity),
-            (ends, velocity),
-            "{limit}"
-        );
-        match note {
-            Some(note) => has_note(&robot, note),
-            None => assert!(robot.notes().is_empty(), "{:?}", robot.notes()),
+        let found = [found.lower, found.upper, found.velocity];
+        let expected = [lower, upper, velocity].map(|number| number.parse().unwrap());
+        assert_eq!(found, expected, "{limit}");
+        match note.as_str() {
+            "" => assert!(robot.notes().is_empty(), "{:?}", robot.notes()),
+            note => has_note(&robot, note),
         }
     }
     let without = jointed("prismatic", "");
     assert_eq!(without.joints()[0].limits, None);
-    has_note(
-        &without,
-        "joint `j` without <limit>; lower and upper: its position is not limited",
-    );
+    let note = "joint `j` without <limit>; lower and upper: its position is not limited";
+    has_note(&without, note);
 }
 
 #[test]
@@ -156,10 +118,8 @@ fn a_joint_rests_at_zero_or_at_the_nearest_limit() {
         ("-3\" upper=\"-0.5", -0.5),
         ("-3\" upper=\"3", 0.0),
     ] {
-        let robot = jointed(
-            "revolute",
-            &format!("<axis xyz=\"0 0 1\"/><limit lower=\"{limit}\"/>"),
-        );
+        let inside = format!("<axis xyz=\"0 0 1\"/><limit lower=\"{limit}\"/>");
+        let robot = jointed("revolute", &inside);
         assert_eq!(robot.rest_positions(), [rest]);
         let (axis, angle) = second(&robot).rotation.to_axis_angle();
         assert!((angle * axis.z - rest).abs() < 1e-15);
@@ -192,50 +152,46 @@ fn a_joint_that_mimics_a_fixed_one_stands_at_its_offset() {
     assert!((tip.translation - DVec3::new(0.2, 0.0, 0.0)).length() < 1e-15);
 }
 
+/// Type of the first joint | attributes of `<mimic>` in the second joint | part of the note.
+const LOST_MIMICS: &str = r#"
+    floating | joint="first" | joint `second` mimics `first`, which has several coordinates
+    continuous | joint="fisrt" | `joint` "fisrt", which is no joint; perhaps `first`
+    continuous | joint="first" multiplier="much" | `multiplier` "much"; a finite number: the joint mimics none
+"#;
+
 #[test]
 fn a_mimic_that_cannot_be_followed_leaves_a_joint_of_its_own() {
-    for (first, mimic, note) in [
-        (
-            "floating",
-            r#"<mimic joint="first"/>"#,
-            "joint `second` mimics `first`, which has several coordinates",
-        ),
-        (
-            "continuous",
-            r#"<mimic joint="fisrt"/>"#,
-            "joint `second` mimics `fisrt`, which is no joint; perhaps `first`",
-        ),
-        (
-            "continuous",
-            r#"<mimic joint="first" multiplier="much"/>"#,
-            "`multiplier` \"much\"; a finite number: the joint mimics none",
-        ),
-    ] {
-        let robot = in_a_row(first, &format!("continuous {mimic}"));
+    for [first, mimic, note] in cases(LOST_MIMICS) {
+        let robot = in_a_row(&first, &format!("continuous <mimic {mimic}/>"));
         assert_eq!(robot.joints()[1].mimic, None);
         assert!(robot.coordinates().iter().any(|c| c.name == "second"));
-        has_note(&robot, note);
+        has_note(&robot, &note);
     }
     let fixed = in_a_row("continuous", r#"fixed <mimic joint="first"/>"#);
     assert_eq!(fixed.n_positions(), 1);
     has_note(&fixed, "<mimic> in the fixed joint `second`");
 }
 
+/// Content of `<geometry>` | part of the note.
+const UNREADABLE_SHAPES: &str = r#"
+     | <geometry> with 0 forms; exactly one of box, cylinder, capsule, sphere, mesh
+    <plane/> | <geometry> with 0 forms
+    <box size='1 1'/> | `size` "1 1"; 3 finite numbers
+    <sphere radius='-1'/> | `radius` -1; lengths in metres, zero or positive
+    <mesh filename='' scale='1 1 1'/> | an empty `filename`
+    <mesh filename='a.stl' scale='1 1 1 1'/> | `scale` "1 1 1 1"
+    <mesh filename='a.stl' scale='1 0 1'/> | `scale` 1 0 1; three numbers other than zero
+"#;
+
 #[test]
 fn a_shape_that_cannot_be_read_is_left_out_and_one_of_size_zero_is_kept() {
-    for form in [
-        "",
-        "<geometry/>",
-        "<geometry><plane/></geometry>",
-        "<geometry><box size='1 1'/></geometry>",
-        "<geometry><sphere radius='-1'/></geometry>",
-        "<geometry><mesh filename='' scale='1 1 1'/></geometry>",
-        "<geometry><mesh filename='a.stl' scale='1 1 1 1'/></geometry>",
-    ] {
-        let robot = shaped(form);
+    for [form, note] in cases(UNREADABLE_SHAPES) {
+        let robot = shaped(&format!("<geometry>{form}</geometry>"));
         assert!(robot.links()[0].shapes.is_empty());
+        has_note(&robot, &note);
         has_note(&robot, "this shape is left out");
     }
+    has_note(&shaped(""), "this shape is left out");
     for form in [
         "<box size='0 0 0'/>",
         "<sphere radius='0'/>",
@@ -304,16 +260,10 @@ fn a_pointer_of_git_lfs_is_named_as_such() {
     let expected = "r.urdf: a pointer of Git LFS without the content of the file; the file itself (git lfs pull)";
     let error = Robot::from_bytes("r.urdf", pointer.as_bytes()).unwrap_err();
     assert_eq!(error.to_string(), expected);
-    for (_, format) in ["ply", "obj", "stl", "dae", "glb"].map(|ending| {
-        (
-            ending,
-            MeshFormat::from_path(Path::new(&format!("a.{ending}"))).unwrap(),
-        )
-    }) {
-        let error = format
-            .read("r.urdf", None, &SizeLimits::ANY, pointer.as_bytes())
-            .unwrap_err();
-        assert_eq!(error.to_string(), expected, "{format:?}");
+    for file in ["a.ply", "a.obj", "a.stl", "a.dae", "a.glb"] {
+        let format = MeshFormat::from_path(Path::new(file)).unwrap();
+        let read = format.read("r.urdf", None, &SizeLimits::ANY, pointer.as_bytes());
+        assert_eq!(read.unwrap_err().to_string(), expected, "{file}");
     }
 }
 
@@ -343,28 +293,23 @@ fn text_that_is_not_quite_xml_is_read_and_lines_keep_their_numbers() {
     ] {
         assert!(read(&text).notes().is_empty(), "{text}");
     }
-    let error = Robot::from_urdf(
-        "r.urdf",
-        &format!("<!--\n\n-->\n{declaration}\n<robot name='r'/>"),
-    );
-    assert_eq!(
-        error.unwrap_err().to_string(),
-        "r.urdf, line 5: a robot without a <link>; at least one"
-    );
+    let text = format!("<!--\n\n-->\n{declaration}\n<robot name='r'/>");
+    let error = Robot::from_urdf("r.urdf", &text).unwrap_err().to_string();
+    let expected = "r.urdf, line 5: a robot without a <link>; at least one";
+    assert_eq!(error, expected);
+    // Declared prefixes of namespaces make the first line longer.
+    let text = "<robot name='r'>\n<link name='a'/>\n<a:b/><link/>\n</robot>";
+    let error = Robot::from_urdf("r.urdf", text).unwrap_err().to_string();
+    assert!(error.starts_with("r.urdf, line 3: <link> "), "{error}");
 }
 
 #[test]
 fn bytes_of_other_encodings_are_text() {
     let text = "<robot name=\"bras\"><!-- \u{e9} --><link name=\"\u{e9}paule\"/></robot>";
-    let latin: Vec<u8> = text
-        .chars()
-        .map(|c| u8::try_from(u32::from(c)).unwrap())
-        .collect();
-    let declared = [
-        b"<?xml version='1.0' encoding='ISO-8859-1'?>".as_slice(),
-        &latin,
-    ]
-    .concat();
+    let latin = text.chars().map(|c| u8::try_from(c).unwrap());
+    let latin: Vec<u8> = latin.collect();
+    let declaration: &[u8] = b"<?xml version='1.0' encoding='ISO-8859-1'?>";
+    let declared = [declaration, &latin].concat();
     let little = || text.encode_utf16().flat_map(u16::to_le_bytes);
     let big = || text.encode_utf16().flat_map(u16::to_be_bytes);
     for (bytes, has_note) in [
@@ -376,18 +321,12 @@ fn bytes_of_other_encodings_are_text() {
     ] {
         let robot = Robot::from_bytes("r.urdf", &bytes).unwrap();
         assert_eq!(robot.links()[0].name, "\u{e9}paule");
-        let notes = robot.notes();
-        assert_eq!(
-            notes.iter().any(|note| note.contains("Latin-1")),
-            has_note,
-            "{notes:?}"
-        );
+        let is_latin = robot.notes().concat().contains("Latin-1");
+        assert_eq!(is_latin, has_note, "{:?}", robot.notes());
     }
     for bytes in [&b"\x89PNG\r\n\x1a\n\0\0"[..], b"", b"\xFF", b"\xFF\xFE\0"] {
-        assert_eq!(
-            Robot::from_bytes("r.urdf", bytes).unwrap_err().exit_code(),
-            2
-        );
+        let error = Robot::from_bytes("r.urdf", bytes).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
     }
 }
 
@@ -398,9 +337,8 @@ fn what_xacro_left_is_passed_over_with_a_note() {
         r#"<xacro:include filename="m.xacro"/>"#,
         r#"<gazebo><plugin file="$(find r)/x"/></gazebo>"#,
     ] {
-        let robot = read(&format!(
-            "<robot name='r'>\n{leftover}<link name='a'/></robot>"
-        ));
+        let text = format!("<robot name='r'>\n{leftover}<link name='a'/></robot>");
+        let robot = read(&text);
         has_note(&robot, "of xacro; plain URDF: expand it first");
     }
     // The missing parts are those that xacro would have created.
@@ -435,10 +373,8 @@ fn a_tactile_sensor_is_named_in_a_note() {
         format!("<gazebo reference='a'><sensor name='pad_tactile'>{tactile}</sensor></gazebo>"),
     ] {
         let robot = read(&format!("<robot name='r'><link name='a'/>{sensor}</robot>"));
-        has_note(
-            &robot,
-            "tactile sensor `pad_tactile` on link `a` is not read",
-        );
+        let note = "tactile sensor `pad_tactile` on link `a` is not read";
+        has_note(&robot, note);
     }
     let robot =
         read("<robot name='r'><link name='a'><sensor name='s'><tactile/></sensor></link></robot>");
@@ -454,10 +390,8 @@ fn further_links_that_no_joint_moves_are_fixed_to_the_first_one() {
 <joint name="j" type="fixed"><parent link="c"/><child link="d"/><origin xyz="1 0 0"/></joint></robot>"#,
     );
     assert_eq!(robot.base(), 0);
-    has_note(
-        &robot,
-        "line 1: links `a` and `b`, which no joint moves; one of them: `b` is fixed to `a`",
-    );
+    let note = "line 1: links `a` and `b`, which no joint moves; one of them: `b` is fixed to `a`";
+    has_note(&robot, note);
     has_note(&robot, "`c` is fixed to `a`");
     let base = Pose::from_translation(DVec3::new(0.0, 2.0, 0.0));
     let links = robot.forward(&base, &[]).unwrap();
@@ -477,43 +411,32 @@ fn repeated_links_and_joints_are_passed_over() {
     assert_eq!((robot.links().len(), robot.joints().len()), (2, 1));
     assert!(robot.links()[1].shapes.is_empty());
     assert_eq!(second(&robot).translation, DVec3::X);
-    has_note(
-        &robot,
-        "line 2: a second link `b` (the first is on line 1); a name of its own: it is passed over",
-    );
+    let note =
+        "line 2: a second link `b` (the first is on line 1); a name of its own: it is passed over";
+    has_note(&robot, note);
     has_note(&robot, "line 4: a second joint `j`");
 }
 
 #[test]
 fn a_missing_link_that_carries_the_whole_robot_is_its_base() {
     let gripper = |inside: &str| {
-        Robot::from_urdf(
-            "r.urdf",
-            &format!(
-                r#"<robot name="r"><link name="palm"/><link name="finger"/>{inside}
+        let text = format!(
+            r#"<robot name="r"><link name="palm"/><link name="finger"/>{inside}
 <joint name="mount" type="fixed"><parent link="left_hand"/><child link="palm"/><origin xyz="1 0 0"/></joint>
 <joint name="grip" type="fixed"><parent link="palm"/><child link="finger"/></joint></robot>"#
-            ),
-        )
+        );
+        Robot::from_urdf("r.urdf", &text)
     };
     let robot = gripper("").unwrap();
     assert_eq!(robot.links()[robot.base()].name, "left_hand");
-    assert_eq!(
-        robot.forward(&Pose::IDENTITY, &[]).unwrap()[1].translation,
-        DVec3::X
-    );
-    has_note(
-        &robot,
-        "parent `left_hand`, which is no link; a <link> of that name: it is the base of the robot",
-    );
+    assert_eq!(second(&robot).translation, DVec3::X);
+    let note =
+        "parent `left_hand`, which is no link; a <link> of that name: it is the base of the robot";
+    has_note(&robot, note);
     // A robot with another base has a misspelt parent.
-    let wrong = gripper(r#"<link name="left_hnd"/>"#)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        wrong.contains("`left_hand`, which is no link; perhaps `left_hnd`"),
-        "{wrong}"
-    );
+    let wrong = gripper(r#"<link name="left_hnd"/>"#).unwrap_err();
+    let said = "`link` \"left_hand\", which is no link; perhaps `left_hnd`";
+    assert!(wrong.to_string().contains(said), "{wrong}");
 }
 
 /// A joint's misspelt pose concerns only its own frame if the link has no shapes and moves no other link.
@@ -529,14 +452,10 @@ fn a_misspelt_attribute_of_a_fixed_frame_is_ignored_with_a_note() {
     };
     let bare = r#"<link name="b"/>"#;
     let robot = frame(bare, "fixed", "").unwrap();
-    has_note(
-        &robot,
-        "r.urdf, line 2: `rrpy` in <origin>; perhaps `rpy`: the attribute is ignored",
-    );
-    assert_eq!(
-        second(&robot),
-        Pose::from_translation(DVec3::new(0.02, 0.0, 0.005))
-    );
+    let note = "r.urdf, line 2: `rrpy` in <origin>; perhaps `rpy`: the attribute is ignored";
+    has_note(&robot, note);
+    let expected = Pose::from_translation(DVec3::new(0.02, 0.0, 0.005));
+    assert_eq!(second(&robot), expected);
     let solid =
         r#"<link name="b"><collision><geometry><sphere radius="1"/></geometry></collision></link>"#;
     let below = r#"<link name="c"/><joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint>"#;
@@ -563,11 +482,6 @@ fn a_second_end_tag_of_the_root_is_read_with_a_note() {
     }
     let mjcf =
         "<mujoco><worldbody><body name='b'><geom size='0.1'/></body></worldbody></mujoco></mujoco>";
-    let robot = Robot::from_mjcf("r.xml", mjcf).unwrap();
-    assert!(
-        robot
-            .notes()
-            .iter()
-            .any(|note| note.contains("a second </mujoco>"))
-    );
+    let notes = Robot::from_mjcf("r.xml", mjcf).unwrap().notes().concat();
+    assert!(notes.contains("a second </mujoco>"), "{notes}");
 }

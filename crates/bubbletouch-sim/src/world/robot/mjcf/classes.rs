@@ -1,8 +1,10 @@
 //! `<default>` classes: attributes of elements that an element of the model does not contain.
 
+use super::compiler::Compiler;
+use super::limits::CLASS_DEPTH;
 use crate::error::Result;
-use crate::text::spelling::nearest_names;
 use crate::world::robot::xml::Element;
+use glam::DVec3;
 
 /// Default classes of a model. The first class is the root; each other class inherits the attributes of its parent that it does not define.
 pub(super) struct Classes<'a> {
@@ -17,8 +19,6 @@ struct Class<'a> {
     elements: Vec<Element<'a>>,
 }
 
-/// Largest depth of classes inside each other. With a larger value, the stack can overflow.
-const MAX_DEPTH: usize = 100;
 /// Name of the root class.
 const MAIN: &str = "main";
 
@@ -37,7 +37,7 @@ impl<'a> Classes<'a> {
             classes: vec![main],
         };
         for element in root.children("default") {
-            let name = element.node.attribute("class");
+            let name = element.attribute("class");
             let class = match name {
                 None | Some(MAIN) => 0,
                 // The first class at the top is the root, whatever its name.
@@ -53,10 +53,7 @@ impl<'a> Classes<'a> {
     }
 
     fn add(&mut self, element: Element<'a>, class: usize, depth: usize) -> Result<()> {
-        if depth > MAX_DEPTH {
-            let given = format!("classes inside each other, {MAX_DEPTH} deep");
-            return Err(element.refuse(given, "fewer classes around each other"));
-        }
+        CLASS_DEPTH.check(depth, element)?;
         self.classes[class].elements.push(element);
         for inner in element.children("default") {
             let name = inner.text("class")?;
@@ -84,41 +81,36 @@ impl<'a> Classes<'a> {
     /// # Errors
     /// If there is no such class.
     pub fn class_of(&self, element: Element, attribute: &str) -> Result<Option<usize>> {
-        let Some(name) = element.node.attribute(attribute) else {
+        let Some(name) = element.attribute(attribute) else {
             return Ok(None);
         };
         let found = self.classes.iter().position(|class| class.name == name);
-        match found {
-            Some(class) => Ok(Some(class)),
-            // The root can also be referred to by its default name.
-            None if name == MAIN => Ok(Some(0)),
-            None => {
-                let names = self.classes.iter().map(|class| class.name);
-                let given = format!("`{attribute}` \"{name}\", which is no default class");
-                Err(element.refuse(given, nearest_names(name, names)))
-            }
-        }
+        // The root can also be referred to by its default name.
+        let found = found.or_else(|| (name == MAIN).then_some(0));
+        found.map(Some).ok_or_else(|| {
+            let names = self.classes.iter().map(|class| class.name);
+            element.unknown(attribute, "default class", names)
+        })
     }
 
-    /// Returns an element with the defaults of its class: its attribute `class`, otherwise the class of the body.
+    /// Returns an element and its defaults, from the innermost class outwards. The innermost class is the attribute `class` of the element, otherwise the class
+    /// with the index `class`.
     ///
     /// # Errors
     /// If the element names a class that does not exist.
-    pub fn item(&self, element: Element<'a>, class_of_body: usize) -> Result<Item<'a>> {
+    pub fn layers(&self, element: Element<'a>, class: usize) -> Result<Vec<Element<'a>>> {
         let own = self.class_of(element, "class")?;
         let mut layers = vec![element];
-        let mut class = Some(own.unwrap_or(class_of_body));
-        let tag = element.node.tag_name().name();
+        let mut class = Some(own.unwrap_or(class));
         while let Some(index) = class {
-            let elements = self.classes[index].elements.iter().rev();
-            layers.extend(elements.flat_map(|defaults| {
-                let mut same: Vec<Element> = defaults.children(tag).collect();
-                same.reverse();
-                same
-            }));
+            for defaults in self.classes[index].elements.iter().rev() {
+                let n_before = layers.len();
+                layers.extend(defaults.children(element.tag()));
+                layers[n_before..].reverse();
+            }
             class = self.classes[index].parent;
         }
-        Ok(Item { layers })
+        Ok(layers)
     }
 }
 
@@ -126,27 +118,30 @@ impl<'a> Classes<'a> {
 pub(super) struct Item<'a> {
     /// The element, then elements of default classes from the innermost class outwards.
     layers: Vec<Element<'a>>,
+    /// Settings of the element's model.
+    pub compiler: &'a Compiler,
 }
 
 impl<'a> Item<'a> {
+    /// Creates an element with its layers, of which the first is the element itself.
+    pub fn new(layers: Vec<Element<'a>>, compiler: &'a Compiler) -> Self {
+        Self { layers, compiler }
+    }
+
     /// Returns the element itself, without defaults.
     pub fn own(&self) -> Element<'a> {
         self.layers[0]
     }
 
-    /// Returns the innermost layer that has one of these attributes.
-    pub fn layer_with(&self, attributes: &[&str]) -> Option<Element<'a>> {
-        let has = |layer: &&Element| {
-            attributes
-                .iter()
-                .any(|name| layer.node.has_attribute(*name))
-        };
-        self.layers.iter().find(has).copied()
+    /// Returns the innermost layer that has one of these attributes; the element itself if no layer has any.
+    pub fn layer(&self, attributes: &[&str]) -> Element<'a> {
+        let has = |layer: &&Element| attributes.iter().any(|it| layer.attribute(it).is_some());
+        self.layers.iter().find(has).copied().unwrap_or(self.own())
     }
 
     /// Returns the value of an attribute, or `None` if neither the element nor a default class has it.
     pub fn text(&self, attribute: &str) -> Option<&'a str> {
-        self.layer_with(&[attribute])?.node.attribute(attribute)
+        self.layer(&[attribute]).attribute(attribute)
     }
 
     /// Returns the N finite numbers in the value of an attribute, or `None` if neither the element nor a default class has it.
@@ -154,18 +149,15 @@ impl<'a> Item<'a> {
     /// # Errors
     /// If the value does not consist of N finite numbers.
     pub fn numbers<const N: usize>(&self, attribute: &str) -> Result<Option<[f64; N]>> {
-        match self.layer_with(&[attribute]) {
-            Some(layer) => layer.numbers(attribute),
-            None => Ok(None),
-        }
+        self.layer(&[attribute]).numbers(attribute)
     }
 
     /// Returns the vector in the value of an attribute, or `default`.
     ///
     /// # Errors
     /// If the value is not three finite numbers.
-    pub fn vector(&self, attribute: &str, default: glam::DVec3) -> Result<glam::DVec3> {
-        Ok(self.numbers(attribute)?.map_or(default, glam::DVec3::from))
+    pub fn vector(&self, attribute: &str, default: DVec3) -> Result<DVec3> {
+        self.layer(&[attribute]).vector(attribute, default)
     }
 
     /// Returns the number in the value of an attribute, or `default`.
@@ -173,7 +165,17 @@ impl<'a> Item<'a> {
     /// # Errors
     /// If the value is not one finite number.
     pub fn number(&self, attribute: &str, default: f64) -> Result<f64> {
-        Ok(self.numbers(attribute)?.map_or(default, |[number]| number))
+        let number = self.layer(&[attribute]).number(attribute)?;
+        Ok(number.unwrap_or(default))
+    }
+
+    /// Returns the value that belongs to the word of an attribute, or `default`.
+    ///
+    /// # Errors
+    /// If the word is another one.
+    pub fn one_of<T: Copy>(&self, attribute: &str, words: &[(&str, T)], default: T) -> Result<T> {
+        let value = self.layer(&[attribute]).one_of(attribute, words)?;
+        Ok(value.unwrap_or(default))
     }
 
     /// Returns up to N numbers of an attribute. A shorter list replaces the first numbers of the defaults, as in MuJoCo; numbers given nowhere are `default`.

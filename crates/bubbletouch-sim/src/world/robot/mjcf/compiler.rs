@@ -36,42 +36,18 @@ impl Compiler {
             strips_paths: false,
         };
         for element in root.children("compiler") {
-            element.check_attributes(&[
-                "autolimits",
-                "boundmass",
-                "boundinertia",
-                "settotalmass",
-                "balanceinertia",
-                "strippath",
-                "coordinate",
-                "angle",
-                "fitaabb",
-                "eulerseq",
-                "meshdir",
-                "texturedir",
-                "discardvisual",
-                "convexhull",
-                "usethread",
-                "fusestatic",
-                "inertiafromgeom",
-                "inertiagrouprange",
-                "exactmeshinertia",
-                "assetdir",
-                "alignfree",
-                "saveinertial",
-            ])?;
-            let attribute = |name| element.node.attribute(name);
-            if attribute("coordinate") == Some("global") {
+            element.check_attributes(
+                "autolimits boundmass boundinertia settotalmass balanceinertia strippath coordinate angle fitaabb eulerseq meshdir texturedir \
+                 discardvisual convexhull usethread fusestatic inertiafromgeom inertiagrouprange exactmeshinertia assetdir alignfree saveinertial",
+            )?;
+            if element.attribute("coordinate") == Some("global") {
                 let allowed =
                     "local coordinates: MuJoCo 2.3.3 converts a model when it loads and saves it";
                 return Err(element.refuse("`coordinate` \"global\"", allowed));
             }
-            if let Some(is_radian) =
-                element.one_of("angle", &[("degree", false), ("radian", true)])?
-            {
-                compiler.angle = if is_radian { 1.0 } else { PI / 180.0 };
-            }
-            if let Some(sequence) = attribute("eulerseq") {
+            let angle = element.one_of("angle", &[("degree", PI / 180.0), ("radian", 1.0)])?;
+            compiler.angle = angle.unwrap_or(compiler.angle);
+            if let Some(sequence) = element.attribute("eulerseq") {
                 let is_axis = |axis| "xyzXYZ".contains(axis);
                 if sequence.len() != 3 || !sequence.chars().all(is_axis) {
                     let given = format!("`eulerseq` \"{sequence}\"");
@@ -79,17 +55,16 @@ impl Compiler {
                 }
                 compiler.euler_sequence = sequence.to_owned();
             }
-            const FLAGS: [(&str, bool); 2] = [("false", false), ("true", true)];
-            if let Some(flag) = element.one_of("autolimits", &FLAGS)? {
-                compiler.has_auto_limits = flag;
+            for (name, flag) in [
+                ("autolimits", &mut compiler.has_auto_limits),
+                ("alignfree", &mut compiler.aligns_free),
+                ("strippath", &mut compiler.strips_paths),
+            ] {
+                let given = element.one_of(name, &[("false", false), ("true", true)])?;
+                *flag = given.unwrap_or(*flag);
             }
-            if let Some(flag) = element.one_of("alignfree", &FLAGS)? {
-                compiler.aligns_free = flag;
-            }
-            if let Some(flag) = element.one_of("strippath", &FLAGS)? {
-                compiler.strips_paths = flag;
-            }
-            if let Some(folder) = attribute("meshdir").or(attribute("assetdir")) {
+            let folder = element.attribute("meshdir");
+            if let Some(folder) = folder.or(element.attribute("assetdir")) {
                 compiler.mesh_folder = folder.to_owned();
             }
         }

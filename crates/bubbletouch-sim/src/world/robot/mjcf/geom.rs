@@ -6,7 +6,7 @@ use super::orientation::{from_z_to, pose_of, quaternion_of};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::text::spelling::nearest_names;
-use crate::world::robot::xml::Element;
+use crate::world::robot::xml::{Element, NOT_ZERO};
 use crate::world::robot::{LinkGeometry, LinkShape, ShapeRole};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ const LAST_SHOWN_GROUP: f64 = 2.0;
 /// Mesh assets of a model by their names. A mesh without a file, whose vertices are in the model, is `None`.
 pub(super) type Meshes = BTreeMap<String, Option<LinkGeometry>>;
 
-/// Reads the elements `<asset><mesh>`.
+/// Reads the elements `<asset><mesh>`. Names of files become absolute paths if they are relative to `folder`.
 ///
 /// # Errors
 /// If an attribute is invalid, or a mesh has neither a name nor a file.
@@ -26,31 +26,34 @@ pub(super) fn read_meshes<'a>(
     root: Element<'a>,
     classes: &Classes<'a>,
     compiler: &Compiler,
+    folder: Option<&Path>,
 ) -> Result<Meshes> {
     let mut meshes = Meshes::new();
-    for element in root
-        .children("asset")
-        .flat_map(|asset| asset.children("mesh"))
-    {
-        let item = classes.item(element, 0)?;
-        let file = element.node.attribute("file");
+    let assets = root.children("asset");
+    for element in assets.flat_map(|asset| asset.children("mesh")) {
+        let item = Item::new(classes.layers(element, 0)?, compiler);
+        let file = element.attribute("file");
         let stem = file.and_then(|file| Path::new(file).file_stem()?.to_str());
-        let Some(name) = element.node.attribute("name").or(stem) else {
+        let Some(name) = element.attribute("name").or(stem) else {
             return Err(element.refuse("<mesh> without a name and a file", "a name or a file"));
         };
-        let scale = item.vector("scale", DVec3::ONE)?;
-        if scale.to_array().contains(&0.0) {
-            let given = format!("mesh `{name}` with `scale` {scale}");
-            return Err(element.refuse(given, "three numbers other than zero"));
-        }
+        let scale = item.layer(&["scale"]).numbers_in("scale", &NOT_ZERO)?;
         let file_from_mesh = Pose::new(
             quaternion_of(&item, "refquat")?,
             item.vector("refpos", DVec3::ZERO)?,
         );
+        let absolute = |file: String| match folder {
+            Some(folder) if !file.contains("://") => {
+                let path = folder.join(file);
+                let path = std::path::absolute(&path).unwrap_or(path);
+                path.display().to_string()
+            }
+            _ => file,
+        };
         let mesh = file.map(|file| LinkGeometry::Mesh {
-            file: compiler.mesh_path(file),
+            file: absolute(compiler.mesh_path(file)),
             mesh_from_file: file_from_mesh.inverse(),
-            scale,
+            scale: scale.map_or(DVec3::ONE, DVec3::from),
         });
         meshes.insert(name.to_owned(), mesh);
     }
@@ -66,47 +69,13 @@ pub(super) fn read_geom(
     item: &Item,
     body_from_frame: &Pose,
     meshes: &Meshes,
-    compiler: &Compiler,
 ) -> Result<Vec<LinkShape>> {
     let own = item.own();
-    own.check_attributes(&[
-        "name",
-        "class",
-        "type",
-        "contype",
-        "conaffinity",
-        "condim",
-        "group",
-        "priority",
-        "size",
-        "material",
-        "friction",
-        "mass",
-        "density",
-        "shellinertia",
-        "solmix",
-        "solref",
-        "solimp",
-        "margin",
-        "gap",
-        "surfacevel",
-        "adhesion",
-        "fromto",
-        "pos",
-        "quat",
-        "axisangle",
-        "xyaxes",
-        "zaxis",
-        "euler",
-        "hfield",
-        "mesh",
-        "fitscale",
-        "rgba",
-        "fluidshape",
-        "fluidcoef",
-        "user",
-    ])?;
-    let (frame_from_shape, length) = extent(item, compiler)?;
+    own.check_attributes(
+        "name class type contype conaffinity condim group priority size material friction mass density shellinertia solmix solref solimp margin gap \
+         surfacevel adhesion fromto pos quat axisangle xyaxes zaxis euler hfield mesh fitscale rgba fluidshape fluidcoef user",
+    )?;
+    let (frame_from_shape, length) = extent(item)?;
     let geometry = geometry(item, length, meshes)?;
     let can_touch = item.number("contype", 1.0)? != 0.0 || item.number("conaffinity", 1.0)? != 0.0;
     let is_shown = item.number("group", 0.0)? <= LAST_SHOWN_GROUP;
@@ -127,9 +96,9 @@ pub(super) fn read_geom(
 ///
 /// # Errors
 /// If an attribute is invalid, or both ends are the same point.
-pub(super) fn extent(item: &Item, compiler: &Compiler) -> Result<(Pose, Option<f64>)> {
+pub(super) fn extent(item: &Item) -> Result<(Pose, Option<f64>)> {
     let Some([a, b, c, d, e, f]) = item.numbers("fromto")? else {
-        return Ok((pose_of(item, compiler)?, None));
+        return Ok((pose_of(item)?, None));
     };
     let (from, to) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
     let Some(direction) = (from - to).try_normalize() else {
@@ -176,32 +145,22 @@ fn geometry(item: &Item, half_length: Option<f64>, meshes: &Meshes) -> Result<Li
             let Some(name) = mesh else {
                 return Err(own.refuse(format!("{} without `mesh`", own.called()), "a mesh asset"));
             };
-            match meshes.get(name) {
-                Some(Some(mesh)) => mesh.clone(),
-                Some(None) => {
-                    let given = format!("mesh `{name}` with vertices in the model");
-                    return Err(own.refuse(given, "a mesh with a file"));
-                }
-                None => {
-                    let names = meshes.keys().map(String::as_str);
-                    let given = format!("`mesh` \"{name}\", which is no mesh asset");
-                    return Err(own.refuse(given, nearest_names(name, names)));
-                }
-            }
+            let Some(mesh) = meshes.get(name) else {
+                let names = meshes.keys().map(String::as_str);
+                return Err(own.refuse(
+                    format!("`mesh` \"{name}\", which is no mesh asset"),
+                    nearest_names(name, names),
+                ));
+            };
+            mesh.clone().ok_or_else(|| {
+                let given = format!("mesh `{name}` with vertices in the model");
+                own.refuse(given, "a mesh with a file")
+            })?
         }
         other => {
-            let known = [
-                "sphere",
-                "capsule",
-                "cylinder",
-                "ellipsoid",
-                "box",
-                "mesh",
-                "sdf",
-                "plane",
-                "hfield",
-            ];
-            return Err(own.refuse(format!("`type` \"{other}\""), nearest_names(other, known)));
+            let known = "sphere capsule cylinder ellipsoid box mesh sdf plane hfield";
+            let known = nearest_names(other, known.split(' '));
+            return Err(own.refuse(format!("`type` \"{other}\""), known));
         }
     })
 }

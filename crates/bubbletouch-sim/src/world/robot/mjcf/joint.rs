@@ -1,9 +1,9 @@
 //! Joints of a body: hinges, slides, balls and free bodies.
 
 use super::classes::Item;
-use super::compiler::Compiler;
 use crate::error::Result;
 use crate::geometry::{Pose, rpy_from_rotation};
+use crate::world::robot::xml::unit_direction;
 use crate::world::robot::{Joint, JointKind, Limits};
 use glam::DVec3;
 
@@ -36,71 +36,41 @@ pub(super) struct JointPlace {
 ///
 /// # Errors
 /// If an attribute is invalid.
-pub(super) fn read_joint(item: &Item, place: JointPlace, compiler: &Compiler) -> Result<Joint> {
-    let own = item.own();
-    own.check_attributes(&[
-        "name",
-        "class",
-        "type",
-        "group",
-        "pos",
-        "axis",
-        "springdamper",
-        "limited",
-        "actuatorfrclimited",
-        "solreflimit",
-        "solimplimit",
-        "solreffriction",
-        "solimpfriction",
-        "stiffness",
-        "range",
-        "actuatorfrcrange",
-        "actuatorgravcomp",
-        "margin",
-        "ref",
-        "springref",
-        "armature",
-        "damping",
-        "frictionloss",
-        "user",
-        "align",
-    ])?;
-    let types = [
+pub(super) fn read_joint(item: &Item, place: JointPlace) -> Result<Joint> {
+    let (own, compiler) = (item.own(), item.compiler);
+    own.check_attributes(
+        "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit solreffriction solimpfriction stiffness range \
+         actuatorfrcrange actuatorgravcomp margin ref springref armature damping frictionloss user align",
+    )?;
+    const TYPES: [(&str, Type); 4] = [
         ("free", Type::Free),
         ("ball", Type::Ball),
         ("slide", Type::Slide),
         ("hinge", Type::Hinge),
     ];
-    let kind = match (own.node.tag_name().name(), item.layer_with(&["type"])) {
-        ("freejoint", _) => Type::Free,
-        (_, Some(layer)) => layer.one_of("type", &types)?.unwrap_or(Type::Hinge),
-        (_, None) => Type::Hinge,
+    let kind = match own.tag() {
+        "freejoint" => Type::Free,
+        _ => item.one_of("type", &TYPES, Type::Hinge)?,
     };
-    let (unit, can_have_limits) = match kind {
-        Type::Hinge => (compiler.angle, true),
-        Type::Slide => (1.0, true),
-        Type::Ball | Type::Free => (compiler.angle, false),
+    let unit = match kind {
+        Type::Slide => 1.0,
+        Type::Hinge | Type::Ball | Type::Free => compiler.angle,
     };
-    let limits = match can_have_limits {
-        true => read_limits(item, unit, compiler)?,
-        false => None,
+    let limits = match kind {
+        Type::Hinge | Type::Slide => read_limits(item, unit)?,
+        Type::Ball | Type::Free => None,
     };
-    let aligns = own.one_of(
-        "align",
-        &[
-            ("false", false),
-            ("true", true),
-            ("auto", compiler.aligns_free),
-        ],
-    )?;
+    let alignments = [
+        ("false", false),
+        ("true", true),
+        ("auto", compiler.aligns_free),
+    ];
+    let aligns = own.one_of("align", &alignments)?;
     if kind == Type::Free && aligns.unwrap_or(compiler.aligns_free) {
-        let aligned = Err(own.refuse(
-            format!("the aligned free joint `{}`", place.name),
-            "`align` \"false\"",
-        ));
+        let given = format!("the aligned free joint `{}`", place.name);
         let consequence =
             "the body keeps its frame, which MuJoCo moves to the frame of its inertia";
-        own.or_note(aligned, (), consequence);
+        own.note(given, "`align` \"false\"", consequence);
     }
     let kind = match kind {
         Type::Free if !place.is_alone_in_world => {
@@ -114,37 +84,27 @@ pub(super) fn read_joint(item: &Item, place: JointPlace, compiler: &Compiler) ->
         Type::Hinge if limits.is_some() => JointKind::Revolute,
         Type::Hinge => JointKind::Continuous,
     };
-    let axis = match kind.has_one_coordinate() {
-        true => place.frame.transform_vector(read_axis(item, &place.name)?),
-        false => DVec3::Z,
-    };
-    let is_free = kind == JointKind::Floating;
-    let reference = match kind.has_one_coordinate() {
-        true => item.number("ref", 0.0)? * unit,
-        false => 0.0,
-    };
-    Ok(Joint {
+    let mut joint = Joint {
         name: place.name,
         kind,
-        parent: place.parent,
-        child: place.child,
-        // The coordinates of a free joint are the pose in the world.
-        origin: if is_free {
-            Pose::IDENTITY
-        } else {
-            place.origin
-        },
-        axis,
-        anchor: match is_free {
-            true => DVec3::ZERO,
-            false => place
-                .frame
-                .transform_point(item.vector("pos", DVec3::ZERO)?),
-        },
-        reference,
+        axis: DVec3::Z,
         limits,
-        mimic: None,
-    })
+        ..Joint::fixed("", place.parent, place.child, place.origin)
+    };
+    if kind.has_one_coordinate() {
+        let axis = read_axis(item, &joint.name)?;
+        joint.axis = place.frame.transform_vector(axis);
+        joint.reference = item.number("ref", 0.0)? * unit;
+    }
+    match kind {
+        // The coordinates of a free joint are the pose in the world.
+        JointKind::Floating => joint.origin = Pose::IDENTITY,
+        _ => {
+            let anchor = item.vector("pos", DVec3::ZERO)?;
+            joint.anchor = place.frame.transform_point(anchor);
+        }
+    }
+    Ok(joint)
 }
 
 /// Returns the default positions of a joint (`qpos0`); `body_poses` are the poses of all bodies in their parents.
@@ -161,30 +121,26 @@ pub(super) fn rest_of(joint: &Joint, body_poses: &[Pose]) -> Vec<f64> {
 }
 
 fn read_axis(item: &Item, joint: &str) -> Result<DVec3> {
-    let axis = item.vector("axis", DVec3::Z)?;
-    // Scaled first, so that no square overflows or underflows.
-    let unit = (axis / axis.abs().max_element()).try_normalize();
-    unit.ok_or_else(|| {
+    unit_direction(item.vector("axis", DVec3::Z)?).ok_or_else(|| {
         let given = format!("joint `{joint}` with an axis of length zero");
         item.own().refuse(given, "a direction")
     })
 }
 
 /// Reads the limits of a hinge or slide; `unit` is the size of the numbers in rad or m. Returns `None` if the joint is not limited.
-fn read_limits(item: &Item, unit: f64, compiler: &Compiler) -> Result<Option<Limits>> {
+fn read_limits(item: &Item, unit: f64) -> Result<Option<Limits>> {
     let words = [("false", Some(false)), ("true", Some(true)), ("auto", None)];
-    let limited = match item.layer_with(&["limited"]) {
-        Some(layer) => layer.one_of("limited", &words)?.flatten(),
-        None => None,
-    };
+    let limited = item.one_of("limited", &words, None)?;
     let range = item.numbers::<2>("range")?.unwrap_or([0.0; 2]);
     let has_range = range != [0.0; 2];
-    if limited == Some(false) || (limited.is_none() && !(has_range && compiler.has_auto_limits)) {
+    if limited == Some(false)
+        || (limited.is_none() && !(has_range && item.compiler.has_auto_limits))
+    {
         return Ok(None);
     }
     let [lower, upper] = range.map(|end| end * unit);
     if lower >= upper {
-        let layer = item.layer_with(&["range"]).unwrap_or(item.own());
+        let layer = item.layer(&["range"]);
         let given = format!("{} with range {} to {}", layer.called(), range[0], range[1]);
         return Err(layer.refuse(given, "a lower end below the upper end"));
     }

@@ -4,6 +4,7 @@ use super::classes::Item;
 use super::compiler::Compiler;
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::world::robot::xml::unit_direction;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Attributes that contain an orientation.
@@ -15,28 +16,27 @@ const MIN_LENGTH: f64 = 1e-14;
 ///
 /// # Errors
 /// If an attribute is invalid, a direction has length zero, or one element has several orientations.
-pub(super) fn pose_of(item: &Item, compiler: &Compiler) -> Result<Pose> {
+pub(super) fn pose_of(item: &Item) -> Result<Pose> {
     let translation = item.vector("pos", DVec3::ZERO)?;
-    Ok(Pose::new(rotation_of(item, compiler)?, translation))
+    Ok(Pose::new(rotation_of(item)?, translation))
 }
 
-fn rotation_of(item: &Item, compiler: &Compiler) -> Result<DQuat> {
-    let Some(layer) = item.layer_with(&ORIENTATIONS) else {
-        return Ok(DQuat::IDENTITY);
-    };
-    let given = ORIENTATIONS.iter();
-    let given: Vec<&str> = given
-        .copied()
-        .filter(|name| layer.node.has_attribute(*name))
-        .collect();
-    let &[attribute] = given.as_slice() else {
-        let given = format!("{} with {}", layer.called(), given.join(" and "));
-        return Err(layer.refuse(given, "one orientation"));
+fn rotation_of(item: &Item) -> Result<DQuat> {
+    let layer = item.layer(&ORIENTATIONS);
+    let given = ORIENTATIONS.iter().copied();
+    let given: Vec<&str> = given.filter(|it| layer.attribute(it).is_some()).collect();
+    let attribute = match given.as_slice() {
+        [] => return Ok(DQuat::IDENTITY),
+        [attribute] => *attribute,
+        several => {
+            let given = format!("{} with {}", layer.called(), several.join(" and "));
+            return Err(layer.refuse(given, "one orientation"));
+        }
     };
     let direction = |vector: DVec3| {
-        let largest = vector.abs().max_element();
-        let unit = (vector / largest).try_normalize();
-        unit.filter(|_| largest >= MIN_LENGTH).ok_or_else(|| {
+        let is_long = vector.abs().max_element() >= MIN_LENGTH;
+        let unit = unit_direction(vector).filter(|_| is_long);
+        unit.ok_or_else(|| {
             let given = format!("`{attribute}` with a direction of length zero");
             layer.refuse(given, "directions")
         })
@@ -46,7 +46,7 @@ fn rotation_of(item: &Item, compiler: &Compiler) -> Result<DQuat> {
         "axisangle" => {
             let [x, y, z, angle] = layer.needed_numbers(attribute)?;
             let axis = direction(DVec3::new(x, y, z))?;
-            DQuat::from_axis_angle(axis, angle * compiler.angle)
+            DQuat::from_axis_angle(axis, angle * item.compiler.angle)
         }
         "xyaxes" => {
             let [a, b, c, d, e, f] = layer.needed_numbers(attribute)?;
@@ -56,7 +56,7 @@ fn rotation_of(item: &Item, compiler: &Compiler) -> Result<DQuat> {
             DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y))).normalize()
         }
         "zaxis" => from_z_to(direction(DVec3::from(layer.needed_numbers(attribute)?))?),
-        _ => from_euler(layer.needed_numbers(attribute)?, compiler),
+        _ => from_euler(layer.needed_numbers(attribute)?, item.compiler),
     })
 }
 
