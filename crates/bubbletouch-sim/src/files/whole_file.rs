@@ -113,11 +113,8 @@ fn link_target(path: &Path) -> Result<PathBuf> {
         }
     }
     let allowed = "a link that leads to a file";
-    Err(Error::input(
-        path.display(),
-        "links without an end",
-        allowed,
-    ))
+    let given = "links without an end";
+    Err(Error::input(path.display(), given, allowed))
 }
 
 impl Drop for WholeFile {

@@ -7,14 +7,8 @@ use crate::error::{Error, Result};
 /// # Errors
 /// If the value is infinite, NaN or not positive.
 pub fn positive(place: &str, value: f64, unit: &str) -> Result<f64> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(value);
-    }
-    Err(Error::input(
-        place,
-        format!("{value} {unit}"),
-        "a finite positive number",
-    ))
+    let allowed = "a finite positive number";
+    finite_and(|value| value > 0.0, place, (value, unit), allowed)
 }
 
 /// Returns the number if it is finite and not negative, otherwise an error that contains `unit` (which may be empty).
@@ -22,15 +16,8 @@ pub fn positive(place: &str, value: f64, unit: &str) -> Result<f64> {
 /// # Errors
 /// If the value is infinite, NaN or negative.
 pub fn not_negative(place: &str, value: f64, unit: &str) -> Result<f64> {
-    if value.is_finite() && value >= 0.0 {
-        return Ok(value);
-    }
-    let given = format!("{value} {unit}");
-    Err(Error::input(
-        place,
-        given.trim_end(),
-        "zero or a positive number",
-    ))
+    let allowed = "zero or a positive number";
+    finite_and(|value| value >= 0.0, place, (value, unit), allowed)
 }
 
 /// Returns the number if it is finite, otherwise an error that contains `unit`.
@@ -38,14 +25,7 @@ pub fn not_negative(place: &str, value: f64, unit: &str) -> Result<f64> {
 /// # Errors
 /// If the value is infinite or NaN.
 pub fn finite(place: &str, value: f64, unit: &str) -> Result<f64> {
-    if value.is_finite() {
-        return Ok(value);
-    }
-    Err(Error::input(
-        place,
-        format!("{value} {unit}"),
-        "a finite number",
-    ))
+    finite_and(|_| true, place, (value, unit), "a finite number")
 }
 
 /// Returns the number if it is from 0 to 1, otherwise an error.
@@ -53,8 +33,20 @@ pub fn finite(place: &str, value: f64, unit: &str) -> Result<f64> {
 /// # Errors
 /// If the value is outside 0 to 1, or NaN.
 pub fn fraction(place: &str, value: f64) -> Result<f64> {
-    if (0.0..=1.0).contains(&value) {
+    let is_fraction = |value| (0.0..=1.0).contains(&value);
+    finite_and(is_fraction, place, (value, ""), "a fraction, 0 to 1")
+}
+
+/// Returns the number if it is finite and `is_allowed` returns true.
+fn finite_and(
+    is_allowed: impl Fn(f64) -> bool,
+    place: &str,
+    (value, unit): (f64, &str),
+    allowed: &str,
+) -> Result<f64> {
+    if value.is_finite() && is_allowed(value) {
         return Ok(value);
     }
-    Err(Error::input(place, value, "a fraction, 0 to 1"))
+    let given = format!("{value} {unit}");
+    Err(Error::input(place, given.trim_end(), allowed))
 }

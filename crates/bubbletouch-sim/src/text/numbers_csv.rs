@@ -34,11 +34,9 @@ pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Res
     if record.len() == width {
         return Ok(());
     }
-    Err(Error::input(
-        place,
-        format!("{} columns", record.len()),
-        format!("{width} columns in every row"),
-    ))
+    let given = format!("{} columns", record.len());
+    let allowed = format!("{width} columns in every row");
+    Err(Error::input(place, given, allowed))
 }
 
 /// Returns the field of a row as a finite number, or an error; `allowed` describes valid values.

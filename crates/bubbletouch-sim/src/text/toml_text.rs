@@ -61,11 +61,10 @@ pub fn check_brackets(place: &str, text: &str) -> Result<()> {
         let n_open = open[0] + open[1];
         if n_open > MAX_OPEN {
             let line = line_of(text, token.span().start());
-            return Err(Error::input(
-                format!("{place}:{line}"),
-                format!("{n_open} brackets that are still open"),
-                format!("at most {MAX_OPEN}"),
-            ));
+            let place = format!("{place}:{line}");
+            let given = format!("{n_open} brackets that are still open");
+            let allowed = format!("at most {MAX_OPEN}");
+            return Err(Error::input(place, given, allowed));
         }
     }
     Ok(())

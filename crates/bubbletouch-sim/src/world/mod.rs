@@ -51,3 +51,27 @@ pub use taxel::{Grid, ImageShape, Taxel};
 pub(crate) use taxel_tree::{LEAF, Leaf, Node, PlacedTaxel, TaxelTree};
 pub use touches::{MAX_TOUCHES, TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};
+
+/// Taxels, grids and random numbers that the tests of this folder share.
+#[cfg(test)]
+mod fixtures {
+    use super::{Grid, Taxel};
+    use glam::DVec3;
+    use rand::Rng;
+
+    pub const TAXEL: Taxel = Taxel {
+        radius: 1e-3,
+        stiffness: 100.0,
+        damping: 0.0,
+        stroke: 5e-3,
+    };
+
+    pub fn grid(nx: usize, ny: usize, pitch: f64) -> Grid {
+        Grid { nx, ny, pitch }
+    }
+
+    /// Returns a vector in the cube from −1 to 1.
+    pub fn vector(rng: &mut impl Rng) -> DVec3 {
+        DVec3::from_array([(); 3].map(|()| rng.gen_range(-1.0..1.0)))
+    }
+}

@@ -190,16 +190,11 @@ mod tests {
     use super::*;
     use crate::mesh::TriangleMesh;
     use crate::random::Seed;
-    use crate::world::{Layout, Taxel, Taxels};
+    use crate::world::fixtures::{TAXEL, grid};
+    use crate::world::{Layout, Taxels};
     use std::f64::consts::PI;
 
     const PITCH: f64 = 2e-3;
-    const TAXEL: Taxel = Taxel {
-        radius: 0.5 * PITCH,
-        stiffness: 100.0,
-        damping: 0.0,
-        stroke: 5e-3,
-    };
 
     fn skin(layout: Layout) -> Patch {
         Patch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap()
@@ -212,12 +207,8 @@ mod tests {
 
     #[test]
     fn a_grid_has_four_and_a_hexagonal_layout_six() {
-        let grid = crate::world::Grid {
-            nx: 7,
-            ny: 5,
-            pitch: PITCH,
-        };
-        let neighbours = Neighbours::new(&skin(Layout::grid(&grid).unwrap()));
+        let layout = Layout::grid(&grid(7, 5, PITCH)).unwrap();
+        let neighbours = Neighbours::new(&skin(layout));
         for (taxel, (x, y)) in (0..35).map(|k| (k, (k % 7, k / 7))) {
             let found: Vec<usize> = neighbours.of_taxel(taxel).collect();
             let is_one = |&other: &usize| (other % 7).abs_diff(x) + (other / 7).abs_diff(y) == 1;
@@ -242,10 +233,9 @@ mod tests {
         };
         let face = |k: u32| {
             let [x, y, z] = [k & 1, 2 + (k >> 1 & 1), 4 + (k >> 2)];
-            if k.count_ones().is_multiple_of(2) {
-                [x, y, z]
-            } else {
-                [x, z, y]
+            match k.count_ones() % 2 {
+                0 => [x, y, z],
+                _ => [x, z, y],
             }
         };
         let faces = (0..8).map(face).collect();
@@ -289,9 +279,8 @@ mod tests {
         let sheet = skin(Layout::new(places.collect(), axes.collect()).unwrap());
         let neighbours = Neighbours::new(&sheet);
         let is_apart = |taxel| {
-            neighbours
-                .of_taxel(taxel)
-                .all(|other| (other < 5) == (taxel < 5))
+            let mut around = neighbours.of_taxel(taxel);
+            around.all(|other| (other < 5) == (taxel < 5))
         };
         assert!((0..10).all(is_apart));
         assert_eq!(counts(&neighbours), [1, 2, 2, 2, 1, 1, 2, 2, 2, 1]);

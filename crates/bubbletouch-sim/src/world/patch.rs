@@ -183,21 +183,11 @@ impl EvenGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const TAXEL: Taxel = Taxel {
-        radius: 1e-3,
-        stiffness: 100.0,
-        damping: 0.0,
-        stroke: 5e-3,
-    };
+    use crate::world::fixtures::{TAXEL, grid};
 
     #[test]
     fn a_patch_that_is_a_grid_knows_it() {
-        let grid = Grid {
-            nx: 4,
-            ny: 3,
-            pitch: 2e-3,
-        };
+        let grid = grid(4, 3, 2e-3);
         let skin = Patch::grid(grid, TAXEL).unwrap();
         assert_eq!((skin.name(), skin.n_taxels()), ("patch", 12));
         assert_eq!(skin.layout().as_grid(), Some(&grid));
@@ -207,25 +197,24 @@ mod tests {
     #[test]
     fn bad_taxels_are_refused_with_the_patch_and_the_taxel() {
         let layout = || Layout::new(vec![DVec3::ZERO, DVec3::X], vec![DVec3::Z; 2]).unwrap();
-        let message = |taxels| {
-            let skin = Patch::new("palm", layout(), taxels);
-            skin.unwrap_err().to_string()
-        };
-        assert_eq!(
-            message(Taxels::Each(vec![TAXEL])),
-            "skin patch palm: 1 taxels for 2 places; one taxel a place, or one for all"
-        );
         let stiff = Taxel {
             stiffness: -1.0,
             ..TAXEL
         };
-        assert_eq!(
-            message(Taxels::Each(vec![TAXEL, stiff])),
-            "skin patch palm, taxel 2, taxel stiffness: -1 N/m; a finite positive number"
-        );
-        assert_eq!(
-            message(Taxels::Equal(stiff)),
-            "skin patch palm, taxel stiffness: -1 N/m; a finite positive number"
-        );
+        let range = "taxel stiffness: -1 N/m; a finite positive number";
+        for (taxels, message) in [
+            (
+                Taxels::Each(vec![TAXEL]),
+                ": 1 taxels for 2 places; one taxel a place, or one for all",
+            ),
+            (
+                Taxels::Each(vec![TAXEL, stiff]),
+                &format!(", taxel 2, {range}"),
+            ),
+            (Taxels::Equal(stiff), &format!(", {range}")),
+        ] {
+            let error = Patch::new("palm", layout(), taxels).unwrap_err();
+            assert_eq!(error.to_string(), format!("skin patch palm{message}"));
+        }
     }
 }

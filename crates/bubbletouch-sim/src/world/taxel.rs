@@ -107,11 +107,9 @@ impl Grid {
     /// If a property is out of its range; the error names the first one.
     pub fn check(&self) -> Result<()> {
         if self.nx == 0 || self.ny == 0 {
-            return Err(Error::input(
-                "taxel grid",
-                format!("{} × {} taxels", self.nx, self.ny),
-                "at least one taxel each way",
-            ));
+            let given = format!("{} × {} taxels", self.nx, self.ny);
+            let allowed = "at least one taxel each way";
+            return Err(Error::input("taxel grid", given, allowed));
         }
         positive("taxel pitch", self.pitch, "m").map(drop)
     }

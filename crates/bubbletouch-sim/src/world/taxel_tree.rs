@@ -4,6 +4,7 @@
 //! Also, the sphere must not be wholly behind the substrate: `h + √(S² − b²) ≥ −s − ρ`. So the distance of c from the taxel's segment, from p back to p − (s +
 //! ρ) n, is less than S. The boxes bound these segments.
 
+use super::layouts::split_across;
 use super::{Layout, Taxel, Taxels};
 use crate::geometry::Aabb;
 use glam::DVec3;
@@ -192,24 +193,13 @@ impl TaxelTree {
             self.nodes.push(Node { leaf, next, ..node });
             return index;
         }
-        let center = |number: u32| layout.centers()[number as usize];
-        let all = || numbers.iter().map(|&number| center(number));
-        let low = all().fold(DVec3::INFINITY, DVec3::min);
-        let side = (all().fold(DVec3::NEG_INFINITY, DVec3::max) - low).max_position();
         let half = (numbers.len() / 2).next_multiple_of(LEAF);
-        // Ties are broken by index, so that the tree depends on the taxels only.
-        numbers.select_nth_unstable_by(half, |&a, &b| {
-            let order = center(a)[side].total_cmp(&center(b)[side]);
-            order.then(a.cmp(&b))
-        });
-        let (left, right) = numbers.split_at_mut(half);
+        let center = |number: u32| layout.centers()[number as usize];
+        let (left, right) = split_across(numbers, half, center);
         self.nodes.push(Node::EMPTY);
         let parts = [self.split(of, left), self.split(of, right)].map(|part| self.nodes[part]);
         self.nodes[index] = Node {
-            bounds: Aabb {
-                min: parts[0].bounds.min.min(parts[1].bounds.min),
-                max: parts[0].bounds.max.max(parts[1].bounds.max),
-            },
+            bounds: Aabb::around(parts.map(|part| part.bounds)).expect("two parts"),
             radius: parts[0].radius.max(parts[1].radius),
             leaf: None,
             next: self.nodes.len() as u32,
@@ -345,41 +335,33 @@ impl PlacedTaxel {
 mod tests {
     use super::*;
     use crate::random::Seed;
-    use crate::world::Taxel;
+    use crate::world::fixtures::{TAXEL, vector};
     use rand::Rng;
 
     #[test]
     fn no_taxel_that_a_ball_can_push_is_left_out() {
         let mut rng = Seed::new(1).named("taxel tree").rng();
-        let mut direction = || {
-            let mut random = || rng.gen_range(-1.0..1.0);
-            DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
-        };
+        let mut direction = || vector(&mut rng).normalize_or(DVec3::X);
         let n = 3000;
         let centers: Vec<DVec3> = (0..n).map(|_| 0.05 * direction()).collect();
         // Half of the axes point outwards, as on a ball; the others are random.
-        let axis = |k: usize| {
-            if k.is_multiple_of(2) {
-                20.0 * centers[k]
-            } else {
-                direction()
-            }
+        let axis = |k: usize| match k % 2 {
+            0 => 20.0 * centers[k],
+            _ => direction(),
         };
         let axes: Vec<DVec3> = (0..n).map(axis).map(DVec3::normalize).collect();
         let layout = Layout::new(centers, axes).unwrap();
         let taxels = (0..n).map(|k| Taxel {
             radius: 1e-3 + 1e-6 * k as f64,
-            stiffness: 1.0,
-            damping: 0.0,
             stroke: 6e-3 - 1e-6 * k as f64,
+            ..TAXEL
         });
         let tree = TaxelTree::new(&layout, &Taxels::Each(taxels.collect()));
         let mut n_pushed = 0;
         let mut n_visited = 0;
         for case in 0..300 {
             let mut rng = Seed::new(2).numbered(case).rng();
-            let mut random = || rng.gen_range(-0.08..0.08);
-            let center = DVec3::new(random(), random(), random());
+            let center = 0.08 * vector(&mut rng);
             let radius = 10f64.powf(rng.gen_range(-6.0..-1.5));
             let mut is_visited = vec![false; n];
             tree.each_near(center, radius, |taxel| {
@@ -403,13 +385,7 @@ mod tests {
     #[test]
     fn a_flat_taxel_has_the_axes_of_the_patch() {
         let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-        let taxel = Taxel {
-            radius: 1e-3,
-            stiffness: 1.0,
-            damping: 0.0,
-            stroke: 5e-3,
-        };
-        let tree = TaxelTree::new(&layout, &Taxels::Equal(taxel));
+        let tree = TaxelTree::new(&layout, &Taxels::Equal(TAXEL));
         let taxel = tree.leaves[0].taxels().next().unwrap();
         assert_eq!(taxel.across, [DVec3::X, DVec3::Y]);
     }

@@ -218,46 +218,37 @@ fn check_rests(rests: &[RestPose]) -> Result<()> {
 
 fn check_spread(axis: TouchAxis, spread: &Spread) -> Result<()> {
     let refuse = |given: String, allowed: &str| Err(Error::input(axis.name(), given, allowed));
-    let ends = match spread {
-        Spread::Values(values) => {
-            if values.is_empty() {
-                return refuse("no values".into(), "at least one value");
-            }
-            if let Some(&(one, other)) = axis.same_poses(values).first() {
-                let given = match (values[one], values[other]) {
-                    (one, other) if one == other => format!("{one} twice"),
-                    (one, other) => format!("{one} and {other}, which are the same pose"),
-                };
-                return refuse(given, "different values");
-            }
-            values.clone()
+    let ends: &[f64] = match spread {
+        Spread::Values(values) => values,
+        Spread::Uniform { low, high } if low > high => {
+            return refuse(format!("from {low} to {high}"), "a low end below the high");
         }
-        Spread::Uniform { low, high } => {
-            if low > high {
-                return refuse(format!("from {low} to {high}"), "a low end below the high");
-            }
-            vec![*low, *high]
-        }
+        Spread::Uniform { low, high } => &[*low, *high],
     };
-    let (allowed, range) = range_of(axis);
-    match ends.into_iter().find(|value| !allowed(*value)) {
-        Some(value) => refuse(value.to_string(), range),
-        None => Ok(()),
+    if ends.is_empty() {
+        return refuse("no values".into(), "at least one value");
     }
-}
-
-/// Returns the allowed values of an axis, as a function that tests a value and as text.
-fn range_of(axis: TouchAxis) -> (fn(f64) -> bool, &'static str) {
-    match axis {
-        TouchAxis::Depth => (
-            |v| v.is_finite() && v >= 0.0,
-            "zero or a positive number of metres",
-        ),
-        TouchAxis::TiltX | TouchAxis::TiltY => (
-            |v| v.abs() < FRAC_PI_2,
-            "less than a quarter turn either way",
-        ),
-        _ => (f64::is_finite, "finite numbers"),
+    let same = axis.same_poses(ends);
+    if let (Spread::Values(_), Some(&(one, other))) = (spread, same.first()) {
+        let given = match (ends[one], ends[other]) {
+            (one, other) if one == other => format!("{one} twice"),
+            (one, other) => format!("{one} and {other}, which are the same pose"),
+        };
+        return refuse(given, "different values");
+    }
+    let is_allowed = |value: f64| match axis {
+        TouchAxis::Depth => value.is_finite() && value >= 0.0,
+        TouchAxis::TiltX | TouchAxis::TiltY => value.abs() < FRAC_PI_2,
+        _ => value.is_finite(),
+    };
+    let allowed = match axis {
+        TouchAxis::Depth => "zero or a positive number of metres",
+        TouchAxis::TiltX | TouchAxis::TiltY => "less than a quarter turn either way",
+        _ => "finite numbers",
+    };
+    match ends.iter().find(|value| !is_allowed(**value)) {
+        Some(value) => refuse(value.to_string(), allowed),
+        None => Ok(()),
     }
 }
 

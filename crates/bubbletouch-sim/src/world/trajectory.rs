@@ -36,18 +36,13 @@ impl VelocityPlan {
         for (index, phase) in phases.iter().enumerate() {
             let place = format!("velocity plan, phase {}", index + 1);
             if !(phase.duration.is_finite() && phase.duration >= 0.0) {
-                return Err(Error::input(
-                    place,
-                    format!("duration {} s", phase.duration),
-                    "zero or a positive number",
-                ));
+                let given = format!("duration {} s", phase.duration);
+                let allowed = "zero or a positive number";
+                return Err(Error::input(place, given, allowed));
             }
             if !(phase.linear.is_finite() && phase.angular.is_finite()) {
-                return Err(Error::input(
-                    place,
-                    format!("velocity {} m/s, {} rad/s", phase.linear, phase.angular),
-                    "finite numbers",
-                ));
+                let given = format!("velocity {} m/s, {} rad/s", phase.linear, phase.angular);
+                return Err(Error::input(place, given, "finite numbers"));
             }
         }
         Ok(Self { start, phases })
@@ -91,13 +86,12 @@ mod tests {
         };
         let one = VelocityPlan::new(Pose::IDENTITY, vec![turn(1.0)]).unwrap();
         let two = VelocityPlan::new(Pose::IDENTITY, vec![turn(0.25), turn(0.75)]).unwrap();
-        let (a, b) = (one.pose_at(1.0), two.pose_at(1.0));
-        assert!(
-            (a.transform_point(DVec3::X) - DVec3::new(0.0, 1.1, 0.0)).length() < 1e-15,
-            "{a:?}"
-        );
-        assert!((a.transform_point(DVec3::X) - b.transform_point(DVec3::X)).length() < 1e-15);
-        assert_eq!(one.pose_at(5.0), a, "it rests where it ended");
+        let end = one.pose_at(1.0);
+        for pose in [end, two.pose_at(1.0)] {
+            let point = pose.transform_point(DVec3::X);
+            assert!(point.distance(DVec3::new(0.0, 1.1, 0.0)) < 1e-15, "{point}");
+        }
+        assert_eq!(one.pose_at(5.0), end, "it rests where it ended");
         assert_eq!(one.duration(), two.duration());
     }
 
@@ -120,9 +114,7 @@ mod tests {
             angular: DVec3::ZERO,
         };
         let error = VelocityPlan::new(Pose::IDENTITY, vec![phase]).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "velocity plan, phase 1: duration -1 s; zero or a positive number"
-        );
+        let said = "velocity plan, phase 1: duration -1 s; zero or a positive number";
+        assert_eq!(error.to_string(), said);
     }
 }

@@ -140,19 +140,14 @@ impl TouchRanges {
         let (fewest, most) = (*self.contacts.start(), *self.contacts.end());
         if !(1 <= fewest && fewest <= most && most <= 100) {
             let given = format!("{fewest} to {most}");
-            return Err(Error::input(
-                "range of contacts",
-                given,
-                "1 to 100, the fewer first",
-            ));
+            let place = "range of contacts";
+            let allowed = "1 to 100, the fewer first";
+            return Err(Error::input(place, given, allowed));
         }
         if most > 1 && *self.lift.start() <= 0.0 {
             let given = format!("{} m between contacts", self.lift.start());
-            return Err(Error::input(
-                "range of lift",
-                given,
-                "more than 0 where contacts repeat",
-            ));
+            let allowed = "more than 0 where contacts repeat";
+            return Err(Error::input("range of lift", given, allowed));
         }
         let wrong = self.fingers.iter().find(|&&n| !(1..=5).contains(&n));
         match (wrong, self.fingers.is_empty()) {

@@ -74,8 +74,8 @@ fn normalized((place, axis): (DVec3, DVec3)) -> (DVec3, DVec3) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ring::nearest_distances;
     use super::*;
+    use crate::objects::nearest_distances;
 
     #[test]
     fn neighbours_on_a_cylinder_are_about_a_pitch_away() {
@@ -88,10 +88,7 @@ mod tests {
             let layout = Layout::cylinder(radius, length, arc, pitch).unwrap();
             assert_eq!(layout.n_taxels(), n);
             for distance in nearest_distances(layout.centers()) {
-                assert!(
-                    (distance / pitch - 1.0).abs() < 0.05,
-                    "{distance} for {pitch}"
-                );
+                assert!((distance / pitch - 1.0).abs() < 0.05, "{distance}");
             }
             for (center, axis) in layout.centers().iter().zip(layout.axes()) {
                 assert!((center.truncate().length() - radius).abs() < 1e-15);
@@ -113,10 +110,7 @@ mod tests {
             let layout = Layout::sphere_cap(radius, half_angle, pitch).unwrap();
             for distance in nearest_distances(layout.centers()) {
                 let share = distance / pitch;
-                assert!(
-                    (0.9..1.1).contains(&share),
-                    "{half_angle} {radius}: {share}"
-                );
+                assert!((0.9..1.1).contains(&share), "{half_angle}: {share}");
             }
             let area = TAU * radius * radius * (1.0 - half_angle.cos());
             let n = layout.n_taxels() as f64;
@@ -130,18 +124,14 @@ mod tests {
 
     #[test]
     fn what_is_smaller_than_a_pitch_has_one_ring_one_column_or_one_taxel() {
-        assert_eq!(
-            Layout::cylinder(0.01, 1e-4, 1e-4, 1e-3).unwrap().n_taxels(),
-            1
-        );
-        assert_eq!(
-            Layout::cylinder(0.01, 0.0, PI, 1e-3).unwrap().n_taxels(),
-            32
-        );
-        assert_eq!(
-            Layout::cylinder(1e-5, 5e-3, TAU, 1e-3).unwrap().n_taxels(),
-            6
-        );
+        for (radius, length, arc, n) in [
+            (0.01, 1e-4, 1e-4, 1),
+            (0.01, 0.0, PI, 32),
+            (1e-5, 5e-3, TAU, 6),
+        ] {
+            let layout = Layout::cylinder(radius, length, arc, 1e-3).unwrap();
+            assert_eq!(layout.n_taxels(), n);
+        }
         let pole = Layout::sphere_cap(0.01, 1e-3, 1e-3).unwrap();
         assert_eq!(pole.centers(), [DVec3::new(0.0, 0.0, 0.01)]);
     }
@@ -153,29 +143,5 @@ mod tests {
         let open = Layout::cylinder(0.02, 0.0, TAU - 0.2, 2e-3).unwrap();
         let gap = open.centers()[0].distance(open.centers()[open.n_taxels() - 1]);
         assert!((gap - 4e-3).abs() < 1e-4, "{gap}");
-    }
-
-    #[test]
-    fn bad_angles_and_lengths_are_refused_with_their_names() {
-        let errors = [
-            Layout::cylinder(-1.0, 1.0, 1.0, 0.1),
-            Layout::cylinder(1.0, f64::INFINITY, 1.0, 0.1),
-            Layout::cylinder(1.0, 1.0, 7.0, 0.1),
-            Layout::cylinder(1.0, 1.0, 1.0, 1e-5),
-            Layout::sphere_cap(1.0, 0.0, 0.1),
-            Layout::sphere_cap(1.0, f64::NAN, 0.1),
-        ]
-        .map(|layout| layout.unwrap_err().to_string());
-        let starts = [
-            "cylinder radius: -1 m; a finite positive number",
-            "cylinder length: inf m; zero or a positive number",
-            "cylinder arc: 7 rad; above 0 to 6.28",
-            "cylinder layout: 1000020",
-            "cap half angle: 0 rad; above 0 to 3.14",
-            "cap half angle: NaN rad; ",
-        ];
-        for (error, start) in errors.iter().zip(starts) {
-            assert!(error.starts_with(start), "{error}");
-        }
     }
 }

@@ -65,11 +65,9 @@ impl Layout {
         };
         let pieces = subdivide(mesh, PIECE * pitch).ok_or_else(too_fine)?;
         if pieces.is_empty() {
-            return Err(Error::input(
-                "draped layout",
-                "a mesh without area",
-                "at least one triangle with a normal",
-            ));
+            let given = "a mesh without area";
+            let allowed = "at least one triangle with a normal";
+            return Err(Error::input("draped layout", given, allowed));
         }
         let mut order: Vec<usize> = (0..pieces.len()).collect();
         order.shuffle(&mut seed.named("draped layout").rng());

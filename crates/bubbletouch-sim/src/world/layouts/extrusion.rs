@@ -119,14 +119,11 @@ impl Extrusion {
 mod tests {
     use super::*;
     use crate::world::Layout;
+    use crate::world::fixtures::grid;
 
     #[test]
     fn a_grid_has_the_taxels_of_the_layout_of_that_grid() {
-        let grid = Grid {
-            nx: 5,
-            ny: 3,
-            pitch: 2e-3,
-        };
+        let grid = grid(5, 3, 2e-3);
         let extrusion = Extrusion::grid(&grid).unwrap();
         let (layout, expected) = (Layout::from(extrusion), Layout::grid(&grid).unwrap());
         assert_eq!(layout.centers(), expected.centers());

@@ -74,11 +74,9 @@ impl Layout {
         positive("annulus inner radius", inner, "m")?;
         positive("annulus outer radius", outer, "m")?;
         if inner > outer {
-            return Err(Error::input(
-                "annulus layout",
-                format!("inner radius {inner} m, outer radius {outer} m"),
-                "an inner radius that is not larger than the outer one",
-            ));
+            let given = format!("inner radius {inner} m, outer radius {outer} m");
+            let allowed = "an inner radius that is not larger than the outer one";
+            return Err(Error::input("annulus layout", given, allowed));
         }
         let width = outer - inner;
         let area = std::f64::consts::PI * (inner + outer) * width.max(pitch);
@@ -94,8 +92,8 @@ impl Layout {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ring::nearest_distances;
     use super::*;
+    use crate::objects::nearest_distances;
 
     #[test]
     fn neighbours_on_hexagonal_lattices_are_exactly_a_pitch_away() {
@@ -145,30 +143,6 @@ mod tests {
             } else {
                 assert!((largest - smallest).abs() < 1e-15, "one ring");
             }
-        }
-    }
-
-    #[test]
-    fn bad_lengths_and_counts_are_refused_with_their_names() {
-        let errors = [
-            Layout::hexagonal(0, 3, 1e-3),
-            Layout::hexagonal(3, 3, 0.0),
-            Layout::disc(f64::NAN, 1e-3),
-            Layout::disc(1.0, 1e-6),
-            Layout::annulus(2.0, 1.0, 0.1),
-            Layout::annulus(0.0, 1.0, 0.1),
-        ]
-        .map(|layout| layout.unwrap_err().to_string());
-        let starts = [
-            "hexagonal layout: 0 taxels; 1 to ",
-            "taxel pitch: 0 m; a finite positive number",
-            "disc radius: NaN m; a finite positive number",
-            "disc layout: 3627598735724 taxels; 1 to ",
-            "annulus layout: inner radius 2 m, outer radius 1 m; ",
-            "annulus inner radius: 0 m; ",
-        ];
-        for (error, start) in errors.iter().zip(starts) {
-            assert!(error.starts_with(start), "{error}");
         }
     }
 }

@@ -10,11 +10,9 @@ pub(super) fn check_count(place: &str, about: f64) -> Result<()> {
     if about >= 1.0 && about <= MAX_TAXELS as f64 {
         return Ok(());
     }
-    Err(Error::input(
-        place,
-        format!("{about:.0} taxels"),
-        format!("1 to {MAX_TAXELS}"),
-    ))
+    let given = format!("{about:.0} taxels");
+    let allowed = format!("1 to {MAX_TAXELS}");
+    Err(Error::input(place, given, allowed))
 }
 
 /// Returns an error unless an angle is above zero and at most `largest` radians.
@@ -22,9 +20,7 @@ pub(super) fn check_angle(place: &str, angle: f64, largest: f64) -> Result<()> {
     if angle > 0.0 && angle <= largest {
         return Ok(());
     }
-    Err(Error::input(
-        place,
-        format!("{angle} rad"),
-        format!("above 0 to {largest}"),
-    ))
+    let given = format!("{angle} rad");
+    let allowed = format!("above 0 to {largest}");
+    Err(Error::input(place, given, allowed))
 }

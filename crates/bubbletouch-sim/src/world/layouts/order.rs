@@ -28,18 +28,26 @@ fn halve(order: &mut [usize], centers: &[DVec3]) {
         part *= TILE;
     }
     let half = (order.len() / 2).next_multiple_of(part);
-    let all = || order.iter().map(|&k| centers[k]);
-    let low = all().fold(DVec3::INFINITY, DVec3::min);
-    let high = all().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let side = (high - low).max_position();
-    // Ties are broken by index, so that the order depends on the taxels only.
-    order.select_nth_unstable_by(half, |&a, &b| {
-        let order = centers[a][side].total_cmp(&centers[b][side]);
-        order.then(a.cmp(&b))
-    });
-    let (left, right) = order.split_at_mut(half);
+    let (left, right) = split_across(order, half, |k| centers[k]);
     halve(left, centers);
     halve(right, centers);
+}
+
+/// Reorders taxels and divides them, across the longest side of the bounding box of their centres, into the first `half` taxels and the others.
+pub(crate) fn split_across<T: Copy + Ord>(
+    taxels: &mut [T],
+    half: usize,
+    center: impl Fn(T) -> DVec3,
+) -> (&mut [T], &mut [T]) {
+    let all = || taxels.iter().map(|&taxel| center(taxel));
+    let low = all().fold(DVec3::INFINITY, DVec3::min);
+    let side = (all().fold(DVec3::NEG_INFINITY, DVec3::max) - low).max_position();
+    // Ties are broken by index, so that the order depends on the taxels only.
+    taxels.select_nth_unstable_by(half, |&a, &b| {
+        let order = center(a)[side].total_cmp(&center(b)[side]);
+        order.then(a.cmp(&b))
+    });
+    taxels.split_at_mut(half)
 }
 
 #[cfg(test)]

@@ -126,6 +126,7 @@ pub fn nearest_distances(places: &[DVec2]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::geometry::Pose;
+    use crate::world::fixtures::grid;
     use std::f64::consts::{FRAC_PI_2, PI};
 
     fn listed(taxels: impl IntoIterator<Item = (DVec3, DVec3)>) -> Layout {
@@ -135,18 +136,13 @@ mod tests {
 
     #[test]
     fn a_grid_in_any_position_and_numbered_row_by_row_is_the_grid() {
-        let grid = Grid {
-            nx: 5,
-            ny: 3,
-            pitch: 2e-3,
-        };
-        let flat = Layout::grid(&grid).unwrap();
+        let flat = Layout::grid(&grid(5, 3, 2e-3)).unwrap();
         let pose = Pose {
             rotation: DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 2.0, -1.0),
             translation: DVec3::new(0.1, -0.2, 0.3),
         };
         for (nx, ny) in [(5, 3), (1, 7), (6, 1), (1, 1)] {
-            let flat = Layout::grid(&Grid { nx, ny, ..grid }).unwrap();
+            let flat = Layout::grid(&grid(nx, ny, 2e-3)).unwrap();
             let moved = flat.moved(&pose);
             let Some(found) = moved.to_grid() else {
                 assert_eq!(nx * ny, 1, "a single taxel has no pitch");
@@ -156,25 +152,17 @@ mod tests {
             assert!((found.pitch - 2e-3).abs() < 1e-15);
         }
         // Another order or a moved taxel is no grid.
-        let taxels = || {
-            flat.centers()
-                .iter()
-                .copied()
-                .zip(flat.axes().iter().copied())
-        };
-        let by_columns = |k: usize| taxels().nth(k / 3 + 5 * (k % 3)).unwrap();
-        assert!(
-            listed((0..15).map(by_columns))
-                .to_grid()
-                .is_some_and(|g| (g.nx, g.ny) == (3, 5))
-        );
-        let serpentine = |k: usize| match (k / 5) % 2 {
-            0 => taxels().nth(k).unwrap(),
-            _ => taxels().nth(k / 5 * 5 + 4 - k % 5).unwrap(),
-        };
-        assert!(listed((0..15).map(serpentine)).to_grid().is_none());
-        let moved = taxels().enumerate();
-        let moved = moved.map(|(k, (c, a))| (c + f64::from(k == 7) * 1e-4 * DVec3::X, a));
+        let taxel = |k: usize| (flat.centers()[k], flat.axes()[k]);
+        let by_columns = (0..15).map(|k| taxel(k / 3 + 5 * (k % 3)));
+        let found = listed(by_columns).to_grid().expect("another grid");
+        assert_eq!((found.nx, found.ny), (3, 5));
+        let serpentine = (0..15).map(|k| match (k / 5) % 2 {
+            0 => taxel(k),
+            _ => taxel(k / 5 * 5 + 4 - k % 5),
+        });
+        assert!(listed(serpentine).to_grid().is_none());
+        let shift = |k| f64::from(k == 7) * 1e-4 * DVec3::X;
+        let moved = (0..15).map(|k| (taxel(k).0 + shift(k), taxel(k).1));
         assert!(listed(moved).to_grid().is_none());
     }
 
@@ -182,10 +170,8 @@ mod tests {
     fn images_of_a_cylinder_and_a_cap_keep_distances_along_the_surface() {
         let radius = 0.02;
         let on_cylinder = |k: usize| {
-            let (angle, y) = (
-                f64::from(k as u32 % 9) / 8.0 * PI - FRAC_PI_2,
-                1e-3 * (k / 9) as f64,
-            );
+            let angle = (k % 9) as f64 / 8.0 * PI - FRAC_PI_2;
+            let y = 1e-3 * (k / 9) as f64;
             let axis = DVec3::new(angle.sin(), 0.0, angle.cos());
             (radius * axis + y * DVec3::Y, axis)
         };

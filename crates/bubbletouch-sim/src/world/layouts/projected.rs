@@ -150,8 +150,7 @@ mod tests {
 
     #[test]
     fn a_grid_above_a_face_keeps_its_places_on_the_face() {
-        let square = Grid { nx: 5, ..GRID };
-        let odd = Grid { ny: 5, ..square };
+        let odd = Grid { ny: 5, ..GRID };
         // The rays of an odd grid hit the diagonal of the face exactly.
         for grid in [GRID, odd] {
             let pose = Pose::from_translation(0.03 * DVec3::Z);
@@ -196,11 +195,9 @@ mod tests {
         let expected = "projected layout: the taxel in row 0, column 4 meets no outer face; a grid in front of";
         assert!(error.starts_with(expected), "{error}");
         let dropped = project(MissingTaxels::Drop).unwrap();
-        assert_eq!(
-            (dropped.layout.n_taxels(), dropped.layout.n_left_out()),
-            (16, 4)
-        );
-        assert_eq!(dropped.layout.sides(), None);
+        let layout = &dropped.layout;
+        assert_eq!((layout.n_taxels(), layout.n_left_out()), (16, 4));
+        assert_eq!(layout.sides(), None);
         assert_eq!(dropped.pixels[4], [1, 0]);
         // A grid inside the cube meets only inner sides of faces. A grid below the cube meets no face.
         for height in [0.0, -0.03] {

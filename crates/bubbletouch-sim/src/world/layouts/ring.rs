@@ -41,14 +41,3 @@ pub(crate) fn ends_of_steps(n: usize) -> impl Iterator<Item = f64> + Clone {
         n => step as f64 / n as f64 - 0.5,
     })
 }
-
-/// Returns the distance from each taxel of a layout to its nearest neighbour, metres, from the taxels' centres.
-#[cfg(test)]
-pub(super) fn nearest_distances(centers: &[DVec3]) -> Vec<f64> {
-    let nearest = |i: usize| {
-        let others = centers.iter().enumerate().filter(|&(j, _)| j != i);
-        let distances = others.map(|(_, other)| other.distance(centers[i]));
-        distances.fold(f64::INFINITY, f64::min)
-    };
-    (0..centers.len()).map(nearest).collect()
-}

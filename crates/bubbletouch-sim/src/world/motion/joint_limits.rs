@@ -66,24 +66,20 @@ fn first_beyond(
         fastest,
     } = *extremes;
     let at = |value| position(value, unit);
+    let speed = |value: f64| format!("{value:.6} {}/s", unit.unit());
     if lowest.value < limits.lower - SLACK {
         let allowed = format!("at least {}", at(limits.lower));
-        return Some((lowest, at(lowest.value), allowed));
-    }
-    if highest.value > limits.upper + SLACK {
+        Some((lowest, at(lowest.value), allowed))
+    } else if highest.value > limits.upper + SLACK {
         let allowed = format!("at most {}", at(limits.upper));
-        return Some((highest, at(highest.value), allowed));
+        Some((highest, at(highest.value), allowed))
+    } else if fastest.value.abs() > limits.velocity + SLACK {
+        let given = format!("velocity {}", speed(fastest.value));
+        let allowed = format!("at most {}", speed(limits.velocity));
+        Some((fastest, given, allowed))
+    } else {
+        None
     }
-    if fastest.value.abs() <= limits.velocity + SLACK {
-        return None;
-    }
-    let speed = |value: f64| format!("{value:.6} {}/s", unit.unit());
-    let given = format!("velocity {}", speed(fastest.value));
-    Some((
-        fastest,
-        given,
-        format!("at most {}", speed(limits.velocity)),
-    ))
 }
 
 impl Extremes {
@@ -115,10 +111,7 @@ fn when(taken: &Taken, way_points: &WayPoints) -> String {
     match times.iter().position(|&time| time == taken.time) {
         Some(at) => format!("{time} ({})", origin.way_point(at)),
         None => {
-            let (before, after) = (
-                origin.way_point(taken.piece),
-                origin.way_point(taken.piece + 1),
-            );
+            let [before, after] = [0, 1].map(|next| origin.way_point(taken.piece + next));
             format!("{time} (between {before} and {after})")
         }
     }

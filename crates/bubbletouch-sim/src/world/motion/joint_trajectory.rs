@@ -4,9 +4,9 @@ use super::Interpolation;
 use super::curve::{Curve, Moment};
 use super::joint_limits::check_limits;
 use super::way_point_csv::Table;
-use super::way_points::{Origin, WayPoints};
+use super::way_points::WayPoints;
 use crate::error::{Error, Result};
-use crate::world::Robot;
+use crate::world::{Coordinate, Robot};
 use ndarray::Array2;
 use std::io::Read;
 
@@ -35,19 +35,15 @@ impl JointTrajectory {
         positions: Array2<f64>,
         interpolation: Interpolation,
     ) -> Result<Self> {
-        let way_points = WayPoints {
-            times,
-            values: positions,
-            origin: Origin::Argument("joint trajectory"),
-        };
-        if way_points.values.ncols() != robot.n_positions() {
-            return Err(Error::input(
-                way_points.origin.place(),
-                format!("{} positions a way-point", way_points.values.ncols()),
-                format!("the {} of robot `{}`", robot.n_positions(), robot.name()),
-            ));
+        const PLACE: &str = "joint trajectory";
+        let (n, n_robot) = (positions.ncols(), robot.n_positions());
+        if n != n_robot {
+            let given = format!("{n} positions a way-point");
+            let allowed = format!("the {n_robot} of robot `{}`", robot.name());
+            return Err(Error::input(PLACE, given, allowed));
         }
-        Self::through(robot, &way_points.checked()?, interpolation)
+        let way_points = WayPoints::listed(PLACE, times, positions)?;
+        Self::through(robot, way_points, interpolation)
     }
 
     /// Reads a trajectory from CSV: a column `time_s` and one column for each moving coordinate of the robot, in any order. A coordinate without a column
@@ -75,10 +71,8 @@ impl JointTrajectory {
         }
         for joint in robot.joints().iter().filter(|joint| joint.mimic.is_some()) {
             let (_, dimension) = joint.kind.coordinates()[0];
-            if table
-                .claim(&joint.name, dimension.units(), is_name)?
-                .is_some()
-            {
+            let column = table.claim(&joint.name, dimension.units(), is_name)?;
+            if column.is_some() {
                 let given = format!("a column for `{}`, which mimics another joint", joint.name);
                 return Err(table.refuse_header(given, "only the joint that it follows"));
             }
@@ -88,43 +82,26 @@ impl JointTrajectory {
             return Err(table.refuse_header("no column of a joint", names.join(", ")));
         }
         let mut way_points = table.way_points(&columns, names())?;
-        let rest = robot.rest_positions();
-        way_points.values =
-            Array2::from_shape_fn((way_points.times.len(), rest.len()), |(row, position)| {
-                match moved.iter().position(|&index| index == position) {
-                    Some(column) => way_points.values[(row, column)],
-                    None => rest[position],
-                }
-            });
-        Self::through(robot, &way_points, interpolation)
+        let shape = (way_points.times.len(), robot.n_positions());
+        let mut values = Array2::zeros(shape);
+        values += &ndarray::aview1(&robot.rest_positions());
+        for (column, &position) in way_points.values.columns().into_iter().zip(&moved) {
+            values.column_mut(position).assign(&column);
+        }
+        way_points.values = values;
+        Self::through(robot, way_points, interpolation)
     }
 
-    fn through(
-        robot: &Robot,
-        way_points: &WayPoints,
-        interpolation: Interpolation,
-    ) -> Result<Self> {
-        let times = &way_points.times;
-        let mut curves = Vec::new();
-        for (column, coordinate) in way_points
-            .values
-            .columns()
-            .into_iter()
-            .zip(robot.coordinates())
-        {
-            let curve =
-                Curve::through(times, &column.to_vec(), interpolation).ok_or_else(|| {
-                    Error::input(
-                        way_points.origin.place(),
-                        format!("`{}` with an endless velocity", coordinate.name),
-                        "way-points farther apart in time",
-                    )
-                })?;
-            curves.push(curve);
-        }
-        let notes = check_limits(robot, &curves, way_points)?;
+    fn through(robot: &Robot, way_points: WayPoints, interpolation: Interpolation) -> Result<Self> {
+        let coordinates = robot.coordinates().iter().enumerate();
+        let curve = |(column, coordinate): (usize, &Coordinate)| {
+            let name = format!("`{}` with ", coordinate.name);
+            way_points.curve(column, &name, interpolation)
+        };
+        let curves = coordinates.map(curve).collect::<Result<Vec<_>>>()?;
+        let notes = check_limits(robot, &curves, &way_points)?;
         Ok(Self {
-            times: times.clone(),
+            times: way_points.times,
             curves,
             notes,
         })

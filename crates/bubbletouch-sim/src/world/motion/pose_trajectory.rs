@@ -4,15 +4,16 @@ use super::Interpolation;
 use super::curve::{Curve, Moment};
 use super::rotation_curve::{RotationCurve, rotation_vector, turn_near};
 use super::way_point_csv::{Column, Table, Units};
-use super::way_points::{Origin, WayPoints};
+use super::way_points::WayPoints;
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
 use crate::world::Dimension;
 use glam::{DQuat, DVec3};
-use ndarray::Array2;
 use std::f64::consts::PI;
 use std::io::Read;
 
+/// Name of the argument in messages.
+const PLACE: &str = "pose trajectory";
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
@@ -37,18 +38,13 @@ impl PoseTrajectory {
     /// If a waypoint is not finite or out of order, or its quaternion is not a unit quaternion (within 0.001), or it is turned by 180° from the waypoint before.
     /// The error names the waypoint.
     pub fn new(times: Vec<f64>, poses: &[Pose], interpolation: Interpolation) -> Result<Self> {
-        let numbers = poses.iter().flat_map(|pose| {
+        let row = |pose: &Pose| {
             let [x, y, z] = pose.translation.to_array();
             let [qx, qy, qz, qw] = pose.rotation.to_array();
             [x, y, z, qx, qy, qz, qw]
-        });
-        let values = Array2::from_shape_vec((poses.len(), 7), numbers.collect());
-        let way_points = WayPoints {
-            times,
-            values: values.expect("seven numbers a pose"),
-            origin: Origin::Argument("pose trajectory"),
         };
-        Self::through(&way_points.checked()?, interpolation)
+        let rows: Vec<_> = poses.iter().map(row).collect();
+        Self::through(WayPoints::listed(PLACE, times, rows)?, interpolation)
     }
 
     /// Creates the trajectory through positions, metres, and angles roll, pitch, yaw, radians, about the fixed axes x, y, z in this order.
@@ -60,14 +56,12 @@ impl PoseTrajectory {
         way_points: &[[DVec3; 2]],
         interpolation: Interpolation,
     ) -> Result<Self> {
-        let numbers = way_points.iter().flatten().flat_map(DVec3::to_array);
-        let values = Array2::from_shape_vec((way_points.len(), 6), numbers.collect());
-        let way_points = WayPoints {
-            times,
-            values: values.expect("six numbers a way-point"),
-            origin: Origin::Argument("pose trajectory"),
+        let row = |[position, rpy]: &[DVec3; 2]| {
+            let ([x, y, z], [roll, pitch, yaw]) = (position.to_array(), rpy.to_array());
+            [x, y, z, roll, pitch, yaw]
         };
-        Self::through(&way_points.checked()?, interpolation)
+        let rows: Vec<_> = way_points.iter().map(row).collect();
+        Self::through(WayPoints::listed(PLACE, times, rows)?, interpolation)
     }
 
     /// Reads a trajectory from CSV. The columns are `time_s`, the position `x`, `y`, `z` in metres (`_m`) or with `_mm`, and a rotation. The rotation is either
@@ -85,38 +79,29 @@ impl PoseTrajectory {
         let quaternion = claim_all(&mut table, &QUATERNION, &[("", 1.0)])?;
         let rpy = claim_all(&mut table, &RPY, Dimension::Angle.units())?;
         if quaternion.is_empty() == rpy.is_empty() {
-            let both = if rpy.is_empty() {
-                "no rotation"
-            } else {
-                "two rotations"
+            let both = match rpy.is_empty() {
+                true => "no rotation",
+                false => "two rotations",
             };
             let allowed = "qx, qy, qz, qw, or roll, pitch, yaw, or roll_deg, pitch_deg, yaw_deg";
             return Err(table.refuse_header(both, allowed));
         }
         columns.extend(quaternion.iter().chain(&rpy));
         let known = POSITION.into_iter().chain(QUATERNION).chain(RPY);
-        Self::through(&table.way_points(&columns, known)?, interpolation)
+        Self::through(table.way_points(&columns, known)?, interpolation)
     }
 
     /// Creates the trajectory from rows of x, y, z and qx, qy, qz, qw, or x, y, z and roll, pitch, yaw.
-    fn through(way_points: &WayPoints, interpolation: Interpolation) -> Result<Self> {
+    fn through(way_points: WayPoints, interpolation: Interpolation) -> Result<Self> {
         let times = &way_points.times;
-        let rotations = rotations(way_points)?;
-        let curve = |k| Curve::through(times, &way_points.values.column(k).to_vec(), interpolation);
-        let curves = (curve(0), curve(1), curve(2));
-        let turns = turns(way_points, &rotations)?;
+        let rotations = rotations(&way_points)?;
+        let turns = turns(&way_points, &rotations)?;
         let rotation = RotationCurve::through(times, &rotations, &turns, interpolation);
-        let ((Some(x), Some(y), Some(z)), Some(rotation)) = (curves, rotation) else {
-            return Err(Error::input(
-                way_points.origin.place(),
-                "an endless velocity",
-                "way-points farther apart in time",
-            ));
-        };
+        let curve = |column| way_points.curve(column, "", interpolation);
         Ok(Self {
-            times: times.clone(),
-            position: [x, y, z],
-            rotation,
+            position: [curve(0)?, curve(1)?, curve(2)?],
+            rotation: rotation.ok_or_else(|| way_points.too_fast(""))?,
+            times: way_points.times,
         })
     }
 

@@ -143,19 +143,15 @@ pub(super) fn rotation_vector(q: DQuat) -> DVec3 {
 mod tests {
     use super::*;
     use crate::random::Seed;
-    use rand::Rng;
+    use crate::world::fixtures::vector;
     use std::f64::consts::FRAC_PI_2;
 
     const TIMES: [f64; 4] = [0.0, 0.7, 1.0, 2.5];
 
     fn way_points() -> [DQuat; 4] {
-        let turns = [
-            (0.1, 0.2, 0.3),
-            (1.0, -0.4, 0.2),
-            (1.1, 0.9, -0.8),
-            (-0.5, 0.3, 2.0),
-        ];
-        turns.map(|(x, y, z)| DQuat::from_scaled_axis(DVec3::new(x, y, z)))
+        let turns = [[0.1, 0.2, 0.3], [1.0, -0.4, 0.2], [1.1, 0.9, -0.8]];
+        let [a, b, c] = turns.map(|turn| DQuat::from_scaled_axis(DVec3::from(turn)));
+        [a, b, c, DQuat::from_scaled_axis(DVec3::new(-0.5, 0.3, 2.0))]
     }
 
     fn through(times: &[f64], at: &[DQuat], kind: Interpolation) -> Option<RotationCurve> {
@@ -176,10 +172,8 @@ mod tests {
         let curve = through(&TIMES, &at, Interpolation::Linear).unwrap();
         for share in [0.1, 0.5, 0.9] {
             let found = curve.rotation(Moment::new(0.7 + 0.3 * share, &TIMES));
-            assert!(
-                found.angle_between(at[1].slerp(at[2], share)) < 1e-7,
-                "{share}"
-            );
+            let apart = found.angle_between(at[1].slerp(at[2], share));
+            assert!(apart < 1e-7, "{share}");
         }
     }
 
@@ -192,10 +186,8 @@ mod tests {
                 let before = angular_velocity(&curve, time - dt, dt);
                 let after = angular_velocity(&curve, time, dt);
                 assert!(before.length() > 0.3, "it passes, it does not stop");
-                assert!(
-                    (before - after).length() < 1e-4,
-                    "{time}: {before}, {after}"
-                );
+                let jump = (before - after).length();
+                assert!(jump < 1e-4, "{time}: {before}, {after}");
             }
             assert!(angular_velocity(&curve, 0.0, dt).length() < 1e-4);
             assert!(angular_velocity(&curve, 2.5 - dt, dt).length() < 1e-4);
@@ -211,10 +203,8 @@ mod tests {
         for k in 0..=2500 {
             let turn = rotation_vector(curve.rotation(Moment::new(1e-3 * f64::from(k), &TIMES)));
             assert!(turn.truncate().length() < 1e-15, "about z: {turn}");
-            assert!(
-                turn.z >= last - 1e-15 && turn.z <= FRAC_PI_2 + 1e-15,
-                "{turn}"
-            );
+            let range = last - 1e-15..=FRAC_PI_2 + 1e-15;
+            assert!(range.contains(&turn.z), "{turn}");
             last = turn.z;
         }
         assert_eq!(curve.rotation(Moment::After), yaw(90.0));
@@ -225,8 +215,7 @@ mod tests {
         let mut rng = Seed::new(2018).named("monotone turns").rng();
         let apart = |a: DQuat, b: DQuat| rotation_vector(a.conjugate() * b).length();
         for case in 0..200 {
-            let turn = |_| DVec3::from_array([(); 3].map(|()| rng.gen_range(-1.5..1.5)));
-            let at = [0; 4].map(turn).map(DQuat::from_scaled_axis);
+            let at = [(); 4].map(|()| DQuat::from_scaled_axis(1.5 * vector(&mut rng)));
             let curve = through(&TIMES, &at, Interpolation::Monotone).unwrap();
             for piece in 0..3 {
                 let whole = apart(at[piece], at[piece + 1]);
@@ -235,10 +224,7 @@ mod tests {
                     let time = TIMES[piece] + share * (TIMES[piece + 1] - TIMES[piece]);
                     let here = curve.rotation(Moment::new(time, &TIMES));
                     let farthest = apart(at[piece], here).max(apart(here, at[piece + 1]));
-                    assert!(
-                        farthest <= whole + 1e-7,
-                        "{case} {piece} {share}: {farthest} {whole}"
-                    );
+                    assert!(farthest <= whole + 1e-7, "{case} {piece} {share}");
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! Waypoints before interpolation: rows of numbers at ascending times, with their source (argument or file) for error messages.
 
+use super::curve::{Curve, Interpolation};
 use crate::error::{Error, Result};
 use ndarray::Array2;
 
@@ -42,6 +43,37 @@ impl Origin {
 }
 
 impl WayPoints {
+    /// Returns the waypoints that an argument with this name lists, one row per waypoint; an error if they are invalid.
+    pub fn listed(
+        argument: &'static str,
+        times: Vec<f64>,
+        values: impl Into<Array2<f64>>,
+    ) -> Result<Self> {
+        let way_points = Self {
+            times,
+            values: values.into(),
+            origin: Origin::Argument(argument),
+        };
+        way_points.checked()
+    }
+
+    /// Returns the curve of a coordinate through all waypoints. `name` is the beginning of the message of an error.
+    pub fn curve(&self, column: usize, name: &str, interpolation: Interpolation) -> Result<Curve> {
+        let values = self.values.column(column).to_vec();
+        let curve = Curve::through(&self.times, &values, interpolation);
+        curve.ok_or_else(|| self.too_fast(name))
+    }
+
+    /// Returns the error of waypoints with an infinite velocity between them.
+    pub fn too_fast(&self, name: &str) -> Error {
+        let allowed = "way-points farther apart in time";
+        Error::input(
+            self.origin.place(),
+            format!("{name}an endless velocity"),
+            allowed,
+        )
+    }
+
     /// Returns the waypoints if they are valid, or an error that names the first invalid waypoint.
     pub fn checked(self) -> Result<Self> {
         let n = self.times.len();
@@ -65,11 +97,10 @@ impl WayPoints {
         for index in 1..n {
             let (before, time) = (self.times[index - 1], self.times[index]);
             if time <= before {
-                return Err(Error::input(
-                    self.at(index),
-                    format!("time {time} s after {before} s"),
-                    "strictly ascending times",
-                ));
+                let place = self.at(index);
+                let given = format!("time {time} s after {before} s");
+                let allowed = "strictly ascending times";
+                return Err(Error::input(place, given, allowed));
             }
         }
         Ok(self)

@@ -236,6 +236,7 @@ mod tests {
     use super::*;
     use crate::objects::Sphere;
     use crate::random::Seed;
+    use crate::world::fixtures::vector;
     use rand::Rng;
 
     /// Returns the faces of the convex hull of points around the origin: corners, counter-clockwise from outside, and outward unit normals.
@@ -264,21 +265,17 @@ mod tests {
             let mut rng = Seed::new(3).named("polyhedra").numbered(case).rng();
             let points: Vec<DVec3> = (0..14)
                 .map(|_| {
-                    let point = DVec3::from_array([(); 3].map(|()| rng.gen_range(-1.0..1.0)));
+                    let point = vector(&mut rng);
                     point.normalize() * rng.gen_range(0.85..1.15)
                 })
                 .collect();
             let faces = hull(&points);
-            if faces
-                .iter()
-                .any(|(corners, normal)| normal.dot(corners[0]) < 0.3)
-            {
+            let is_deep = |(corners, normal): &([DVec3; 3], DVec3)| normal.dot(corners[0]) >= 0.3;
+            if !faces.iter().all(is_deep) {
                 continue;
             }
-            let corners = points.iter().map(|&center| Sphere {
-                center,
-                radius: 0.0,
-            });
+            let radius = 0.0;
+            let corners = points.iter().map(|&center| Sphere { center, radius });
             let support = Support::about(DVec3::ZERO, &corners.collect::<Vec<_>>());
             let size = support.radius();
             let found = basins(&support, BARRIER * size);
@@ -301,10 +298,9 @@ mod tests {
                     let (_, beyond) = beyond.expect("an edge has two faces");
                     let [over, next] =
                         [foot.normalize(), *beyond].map(|down| normal.angle_between(down));
-                    pass = pass.min(if over < next {
-                        foot.length()
-                    } else {
-                        beyond.dot(from)
+                    pass = pass.min(match over < next {
+                        true => foot.length(),
+                        false => beyond.dot(from),
                     });
                     angle = angle.min(over.min(next));
                 }
@@ -312,14 +308,9 @@ mod tests {
                 if rise > 1.02 * BARRIER && angle > 0.07 {
                     n_stable += 1;
                     n_low += usize::from(rise < 2.0 * BARRIER);
-                    let nearest = found
-                        .iter()
-                        .map(|basin| basin.lowest.angle_between(*normal));
-                    let nearest = nearest.fold(f64::INFINITY, f64::min);
-                    assert!(
-                        nearest < 1e-3,
-                        "{case}: a face with a barrier of {rise} is lost"
-                    );
+                    let apart = |basin: &Basin| basin.lowest.angle_between(*normal);
+                    let is_found = found.iter().any(|basin| apart(basin) < 1e-3);
+                    assert!(is_found, "{case}: barrier of {rise}");
                 }
             }
         }

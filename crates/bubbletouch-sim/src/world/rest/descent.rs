@@ -162,6 +162,7 @@ mod tests {
     use super::*;
     use crate::objects::SphereUnion;
     use crate::random::Seed;
+    use crate::world::fixtures::vector;
     use rand::Rng;
 
     #[test]
@@ -194,15 +195,11 @@ mod tests {
     #[test]
     fn settling_never_rises() {
         let mut rng = Seed::new(2).rng();
-        let mut random = || 0.1 * (rng.r#gen::<f64>() - 0.5);
-        let sphere = |center| Sphere {
-            center,
+        let spheres = (0..40).map(|_| Sphere {
+            center: 0.05 * vector(&mut rng),
             radius: 0.02,
-        };
-        let centers: Vec<_> = (0..40)
-            .map(|_| DVec3::new(random(), random(), random()))
-            .collect();
-        let union = SphereUnion::new(centers.into_iter().map(sphere).collect()).unwrap();
+        });
+        let union = SphereUnion::new(spheres.collect()).unwrap();
         let support = Support::about(DVec3::ZERO, union.spheres());
         for start in support.directions.iter().step_by(101) {
             let end = descend(&support, *start);

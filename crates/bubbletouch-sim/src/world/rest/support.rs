@@ -266,10 +266,8 @@ mod tests {
         let support = Support::about(DVec3::ZERO, union.spheres());
         for _ in 0..2000 {
             let down = DVec3::new(random(), random(), random()).normalize();
-            let all = union
-                .spheres()
-                .iter()
-                .map(|s| s.center.dot(down) + s.radius);
+            let all = union.spheres().iter();
+            let all = all.map(|s| s.center.dot(down) + s.radius);
             assert_eq!(support.height(down), all.fold(f64::NEG_INFINITY, f64::max));
         }
     }

@@ -147,10 +147,9 @@ fn read_geometry(element: Element) -> Result<LinkGeometry> {
         forms.extend(element.child(tag)?);
     }
     let &[form] = forms.as_slice() else {
-        return Err(element.refuse(
-            format!("<geometry> with {} forms", forms.len()),
-            "exactly one of box, cylinder, capsule, sphere, mesh",
-        ));
+        let given = format!("<geometry> with {} forms", forms.len());
+        let allowed = "exactly one of box, cylinder, capsule, sphere, mesh";
+        return Err(element.refuse(given, allowed));
     };
     let length = |attribute| {
         let number = form.needed_in(attribute, &LENGTHS);

@@ -34,14 +34,10 @@ impl MeshFolders {
             return Ok(found.clone());
         }
         const SHOWN: usize = 4;
-        let mut list: Vec<String> = tried
-            .iter()
-            .map(|path| path.display().to_string())
-            .collect();
-        if list.len() > SHOWN {
-            let more = format!("{} more", list.len() - SHOWN);
-            list.truncate(SHOWN);
-            list.push(more);
+        let shown = tried.iter().take(SHOWN);
+        let mut list: Vec<String> = shown.map(|path| path.display().to_string()).collect();
+        if tried.len() > SHOWN {
+            list.push(format!("{} more", tried.len() - SHOWN));
         }
         let hint = match package_of(file) {
             Some((name, _)) if !self.packages.contains_key(name) => {
@@ -95,26 +91,25 @@ pub(super) fn spellings(path: &str) -> Vec<String> {
 
 /// Returns a path with decoded bytes such as `%20`; `None` if it contains none, or if the result is not UTF-8.
 fn percent_decoded(path: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(path.len());
-    let mut rest = path.as_bytes();
-    while let Some((&first, after)) = rest.split_first() {
-        let code = after.get(..2).filter(|_| first == b'%');
-        let code = code.and_then(|code| std::str::from_utf8(code).ok());
-        let code = code.filter(|code| code.bytes().all(|byte| byte.is_ascii_hexdigit()));
+    let mut parts = path.split('%');
+    let mut bytes = parts.next()?.as_bytes().to_vec();
+    for part in parts {
+        let code = part
+            .get(..2)
+            .filter(|code| code.bytes().all(|byte| byte.is_ascii_hexdigit()));
         match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
             Some(byte) => {
                 bytes.push(byte);
-                rest = &after[2..];
+                bytes.extend_from_slice(&part.as_bytes()[2..]);
             }
             None => {
-                bytes.push(first);
-                rest = after;
+                bytes.push(b'%');
+                bytes.extend_from_slice(part.as_bytes());
             }
         }
     }
-    String::from_utf8(bytes)
-        .ok()
-        .filter(|decoded| decoded != path)
+    let decoded = String::from_utf8(bytes).ok();
+    decoded.filter(|decoded| decoded != path)
 }
 
 /// Returns the name of the package and the path inside the package, if the name of a mesh file is the address of a package.

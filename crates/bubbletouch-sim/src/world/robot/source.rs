@@ -73,7 +73,7 @@ impl Source {
         };
         let file = self.lines.add_place(place);
         let mut next = range.start;
-        let includes = root.whole_document();
+        let includes = root.whole_document().skip(1);
         for include in includes.filter(|element| element.tag() == "include") {
             self.push(file, &text, next..include.range().start);
             self.include(include, Path::new(place))?;

@@ -59,10 +59,9 @@ type Parts = (String, Vec<Link>, Vec<Joint>, Tree, Vec<Drive>);
 
 fn read_parts(root: Element) -> Result<Parts> {
     if root.tag() != "robot" {
-        return Err(root.refuse(
-            format!("{} as the root", root.called()),
-            "URDF: a <robot>, or MJCF: a <mujoco>",
-        ));
+        let given = format!("{} as the root", root.called());
+        let allowed = "URDF: a <robot>, or MJCF: a <mujoco>";
+        return Err(root.refuse(given, allowed));
     }
     root.check_tags("link joint material transmission gazebo")?;
     let mut names = Named::read(root, "link", |_| String::new())?;

@@ -146,7 +146,8 @@ fn touches_group_by_their_listed_values_but_not_by_uniform_ones() {
         let group = touch.group(&[TouchAxis::Rest, TouchAxis::OffsetX]).unwrap();
         assert_eq!(group[0], touch.rest);
         assert_eq!([0.0, 0.002][group[1]], touch.offset[0]);
-        assert!(touch.group(&[TouchAxis::Yaw]).is_err());
+        let error = touch.group(&[TouchAxis::Yaw]).unwrap_err().to_string();
+        assert!(error.contains("yaw, which is spread uniformly"), "{error}");
     }
 }
 
@@ -167,7 +168,7 @@ const IMPOSSIBLE_PLACEMENTS: &str = "
 #[test]
 fn placements_that_cannot_be_made_are_refused_with_their_reason() {
     for [property, values, reason] in cases(IMPOSSIBLE_PLACEMENTS) {
-        let number = |word: &str| word.parse().unwrap();
+        let number = |word: &str| word.parse::<f64>().unwrap();
         let spread = match values.split_once(" to ") {
             Some((low, high)) => Spread::Uniform {
                 low: number(low),

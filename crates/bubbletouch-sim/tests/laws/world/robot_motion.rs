@@ -112,6 +112,10 @@ fn the_ends_hold_and_way_points_are_passed_exactly() {
         assert_eq!(trajectory.positions_at(-3.0)[0], VALUES[0]);
         assert_eq!(trajectory.positions_at(f64::INFINITY)[0], VALUES[4]);
         assert_eq!(trajectory.velocities_at(99.0), [0.0, 0.0]);
+        if kind != Interpolation::Linear {
+            assert_eq!(trajectory.velocities_at(0.0), [0.0, 0.0]);
+            assert!(trajectory.velocities_at(4.0 - 1e-12)[0].abs() < 1e-10);
+        }
         assert_eq!(trajectory.end(), 4.0);
     }
     let one = hinge(&free(), &[0.3], Interpolation::Cubic).unwrap();

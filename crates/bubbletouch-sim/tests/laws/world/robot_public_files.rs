@@ -98,7 +98,7 @@ fn limits_that_are_missing_or_contradict_themselves_do_not_limit() {
         let robot = jointed("revolute", &format!("<limit {limit}/>"));
         let found = robot.joints()[0].limits.expect("a limit");
         let found = [found.lower, found.upper, found.velocity];
-        let expected = [lower, upper, velocity].map(|number| number.parse().unwrap());
+        let expected = [lower, upper, velocity].map(|number| number.parse::<f64>().unwrap());
         assert_eq!(found, expected, "{limit}");
         match note.as_str() {
             "" => assert!(robot.notes().is_empty(), "{:?}", robot.notes()),

@@ -18,7 +18,7 @@ use crate::random_scenes::{TAXEL, direction, random_pose, rng};
 const DT: f64 = 1e-3;
 
 /// Returns a flat patch or a part of a cylinder, some centimetres large.
-fn random_extrusion(rng: &mut impl Rng) -> Extrusion {
+pub(super) fn random_extrusion(rng: &mut impl Rng) -> Extrusion {
     let pitch = rng.gen_range(1e-3..4e-3);
     let extrusion = if rng.gen_bool(0.4) {
         Extrusion::grid(&Grid {
@@ -34,7 +34,7 @@ fn random_extrusion(rng: &mut impl Rng) -> Extrusion {
 }
 
 /// Returns a part of a ball, some centimetres large.
-fn random_dome(rng: &mut impl Rng) -> Dome {
+pub(super) fn random_dome(rng: &mut impl Rng) -> Dome {
     let (radius, pitch) = (rng.gen_range(0.01..0.06), rng.gen_range(1e-3..4e-3));
     let (polar, arc) = (rng.gen_range(0.2..PI), rng.gen_range(0.2..TAU));
     let polar = if rng.gen_bool(0.3) { 0.5 * PI } else { polar };
@@ -115,86 +115,6 @@ impl Touch {
             .unwrap()
             .unwrap_or_default();
         (workspace.deflections().to_vec(), contact.n_saturated)
-    }
-}
-
-#[test]
-fn deflections_are_those_of_the_kernel_for_any_skin() {
-    let (mut n_touched, mut n_saturated) = (0, 0);
-    for case in 0..300 {
-        let mut rng = rng("oracle", case);
-        let body = random_body(&mut rng, TAXEL);
-        let skins = as_skins(&body);
-        let mut state = BodyState::at_rest(&body);
-        // The second and third touch begin with a body that is still deflected.
-        for _ in 0..3 {
-            let touch = Touch::random(&mut rng, &body);
-            state.place(&body, &touch.patches).unwrap();
-            let contact = state
-                .press(&body, &touch.clusters(), &touch.objects, DT)
-                .unwrap();
-            let (mut expected_touched, mut expected_saturated) = (0, 0);
-            for (patch, skin) in skins.iter().enumerate() {
-                let (expected, saturated) = touch.slowly(patch, skin);
-                for (taxel, (fast, slow)) in
-                    state.deflections(patch).iter().zip(&expected).enumerate()
-                {
-                    let error = (fast - slow).abs();
-                    assert!(
-                        error <= 1e-12,
-                        "case {case}, patch {patch}, taxel {taxel}: {fast} {slow}"
-                    );
-                }
-                expected_touched += expected
-                    .iter()
-                    .filter(|&&deflection| deflection > 0.0)
-                    .count();
-                expected_saturated += saturated;
-            }
-            // A taxel that is only just touched may be touched in one kernel and not in the other.
-            assert!(
-                contact.n_touched.abs_diff(expected_touched) <= 1,
-                "case {case}"
-            );
-            assert!(
-                contact.n_saturated.abs_diff(expected_saturated) <= 1,
-                "case {case}"
-            );
-            n_touched += contact.n_touched;
-            n_saturated += contact.n_saturated;
-        }
-    }
-    assert!(
-        n_touched > 50_000 && n_saturated > 5_000,
-        "{n_touched} {n_saturated}"
-    );
-}
-
-#[test]
-fn the_list_of_touched_taxels_is_what_the_deflections_say() {
-    for case in 0..50 {
-        let mut rng = rng("sparse", case);
-        let body = random_body(&mut rng, TAXEL);
-        let mut state = BodyState::at_rest(&body);
-        for _ in 0..3 {
-            let touch = Touch::random(&mut rng, &body);
-            state.place(&body, &touch.patches).unwrap();
-            let contact = state
-                .press(&body, &touch.clusters(), &touch.objects, DT)
-                .unwrap();
-            let dense = (0..body.patches().len()).flat_map(|patch| state.deflections(patch));
-            let dense: Vec<f64> = dense.copied().collect();
-            let listed: Vec<(usize, f64)> = state.touched(&body).collect();
-            let expected = dense.iter().copied().enumerate();
-            let expected: Vec<_> = expected
-                .filter(|&(_, deflection)| deflection > 0.0)
-                .collect();
-            assert_eq!(listed, expected, "case {case}");
-            assert_eq!(
-                (dense.len(), listed.len()),
-                (body.n_taxels(), contact.n_touched)
-            );
-        }
     }
 }
 
@@ -300,49 +220,6 @@ fn without_dampers_the_force_is_that_of_the_spring() {
         }
     }
     assert!(n_touched > 1000, "{n_touched}");
-}
-
-#[test]
-fn threads_change_no_bit() {
-    let sleeve = Extrusion::cylinder(0.04, 0.1, 3.0, 1e-3).unwrap();
-    let patches = (0..6).map(|k| Patch::new(format!("{k}"), sleeve.clone(), TAXEL).unwrap());
-    let body = WholeBody::new(&patches.collect::<Vec<_>>()).unwrap();
-    let mut rng = rng("threads", 0);
-    let spheres = (0..500).map(|_| Sphere {
-        center: 0.05 * direction(&mut rng),
-        radius: 8e-3,
-    });
-    let objects = [SphereClusters::new(
-        &SphereUnion::new(spheres.collect()).unwrap(),
-    )];
-    let poses: Vec<Pose> = (0..6).map(|_| random_pose(&mut rng, 0.06)).collect();
-    let run = |n_threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(n_threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
-            let mut state = BodyState::at_rest(&body);
-            state.place(&body, &poses).unwrap();
-            let mut bits = Vec::new();
-            for step in 0..10 {
-                let pose = Pose::from_translation(1e-3 * f64::from(step) * DVec3::X);
-                let contact = state.press(&body, &objects, &[pose], DT).unwrap();
-                assert!(
-                    contact.n_touched > 5000 && contact.n_patches > 2,
-                    "{contact:?}"
-                );
-                bits.extend(
-                    state
-                        .touched(&body)
-                        .map(|(taxel, deflection)| (taxel, deflection.to_bits())),
-                );
-            }
-            bits
-        })
-    };
-    let alone = run(1);
-    assert!([2, 5].map(run).iter().all(|bits| *bits == alone));
 }
 
 #[test]

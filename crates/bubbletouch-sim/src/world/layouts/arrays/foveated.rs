@@ -32,16 +32,13 @@ fn warped(u: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::world::{ArrayLayout, Grid};
+    use crate::world::ArrayLayout;
+    use crate::world::fixtures::grid;
 
     #[test]
     fn columns_are_half_a_pitch_apart_in_the_middle_and_two_at_the_edge() {
         let (n, pitch) = (400, 2e-3);
-        let grid = Grid {
-            nx: n,
-            ny: n,
-            pitch,
-        };
+        let grid = grid(n, n, pitch);
         let layout = ArrayLayout::Foveated.taxels(&grid, 0.0).unwrap();
         let x = |column: usize| layout.centers()[column].x;
         let step = |column: usize| (x(column + 1) - x(column)) / pitch;

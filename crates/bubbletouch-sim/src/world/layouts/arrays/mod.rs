@@ -93,15 +93,10 @@ impl ArrayLayout {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::fixtures::grid;
 
     fn made(layout: ArrayLayout, n: usize, radius: f64) -> Layout {
-        let pitch = 2e-3;
-        let grid = Grid {
-            nx: n,
-            ny: n,
-            pitch,
-        };
-        layout.taxels(&grid, radius).unwrap()
+        layout.taxels(&grid(n, n, 2e-3), radius).unwrap()
     }
 
     #[test]
@@ -123,22 +118,16 @@ mod tests {
             for &layout in ArrayLayout::ALL {
                 let taxels = made(layout, n, 0.06);
                 let share = taxels.n_taxels() as f64 / (n * n) as f64;
-                assert!(
-                    (share - 1.0).abs() < 0.5 / n as f64 + 0.02,
-                    "{layout:?} {n}: {share}"
-                );
+                let error = (share - 1.0).abs();
+                assert!(error < 0.5 / n as f64 + 0.02, "{layout:?} {n}: {share}");
                 let centers = taxels.centers().iter();
                 let middle = centers.clone().sum::<DVec3>() / taxels.n_taxels() as f64;
-                assert!(
-                    middle.truncate().length() < 1e-4,
-                    "{layout:?} {n}: {middle}"
-                );
+                let aside = middle.truncate().length();
+                assert!(aside < 1e-4, "{layout:?} {n}: {middle}");
                 let highest = centers.map(|c| c.z).fold(f64::NEG_INFINITY, f64::max);
                 assert!(highest.abs() < 2e-5, "{layout:?} {n}: {highest}");
-                assert!(
-                    taxels.axes().iter().all(|axis| axis.z >= -1e-12),
-                    "{layout:?} {n}"
-                );
+                let is_up = taxels.axes().iter().all(|axis| axis.z >= -1e-12);
+                assert!(is_up, "{layout:?} {n}");
             }
         }
     }
@@ -155,20 +144,18 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_refused() {
-        let grid = Grid {
-            nx: 10,
-            ny: 10,
-            pitch: 2e-3,
-        };
-        let refused =
-            |layout: ArrayLayout, radius| layout.taxels(&grid, radius).unwrap_err().to_string();
-        assert_eq!(
-            refused(ArrayLayout::Cylinder, 5e-3),
-            "cylinder: a radius of 5 mm; at least 6.366 mm, where it is half of the circle"
-        );
-        assert_eq!(
-            refused(ArrayLayout::Cap, 5e-3),
-            "sphere cap: a radius of 5 mm; at least 7.979 mm, where it is half a sphere"
-        );
+        for (layout, message) in [
+            (
+                ArrayLayout::Cylinder,
+                "cylinder: a radius of 5 mm; at least 6.366 mm, where it is half of the circle",
+            ),
+            (
+                ArrayLayout::Cap,
+                "sphere cap: a radius of 5 mm; at least 7.979 mm, where it is half a sphere",
+            ),
+        ] {
+            let error = layout.taxels(&grid(10, 10, 2e-3), 5e-3).unwrap_err();
+            assert_eq!(error.to_string(), message);
+        }
     }
 }

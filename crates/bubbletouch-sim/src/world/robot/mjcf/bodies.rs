@@ -1,7 +1,7 @@
 //! Tree of the bodies of an MJCF model and of the models that it attaches, and its conversion to a robot.
 
 use super::geom::{extent, read_geom};
-use super::joint::{JointPlace, read_joint, rest_of};
+use super::joint::{read_joint, rest_of};
 use super::limits::{BODIES, MODEL_DEPTH, MODELS};
 use super::model::Model;
 use super::placed::{Naming, Placed};
@@ -11,7 +11,8 @@ use crate::world::robot::mimic::drives;
 use crate::world::robot::source::{Source, file_text};
 use crate::world::robot::tree::Tree;
 use crate::world::robot::xml::Element;
-use crate::world::robot::{Joint, Link, Robot};
+use crate::world::robot::{Joint, JointKind, Link, Robot};
+use glam::DVec3;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
@@ -196,16 +197,23 @@ impl Bodies {
             let name = joint.name().unwrap_or_else(default);
             self.take_name("joint", joint.element, &name)?;
             self.add_origin(joint, &name);
-            let place = JointPlace {
-                name,
-                // Each further joint moves the body relative to its pose after the preceding joint.
-                parent: if number == 0 { parent } else { index },
-                child: index,
-                origin: if number == 0 { origin } else { Pose::IDENTITY },
-                frame: joint.frame,
-                is_alone_in_world: n_joints == 1 && parent == 0,
+            // Each further joint moves the body relative to its pose after the preceding joint.
+            let (parent_of_joint, origin) = match number {
+                0 => (parent, origin),
+                _ => (index, Pose::IDENTITY),
             };
-            self.joints.push(read_joint(&joint.item()?, place)?);
+            let placed = Joint {
+                name,
+                axis: DVec3::Z,
+                ..Joint::fixed("", parent_of_joint, index, origin)
+            };
+            let read = read_joint(&joint.item()?, &joint.frame, placed)?;
+            if read.kind == JointKind::Floating && (n_joints > 1 || parent != 0) {
+                let given = format!("the free joint `{}`", read.name);
+                let allowed = "the only joint of a body in <worldbody>";
+                return Err(joint.element.refuse(given, allowed));
+            }
+            self.joints.push(read);
         }
         Ok(())
     }

@@ -119,10 +119,8 @@ fn geometry(item: &Item, half_length: Option<f64>, meshes: &Meshes) -> Result<Li
     }
     let [first, second, third] = item.first_numbers("size", [0.0; 3])?;
     if [first, second, third].iter().any(|size| *size < 0.0) {
-        return Err(own.refuse(
-            format!("{} with a negative size", own.called()),
-            "positive sizes",
-        ));
+        let given = format!("{} with a negative size", own.called());
+        return Err(own.refuse(given, "positive sizes"));
     }
     // With `fromto`, the length replaces the number of `size` along z.
     let half = half_length.unwrap_or(second);
@@ -147,10 +145,9 @@ fn geometry(item: &Item, half_length: Option<f64>, meshes: &Meshes) -> Result<Li
             };
             let Some(mesh) = meshes.get(name) else {
                 let names = meshes.keys().map(String::as_str);
-                return Err(own.refuse(
-                    format!("`mesh` \"{name}\", which is no mesh asset"),
-                    nearest_names(name, names),
-                ));
+                let given = format!("`mesh` \"{name}\", which is no mesh asset");
+                let allowed = nearest_names(name, names);
+                return Err(own.refuse(given, allowed));
             };
             mesh.clone().ok_or_else(|| {
                 let given = format!("mesh `{name}` with vertices in the model");

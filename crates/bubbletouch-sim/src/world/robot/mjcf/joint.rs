@@ -7,103 +7,58 @@ use crate::world::robot::xml::unit_direction;
 use crate::world::robot::{Joint, JointKind, Limits};
 use glam::DVec3;
 
-/// Types of joints in MJCF.
-#[derive(Clone, Copy, PartialEq)]
-enum Type {
-    Free,
-    Ball,
-    Slide,
-    Hinge,
-}
-
-/// Place of a joint in the robot.
-pub(super) struct JointPlace {
-    /// Name of the joint.
-    pub name: String,
-    /// Index of the parent link.
-    pub parent: usize,
-    /// Index of the link that the joint moves.
-    pub child: usize,
-    /// Pose `parent_from_joint` at the reference position.
-    pub origin: Pose,
-    /// Pose `child_from_frame` of the frame that contains the joint.
-    pub frame: Pose,
-    /// Whether the joint is the only one of a body in the world, as a free joint must be.
-    pub is_alone_in_world: bool,
-}
-
-/// Reads `<joint>` or `<freejoint>`.
+/// Reads `<joint>` or `<freejoint>` with the name, links and origin of `joint`. `frame` is the pose `child_from_frame` of the frame that contains the element.
 ///
 /// # Errors
 /// If an attribute is invalid.
-pub(super) fn read_joint(item: &Item, place: JointPlace) -> Result<Joint> {
+pub(super) fn read_joint(item: &Item, frame: &Pose, joint: Joint) -> Result<Joint> {
     let (own, compiler) = (item.own(), item.compiler);
     own.check_attributes(
         "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit solreffriction solimpfriction stiffness range \
          actuatorfrcrange actuatorgravcomp margin ref springref armature damping frictionloss user align",
     )?;
-    const TYPES: [(&str, Type); 4] = [
-        ("free", Type::Free),
-        ("ball", Type::Ball),
-        ("slide", Type::Slide),
-        ("hinge", Type::Hinge),
+    const KINDS: [(&str, JointKind); 4] = [
+        ("free", JointKind::Floating),
+        ("ball", JointKind::Ball),
+        ("slide", JointKind::Prismatic),
+        ("hinge", JointKind::Revolute),
     ];
     let kind = match own.tag() {
-        "freejoint" => Type::Free,
-        _ => item.one_of("type", &TYPES, Type::Hinge)?,
+        "freejoint" => JointKind::Floating,
+        _ => item.one_of("type", &KINDS, JointKind::Revolute)?,
     };
-    let unit = match kind {
-        Type::Slide => 1.0,
-        Type::Hinge | Type::Ball | Type::Free => compiler.angle,
-    };
-    let limits = match kind {
-        Type::Hinge | Type::Slide => read_limits(item, unit)?,
-        Type::Ball | Type::Free => None,
-    };
+    let mut joint = Joint { kind, ..joint };
+    if kind.has_one_coordinate() {
+        let unit = match kind {
+            JointKind::Prismatic => 1.0,
+            _ => compiler.angle,
+        };
+        joint.limits = read_limits(item, unit)?;
+        if joint.limits.is_none() && kind == JointKind::Revolute {
+            joint.kind = JointKind::Continuous;
+        }
+        joint.axis = frame.transform_vector(read_axis(item, &joint.name)?);
+        joint.reference = item.number("ref", 0.0)? * unit;
+    }
     let alignments = [
         ("false", false),
         ("true", true),
         ("auto", compiler.aligns_free),
     ];
     let aligns = own.one_of("align", &alignments)?;
-    if kind == Type::Free && aligns.unwrap_or(compiler.aligns_free) {
-        let given = format!("the aligned free joint `{}`", place.name);
+    if kind != JointKind::Floating {
+        let anchor = item.vector("pos", DVec3::ZERO)?;
+        joint.anchor = frame.transform_point(anchor);
+        return Ok(joint);
+    }
+    if aligns.unwrap_or(compiler.aligns_free) {
+        let given = format!("the aligned free joint `{}`", joint.name);
         let consequence =
             "the body keeps its frame, which MuJoCo moves to the frame of its inertia";
         own.note(given, "`align` \"false\"", consequence);
     }
-    let kind = match kind {
-        Type::Free if !place.is_alone_in_world => {
-            let given = format!("the free joint `{}`", place.name);
-            let allowed = "the only joint of a body in <worldbody>";
-            return Err(own.refuse(given, allowed));
-        }
-        Type::Free => JointKind::Floating,
-        Type::Ball => JointKind::Ball,
-        Type::Slide => JointKind::Prismatic,
-        Type::Hinge if limits.is_some() => JointKind::Revolute,
-        Type::Hinge => JointKind::Continuous,
-    };
-    let mut joint = Joint {
-        name: place.name,
-        kind,
-        axis: DVec3::Z,
-        limits,
-        ..Joint::fixed("", place.parent, place.child, place.origin)
-    };
-    if kind.has_one_coordinate() {
-        let axis = read_axis(item, &joint.name)?;
-        joint.axis = place.frame.transform_vector(axis);
-        joint.reference = item.number("ref", 0.0)? * unit;
-    }
-    match kind {
-        // The coordinates of a free joint are the pose in the world.
-        JointKind::Floating => joint.origin = Pose::IDENTITY,
-        _ => {
-            let anchor = item.vector("pos", DVec3::ZERO)?;
-            joint.anchor = place.frame.transform_point(anchor);
-        }
-    }
+    // The coordinates of a free joint are the pose in the world.
+    joint.origin = Pose::IDENTITY;
     Ok(joint)
 }
 
