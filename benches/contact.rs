@@ -1,9 +1,7 @@
 //! Benchmarks of single presses: the contact kernel beside an evaluation of every sphere against every taxel.
 
 use bubbletouch::contact::equilibrium::{EquilibriumSolver, FreeObject, PlacedSkin};
-use bubbletouch::contact::{
-    Instructions, Workspace, press_at_pose, press_to_depth, press_with_contacts,
-};
+use bubbletouch::contact::{Instructions, Press, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{MeshFormat, SizeLimits, Surface, TriangleMesh};
 use bubbletouch::objects::{
@@ -105,13 +103,13 @@ fn press(c: &mut Criterion) {
             let mut workspace = Workspace::new();
             group.bench_function(BenchmarkId::new("kernel", &size), |b| {
                 b.iter(|| {
-                    press_to_depth(
+                    Press::new(
                         black_box(&scene.patch),
                         &scene.objects,
                         &[pose],
-                        DEPTH,
-                        &mut workspace,
+                        Until::Depth(DEPTH),
                     )
+                    .run(&mut workspace)
                     .unwrap()
                 });
             });
@@ -122,15 +120,10 @@ fn press(c: &mut Criterion) {
         objects: vec![egg(8_000).into()],
     };
     let pose = zero_touch(&scene.objects[0]);
-    let travel = press_to_depth(
-        &scene.patch,
-        &scene.objects,
-        &[pose],
-        DEPTH,
-        &mut Workspace::new(),
-    )
-    .unwrap()
-    .map_or(0.0, |contact| contact.travel);
+    let travel = Press::new(&scene.patch, &scene.objects, &[pose], Until::Depth(DEPTH))
+        .run(&mut Workspace::new())
+        .unwrap()
+        .map_or(0.0, |contact| contact.travel);
     let mut deflections = vec![0.0; 64 * 64];
     group.sample_size(10);
     group.bench_function("every_pair/64x64_taxels_8000_spheres", |b| {
@@ -157,13 +150,13 @@ fn catalogue(c: &mut Criterion) {
         let id = BenchmarkId::new(name, format!("{n_spheres}_spheres"));
         group.bench_function(id, |b| {
             b.iter(|| {
-                press_to_depth(
+                Press::new(
                     black_box(&scene.patch),
                     &scene.objects,
                     &[pose],
-                    DEPTH,
-                    &mut workspace,
+                    Until::Depth(DEPTH),
                 )
+                .run(&mut workspace)
                 .unwrap()
             });
         });
@@ -255,13 +248,13 @@ fn touches(c: &mut Criterion) {
             group.bench_function(id, |b| {
                 b.iter(|| {
                     number = (number + 1) % poses.len();
-                    press_to_depth(
+                    Press::new(
                         black_box(&scene.patch),
                         &scene.objects,
                         &[poses[number]],
-                        DEPTH,
-                        &mut workspace,
+                        Until::Depth(DEPTH),
                     )
+                    .run(&mut workspace)
                     .unwrap()
                 });
             });
@@ -284,13 +277,13 @@ fn instructions(c: &mut Criterion) {
             let id = BenchmarkId::new(format!("{instructions:?}"), n_spheres);
             group.bench_function(id, |b| {
                 b.iter(|| {
-                    press_to_depth(
+                    Press::new(
                         black_box(&scene.patch),
                         &scene.objects,
                         &[pose],
-                        DEPTH,
-                        &mut workspace,
+                        Until::Depth(DEPTH),
                     )
+                    .run(&mut workspace)
                     .unwrap()
                 });
             });
@@ -320,13 +313,13 @@ fn mesh(c: &mut Criterion) {
             let id = BenchmarkId::new(name, format!("{n_triangles}_triangles"));
             group.bench_function(id, |b| {
                 b.iter(|| {
-                    press_to_depth(
+                    Press::new(
                         black_box(&scene.patch),
                         &scene.objects,
                         &[pose],
-                        DEPTH,
-                        &mut workspace,
+                        Until::Depth(DEPTH),
                     )
+                    .run(&mut workspace)
                     .unwrap()
                 });
             });
@@ -352,15 +345,10 @@ fn curved(c: &mut Criterion) {
         objects: vec![egg(1_000).into()],
     };
     let pose = zero_touch(&scene.objects[0]);
-    let travel = press_to_depth(
-        &scene.patch,
-        &scene.objects,
-        &[pose],
-        DEPTH,
-        &mut Workspace::new(),
-    )
-    .unwrap()
-    .map_or(0.0, |contact| contact.travel);
+    let travel = Press::new(&scene.patch, &scene.objects, &[pose], Until::Depth(DEPTH))
+        .run(&mut Workspace::new())
+        .unwrap()
+        .map_or(0.0, |contact| contact.travel);
     let down = Pose::from_translation(-travel * DVec3::Z).compose(&pose);
     // The egg lies with its broad side on the cylinder.
     let beside = Pose::new(
@@ -373,7 +361,9 @@ fn curved(c: &mut Criterion) {
         let id = format!("{name}_4096_taxels_1000_spheres");
         group.bench_function(id, |b| {
             b.iter(|| {
-                press_with_contacts(black_box(skin), &scene.objects, &[*pose], &mut workspace)
+                Press::new(black_box(skin), &scene.objects, &[*pose], Until::Pose)
+                    .with_contacts()
+                    .run(&mut workspace)
                     .unwrap()
                     .unwrap_or_default()
             });
@@ -382,12 +372,13 @@ fn curved(c: &mut Criterion) {
     let mut workspace = Workspace::new();
     group.bench_function("grid_kernel_4096_taxels_1000_spheres", |b| {
         b.iter(|| {
-            press_at_pose(
+            Press::new(
                 black_box(&scene.patch),
                 &scene.objects,
                 &[down],
-                &mut workspace,
+                Until::Pose,
             )
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default()
         });

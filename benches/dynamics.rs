@@ -3,7 +3,7 @@
 //! Bodies start under the object at its final pose and make three steps in 10 ms; with fewer steps they do not reach equilibrium. The scene and all bodies are
 //! built outside the timed part.
 
-use bubbletouch::contact::{Workspace, press_at_pose};
+use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::dynamics::{Drive, ImplicitEuler, Integrator, SemiImplicit, System, skin_sim};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Catalogue, Model};
@@ -65,13 +65,13 @@ fn pressed(scene: &Scene) -> Pose {
     };
     let pose = touch.patch_from_object(&rest);
     let mut workspace = Workspace::new();
-    let contact = bubbletouch::contact::press_to_depth(
+    let contact = bubbletouch::contact::Press::new(
         &scene.patch,
         &scene.objects,
         &[pose],
-        DEPTH,
-        &mut workspace,
+        bubbletouch::contact::Until::Depth(DEPTH),
     )
+    .run(&mut workspace)
     .unwrap();
     let travel = contact.expect("the bottle is over the patch").travel;
     Pose::from_translation(-travel * DVec3::Z).compose(&pose)
@@ -109,12 +109,13 @@ fn touch(c: &mut Criterion) {
         let mut workspace = Workspace::new();
         group.bench_function(BenchmarkId::new("direct", side), |b| {
             b.iter(|| {
-                press_at_pose(
+                Press::new(
                     black_box(&scene.patch),
                     &scene.objects,
                     &[pose],
-                    &mut workspace,
+                    Until::Pose,
                 )
+                .run(&mut workspace)
                 .unwrap()
                 .unwrap_or_default()
             });

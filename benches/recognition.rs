@@ -3,7 +3,7 @@
 //! `cargo bench --bench recognition` uses 20 classes with 30 training and 30 test touches each. The features are standardised Gaussian measurements of
 //! synthetic frames. Ids end with the number of measurements m.
 
-use bubbletouch::contact::{self, press_to_depth};
+use bubbletouch::contact::{self, Press, Until};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
@@ -289,7 +289,9 @@ fn touch_to_answer(criterion: &mut Criterion) {
                 let place = &object.touches[next % object.touches.len()];
                 let pose = place.patch_from_object(&object.rests[place.rest]);
                 let model = std::slice::from_ref(&object.object.model);
-                press_to_depth(array.patch(), model, &[pose], place.depth, &mut press).unwrap();
+                Press::new(array.patch(), model, &[pose], Until::Depth(place.depth))
+                    .run(&mut press)
+                    .unwrap();
                 frame.copy_from_slice(press.deflections());
                 let seed = Seed::new(2).numbered(next as u64);
                 chain.apply(&mut frame, None, &seed, &mut scratch);

@@ -24,7 +24,7 @@
 //! # One touch, from the object to the picture
 //!
 //! ```
-//! use bubbletouch::contact::{Workspace, press_to_depth};
+//! use bubbletouch::contact::{Press, Until, Workspace};
 //! use bubbletouch::objects::Catalogue;
 //! use bubbletouch::random::Seed;
 //! use bubbletouch::report::pressure_map::pressure_text;
@@ -63,7 +63,7 @@
 //! let touch = &all[2];
 //! let pose = touch.patch_from_object(&rests[touch.rest]);
 //! let mut workspace = Workspace::new();
-//! let contact = press_to_depth(&patch, &[mug.model], &[pose], touch.depth, &mut workspace)?;
+//! let contact = Press::new(&patch, &[mug.model], &[pose], Until::Depth(touch.depth)).run(&mut workspace)?;
 //! let contact = contact.expect("the mug is under the patch");
 //! assert!(contact.n_touched > 50 && contact.n_saturated == 0);
 //! let mut frame = workspace.deflections().to_vec();

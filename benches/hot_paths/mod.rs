@@ -1,7 +1,7 @@
 //! The four hot paths on fixed scenes, and the amount of work per step.
 #![allow(dead_code, reason = "each bench uses some of it")]
 
-use bubbletouch::contact::{Workspace, press_at_pose, press_to_depth};
+use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
@@ -102,12 +102,13 @@ pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
     let mut number = 0;
     let mut step = move || {
         number += 1;
-        press_at_pose(
+        Press::new(
             &scene.patch,
             &scene.objects,
             &[pose(number, 4e-3)],
-            &mut workspace,
+            Until::Pose,
         )
+        .run(&mut workspace)
         .unwrap()
         .unwrap_or_default()
         .n_touched
@@ -183,13 +184,13 @@ pub fn sparse_press() -> HotPath {
         number += 1;
         let yaw = DQuat::from_rotation_z(0.17 * f64::from(number));
         let place = DVec3::new(2e-3 * f64::from(number % 6), 0.0, 0.1);
-        press_to_depth(
+        Press::new(
             &scene.patch,
             &scene.objects,
             &[Pose::new(yaw, place)],
-            3e-3,
-            &mut workspace,
+            Until::Depth(3e-3),
         )
+        .run(&mut workspace)
         .unwrap()
     };
     assert!(step().is_some_and(|contact| contact.n_touched > 50));

@@ -1,7 +1,7 @@
 //! Saturation studies: the fraction of the touches of an object that push taxels to the end of their stroke. This small kind of study is the example of
 //! `guide/adding.md`.
 
-use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::kinds::prelude::*;
 use std::slice::from_ref;
 
@@ -118,8 +118,9 @@ impl Study for SaturationStudy {
             let mut saturated = of.touches.clone();
             saturated.retain(|touch| {
                 let pose = [touch.patch_from_object(&of.rests[touch.rest])];
-                let contact =
-                    press_to_depth(patch, model, &pose, touch.depth, &mut workspace).unwrap();
+                let contact = Press::new(patch, model, &pose, Until::Depth(touch.depth))
+                    .run(&mut workspace)
+                    .unwrap();
                 contact.is_some_and(|contact| contact.n_saturated >= configuration.n_taxels)
             });
             let saturated = saturated.len() as f64 / of.touches.len() as f64;

@@ -1,7 +1,7 @@
 //! Presses, a chain, a projection and SVMs by the library alone, as `.npy` files in a folder: what `tests/test_identity.py` computes again in Python
 //! and compares bit by bit.
 
-use bubbletouch::contact::{Workspace, press_at_pose, press_to_depth, press_to_force};
+use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
@@ -72,23 +72,37 @@ fn main() -> Result<()> {
         };
         let depth = frames(
             &mut |model, pose, workspace| {
-                press_to_depth(patch, std::slice::from_ref(model), &[pose], 3e-3, workspace)
-                    .unwrap();
+                Press::new(
+                    patch,
+                    std::slice::from_ref(model),
+                    &[pose],
+                    Until::Depth(3e-3),
+                )
+                .run(workspace)
+                .unwrap();
                 Ok(())
             },
             &mut workspace,
         )?;
         let force = frames(
             &mut |model, pose, workspace| {
-                press_to_force(patch, std::slice::from_ref(model), &[pose], 2.0, workspace)
-                    .map(drop)
+                Press::new(
+                    patch,
+                    std::slice::from_ref(model),
+                    &[pose],
+                    Until::Force(2.0),
+                )
+                .run(workspace)
+                .map(drop)
             },
             &mut workspace,
         )?;
         let here = frames(
             &mut |model, mut pose, workspace| {
                 pose.translation.z = -0.02;
-                press_at_pose(patch, std::slice::from_ref(model), &[pose], workspace).unwrap();
+                Press::new(patch, std::slice::from_ref(model), &[pose], Until::Pose)
+                    .run(workspace)
+                    .unwrap();
                 Ok(())
             },
             &mut workspace,

@@ -32,7 +32,7 @@ pub fn _kernel_pace(
         while start.elapsed().as_secs_f64() < seconds {
             for (number, pose) in poses.iter().enumerate() {
                 let press = goal.of_pose(number, patch, (from_ref(model), from_ref(pose)));
-                press.deflect(&mut workspace).map_err(exception)?;
+                press.run(&mut workspace).map_err(exception)?;
                 std::hint::black_box(workspace.deflections());
                 n_readings += patch.n_taxels();
             }

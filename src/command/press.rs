@@ -7,7 +7,7 @@ use crate::command::terminal::output::{check_ending, terminal_width};
 use crate::command::terminal::streams::{note, say, write_out};
 use crate::inputs::units::MM;
 use crate::numbers_csv::NumberTable;
-use bubbletouch::contact::{self, Contact, Goal, Workspace};
+use bubbletouch::contact::{Contact, Press, Until, Workspace};
 use bubbletouch::files::{check_single_output, open};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, SizeLimits};
@@ -165,17 +165,17 @@ pub fn press(args: &Args) -> Result<()> {
     let (model, pose) = args.placed_object()?;
     let objects = [model];
     let goal = match (args.force_n, args.depth(patch.taxels().at(0))?) {
-        (Some(force), _) => Goal::Force(force),
-        (_, Some(depth)) => Goal::Depth(depth),
-        (None, None) => Goal::Pose,
+        (Some(force), _) => Until::Force(force),
+        (_, Some(depth)) => Until::Depth(depth),
+        (None, None) => Until::Pose,
     };
     if let Some(path) = &args.poses {
         return args.press_poses(path, (&patch, &objects), goal);
     }
     let mut workspace = Workspace::new();
-    let contact = contact::press(&patch, &objects, &[pose], goal, &mut workspace)?;
+    let contact = Press::new(&patch, &objects, &[pose], goal).run(&mut workspace)?;
     // An object that is not moved may be clear of the array.
-    let untouched = (goal == Goal::Pose).then(Contact::default);
+    let untouched = (goal == Until::Pose).then(Contact::default);
     let contact = contact.or(untouched).ok_or_else(|| {
         let allowed = "an offset that brings some of it over a taxel";
         Error::input("press", "the object is not over the array", allowed)
@@ -229,7 +229,7 @@ impl Args {
         &self,
         path: &Path,
         (patch, objects): (&Patch, &[Model; 1]),
-        goal: Goal,
+        goal: Until,
     ) -> Result<()> {
         check_ending(self.out.as_deref(), "npy")?;
         let poses = read_poses(path)?;
@@ -238,7 +238,7 @@ impl Args {
         let mut n_missed = 0;
         let mut workspace = Workspace::new();
         for (pose, mut frame) in poses.iter().zip(frames.outer_iter_mut()) {
-            let contact = contact::press(patch, objects, &[*pose], goal, &mut workspace)?;
+            let contact = Press::new(patch, objects, &[*pose], goal).run(&mut workspace)?;
             n_missed += usize::from(contact.is_none_or(|contact| contact.n_touched == 0));
             let read = ArrayView2::from_shape(frame.dim(), workspace.deflections());
             frame.assign(&read.expect("a press gives one deflection a taxel"));

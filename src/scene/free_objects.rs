@@ -8,7 +8,7 @@ use crate::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, Obstacle, Outcome, PlacedSkin,
     RigidContact, TangentialSpring, TangentialSpringState, TaxelLoad, Touched,
 };
-use crate::contact::{Workspace, press_with_contacts};
+use crate::contact::{Press, Until, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
 
@@ -211,7 +211,9 @@ impl<'p> FreeObjects<'p> {
             if objects.can_reach(skin) {
                 let poses: Vec<Pose> = objects.seen_by(skin).collect();
                 let patch = &skin.patch.skin;
-                press_with_contacts(patch, objects.models, &poses, &mut self.workspace)?;
+                Press::new(patch, objects.models, &poses, Until::Pose)
+                    .with_contacts()
+                    .run(&mut self.workspace)?;
                 pushed.extend_from_slice(self.workspace.deflections());
             }
         }

@@ -4,8 +4,8 @@ use super::frame::PatchReading;
 use super::planned::{Carrier, PlannedPatch};
 use crate::contact::equilibrium::{TangentialSpring, TangentialSpringState, TaxelLoad};
 use crate::contact::{
-    Contact, ContactModeCounts, DamperState, FrictionState, NormalForce, TaxelContact, Workspace,
-    Wrench, axial_load, press_at_pose, press_with_contacts,
+    Contact, ContactModeCounts, DamperState, FrictionState, NormalForce, Press, Record,
+    TaxelContact, Until, Workspace, Wrench, axial_load,
 };
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -141,7 +141,9 @@ impl<'p> SkinState<'p> {
             let skin = &self.patch.skin;
             let contacts = match is_reached {
                 true => {
-                    press_with_contacts(skin, only.models, &poses, workspace)?;
+                    Press::new(skin, only.models, &poses, Until::Pose)
+                        .with_contacts()
+                        .run(workspace)?;
                     workspace.contacts()
                 }
                 false => &[],
@@ -219,11 +221,15 @@ impl<'p> SkinState<'p> {
         let seen = objects.seen_by(self);
         self.poses.extend(seen.take(models.len()));
         let workspace = &mut self.workspace;
-        let press = match self.friction.is_some() || detail == Detail::Contacts {
-            true => press_with_contacts,
-            false => press_at_pose,
+        let record = match self.friction.is_some() || detail == Detail::Contacts {
+            true => Record::Contacts,
+            false => Record::Deflections,
         };
-        self.counts = press(&patch.skin, models, &self.poses, workspace)?.unwrap_or_default();
+        let press = Press {
+            record,
+            ..Press::new(&patch.skin, models, &self.poses, Until::Pose)
+        };
+        self.counts = press.run(workspace)?.unwrap_or_default();
         self.damper
             .step(patch.skin.taxels(), dt, workspace.deflections());
         if let Some(friction) = &mut self.friction {

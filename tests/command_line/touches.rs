@@ -2,7 +2,7 @@
 
 use crate::command::{Case, CommandLine, filled, says, skip};
 use crate::study::Study;
-use bubbletouch::contact::{Workspace, press_at_pose};
+use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
@@ -177,7 +177,8 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
             let pose = Pose::new(rotation, DVec3::new(pose[0], pose[1], pose[2]));
             let spheres = &study.touched[files.labels[touch] as usize].object.model;
             let objects = [spheres.clone()];
-            let contact = press_at_pose(array.patch(), &objects, &[pose], &mut workspace)
+            let contact = Press::new(array.patch(), &objects, &[pose], Until::Pose)
+                .run(&mut workspace)
                 .unwrap()
                 .unwrap_or_default();
             let row = &files.touches[touch];

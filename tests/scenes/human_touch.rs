@@ -1,7 +1,7 @@
 //! Human touches: the motion of each kind, and a study that distinguishes the kinds by their course over time.
 
 use crate::command::{Case, says};
-use bubbletouch::contact::{Workspace, press_with_contacts, spring_load};
+use bubbletouch::contact::{Press, Until, Workspace, spring_load};
 use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::objects::{FingerPose, Model};
 use bubbletouch::random::Seed;
@@ -46,7 +46,10 @@ fn film(touch: &HumanTouch) -> Vec<HandState> {
 fn press(skin: &Patch, state: &HandState) -> Workspace {
     let mut workspace = Workspace::new();
     let hand: [Model; 1] = [state.spheres().into()];
-    press_with_contacts(skin, &hand, &[state.patch_from_hand], &mut workspace).unwrap();
+    Press::new(skin, &hand, &[state.patch_from_hand], Until::Pose)
+        .with_contacts()
+        .run(&mut workspace)
+        .unwrap();
     workspace
 }
 

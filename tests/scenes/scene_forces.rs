@@ -2,7 +2,7 @@
 
 use crate::command::filled;
 use crate::scene::{CUBE, Press, frames, plan, plan_in, pressed, recorded, resolved};
-use bubbletouch::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
+use bubbletouch::contact::{self, FrictionState, NormalForce, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{Frame, FrameSink, PatchReading, PoseControl, Summary};
 use glam::DVec3;
@@ -67,7 +67,10 @@ fn tips_are_dragged_from_step_to_step_as_by_hand() {
                 false => before + share * (frame.time - before),
             };
             let pose = Pose::IDENTITY.inverse().compose(&motion.pose_at(time));
-            press_with_contacts(&patch.skin, &plan.models, &[pose], &mut workspace).unwrap();
+            contact::Press::new(&patch.skin, &plan.models, &[pose], Until::Pose)
+                .with_contacts()
+                .run(&mut workspace)
+                .unwrap();
             let contacts = workspace.contacts();
             counts = state.step(&patch.skin, contacts, &[pose], NormalForce::Springs);
         }

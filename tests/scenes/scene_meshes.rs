@@ -2,7 +2,7 @@
 
 use crate::command::filled;
 use crate::scene::{frames, plan_in, plan_shipped, shipped};
-use bubbletouch::contact::{Workspace, press_with_contacts};
+use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{Frame, Movement, PoseControl, ScenePlan};
 use glam::DVec3;
@@ -67,7 +67,10 @@ fn a_box_rests_in_a_tray_and_the_bed_carries_both() {
     // The recorded deflections are those of a press at the final poses.
     let poses: Vec<Pose> = frame.objects.iter().map(|object| object.pose).collect();
     let mut workspace = Workspace::new();
-    press_with_contacts(&plan.patches[0].skin, &plan.models, &poses, &mut workspace).unwrap();
+    Press::new(&plan.patches[0].skin, &plan.models, &poses, Until::Pose)
+        .with_contacts()
+        .run(&mut workspace)
+        .unwrap();
     assert_eq!(frame.patches[0].deflection, workspace.deflections());
 }
 

@@ -3,12 +3,12 @@
 
 use crate::command::Case;
 use crate::study::{changed, laid_out, run, scores, scores_of_variant};
-use bubbletouch::contact::{Approach, Workspace};
+use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::random::Seed;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{draw_touches, load_objects, simulate_array};
-use glam::DVec3;
 use ndarray::Array2;
+use std::slice::from_ref;
 
 const STUDY: &str = include_str!("../fixtures/texts/layouts.toml");
 
@@ -51,7 +51,6 @@ fn frames_are_those_of_the_skin_pressed_by_hand() {
     let seed = Seed::new(part.plan.spec.seed);
     let objects = load_objects(&part.plan.spec.objects, None).unwrap();
     let touched = draw_touches(objects, &part.plan.placement, &seed);
-    let approach = Approach::new(skin, DVec3::Z).unwrap();
     let mut workspace = Workspace::new();
     let mut row = 0;
     for object in touched.unwrap() {
@@ -59,8 +58,8 @@ fn frames_are_those_of_the_skin_pressed_by_hand() {
             let pose = touch.patch_from_object(&object.rests[touch.rest]);
             for depth in [0.5 * touch.depth, touch.depth] {
                 let model = [object.object.model.clone()];
-                let pressed = approach.press_to_depth(&model, &[pose], depth, &mut workspace);
-                pressed.unwrap();
+                let press = Press::new(skin, &model, from_ref(&pose), Until::Depth(depth));
+                press.with_contacts().run(&mut workspace).unwrap();
                 let expected = workspace.deflections().iter().map(|&d| f64::from(d as f32));
                 assert!(frames.row(row).iter().copied().eq(expected), "row {row}");
                 row += 1;

@@ -2,11 +2,11 @@
 
 use crate::command::Case;
 use crate::study::{Study, changed, features, run, scores_of_variant};
-use bubbletouch::contact::{Approach, FrictionState, Workspace};
+use bubbletouch::contact::{FrictionState, Press, Until, Workspace};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use bubbletouch::world::{Shear, Shears};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use ndarray::{Array2, Array3, Array4, s};
 use std::collections::BTreeSet;
 
@@ -37,7 +37,6 @@ fn frames_are_those_of_the_skin_pressed_and_drawn_by_hand() {
         friction: 0.4,
     };
     let skin = array.patch();
-    let approach = Approach::new(skin, DVec3::Z).unwrap();
     let mut friction = FrictionState::at_rest(skin, Shears::Equal(shear)).unwrap();
     let mut workspace = Workspace::new();
     let along = DVec2::from_angle(30_f64.to_radians()).extend(0.0);
@@ -47,11 +46,12 @@ fn frames_are_those_of_the_skin_pressed_and_drawn_by_hand() {
             let pose = touch.patch_from_object(&object.rests[touch.rest]);
             for frame in 1..=n_frames {
                 let way = (touch.depth + 3e-3) * frame as f64 / n_frames as f64;
-                let motion = (way.min(touch.depth), (way - touch.depth).max(0.0) * along);
+                let slide = (way - touch.depth).max(0.0) * along;
                 let model = [object.object.model.clone()];
                 let state = Some(&mut friction);
-                approach
-                    .press_and_slide(&model, &[pose], motion, state, &mut workspace)
+                let until = Until::Depth(way.min(touch.depth));
+                Press::new(skin, &model, &[pose], until)
+                    .slide(slide, state, &mut workspace)
                     .unwrap();
                 for taxel in 0..N_TAXELS {
                     let force = friction.force3()[taxel];

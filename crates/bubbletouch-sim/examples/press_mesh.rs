@@ -3,7 +3,7 @@
 //! `cargo run --release --example press_mesh`
 
 use bubbletouch_sim::Error;
-use bubbletouch_sim::contact::{Workspace, press_to_depth};
+use bubbletouch_sim::contact::{Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::TriangleMesh;
 use bubbletouch_sim::objects::{MeshModel, Model};
@@ -35,7 +35,8 @@ fn main() -> Result<(), Error> {
         .map_init(Workspace::new, |workspace, pose| {
             let turn = DQuat::from_rotation_z(f64::from(pose) * std::f64::consts::TAU / 1000.0);
             let pose = Pose::new(turn, DVec3::new(0.0, 0.0, -0.05));
-            let contact = press_to_depth(&patch, &object, &[pose], 1e-3, workspace)?;
+            let press = Press::new(&patch, &object, &[pose], Until::Depth(1e-3));
+            let contact = press.run(workspace)?;
             Ok::<_, Error>(contact.map_or(0, |contact| contact.n_touched))
         });
     let touched: Vec<usize> = touched.collect::<Result<_, _>>()?;

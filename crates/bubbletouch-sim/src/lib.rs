@@ -25,7 +25,7 @@
 //! # A touch
 //!
 //! ```
-//! use bubbletouch_sim::contact::{Workspace, press_to_depth};
+//! use bubbletouch_sim::contact::{Press, Until, Workspace};
 //! use bubbletouch_sim::objects::Catalogue;
 //! use bubbletouch_sim::random::Seed;
 //! use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, SignalWorkspace, SignalStep};
@@ -55,7 +55,7 @@
 //! let touch = touches(&placement, &rests, &seed)?.remove(0);
 //! let pose = touch.patch_from_object(&rests[touch.rest]);
 //! let mut workspace = Workspace::new();
-//! let contact = press_to_depth(&patch, &[mug.model], &[pose], touch.depth, &mut workspace)?;
+//! let contact = Press::new(&patch, &[mug.model], &[pose], Until::Depth(touch.depth)).run(&mut workspace)?;
 //! assert!(contact.is_some_and(|contact| contact.n_saturated == 0));
 //! let mut frame = workspace.deflections().to_vec();
 //! let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));

@@ -9,7 +9,7 @@ use crate::press::contacts::{Contacts, OfPose};
 use crate::press::goal::Goal;
 use crate::press::jacobian;
 use crate::press::output::{Output, Scale};
-use bubbletouch::contact::{Row, Workspace};
+use bubbletouch::contact::{Press, Row, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::world;
 use glam::DVec3;
@@ -225,13 +225,22 @@ impl Batch<'_> {
             let poses = &self.given.poses[number * k..][..k];
             let press = goal.of_pose(number, patch, (models, poses));
             let row = T::row(frame);
-            let pressed = press.deflect_into((row, are_zero), workspace);
+            let pressed = match are_zero {
+                true => press.write_onto_zeros(row, workspace),
+                false => press.write(row, workspace),
+            };
             let pressed = pressed.map_err(|error| named(number, error))?;
             wanted.output.convert(patch, frame);
             if !wanted.contacts && changes.is_none() {
                 return Ok(());
             }
-            let met = press.meet(pressed, workspace);
+            // The contacts of a flat patch depend on its travel only.
+            let is_known = jacobian::is_flat(patch) && press.until != Until::Pose;
+            let until = match pressed.filter(|_| is_known) {
+                Some(pressed) => Until::Travel(pressed.travel),
+                None => press.until,
+            };
+            let met = Press { until, ..press }.with_contacts().run(workspace);
             let met = met.map_err(|error| named(number, error))?;
             if let (Some(changes), Some(pressed), Some(_)) = (changes, pressed, met) {
                 let origin = |pose: &Pose| pose.translation - pressed.travel * DVec3::Z;

@@ -2,17 +2,15 @@
 
 use crate::arrays::view;
 use crate::errors::bad_input;
-use bubbletouch::Result;
-use bubbletouch::contact::{self, Approach, Contact, Row, Workspace, first_contact};
+use bubbletouch::contact::{Press, Until};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::Model;
 use bubbletouch::world::Patch;
-use glam::DVec3;
 use pyo3::prelude::*;
 
 /// Goal of presses: its kind (pose, depth, force or travel), and one amount for all poses or one amount per pose.
 pub struct Goal {
-    kind: fn(f64) -> contact::Goal,
+    kind: fn(f64) -> Until,
     amounts: Vec<f64>,
 }
 
@@ -26,34 +24,34 @@ impl Goal {
         travel: Option<&Bound<PyAny>>,
         force: Option<&Bound<PyAny>>,
     ) -> PyResult<Self> {
-        type Kind = fn(f64) -> contact::Goal;
+        type Kind = fn(f64) -> Until;
         type IsAllowed = fn(f64) -> bool;
         let (place, given, kind, is_allowed, allowed): (_, _, Kind, IsAllowed, _) =
             match (depth, travel, force) {
                 (None, None, None) => {
                     return Ok(Self {
-                        kind: |_| contact::Goal::Pose,
+                        kind: |_| Until::Pose,
                         amounts: vec![0.0],
                     });
                 }
                 (Some(depth), None, None) => (
                     "depth",
                     depth,
-                    contact::Goal::Depth,
+                    Until::Depth,
                     |x| x.is_finite() && x >= 0.0,
                     "a finite number of metres, zero or more",
                 ),
                 (None, Some(travel), None) => (
                     "travel",
                     travel,
-                    contact::Goal::Travel,
+                    Until::Travel,
                     f64::is_finite,
                     "a finite number of metres",
                 ),
                 (None, None, Some(force)) => (
                     "force",
                     force,
-                    contact::Goal::Force,
+                    Until::Force,
                     |x| x.is_finite() && x > 0.0,
                     "a finite positive number of newtons",
                 ),
@@ -95,7 +93,7 @@ impl Goal {
     }
 
     /// Returns the kind of the goal with an amount of 0; used where only the kind matters.
-    pub fn kind(&self) -> contact::Goal {
+    pub fn kind(&self) -> Until {
         (self.kind)(0.0)
     }
 
@@ -114,84 +112,6 @@ impl Goal {
         patch: &'a Patch,
         (models, poses): (&'a [Model], &'a [Pose]),
     ) -> Press<'a> {
-        Press {
-            patch,
-            models,
-            poses,
-            goal: (self.kind)(self.amount(number)),
-        }
-    }
-}
-
-/// Press of a patch on objects at one pose.
-pub struct Press<'a> {
-    patch: &'a Patch,
-    models: &'a [Model],
-    poses: &'a [Pose],
-    goal: contact::Goal,
-}
-
-impl Press<'_> {
-    /// Computes the deflections of the taxels into the workspace; returns `None` if the patch touches nothing.
-    ///
-    /// # Errors
-    /// If a force cannot be reached.
-    pub fn deflect(&self, workspace: &mut Workspace) -> Result<Option<Contact>> {
-        contact::press(self.patch, self.models, self.poses, self.goal, workspace)
-    }
-
-    /// Computes the deflections of the taxels and writes them into a row of the output; previous values of the row are overwritten.
-    ///
-    /// # Errors
-    /// If a force cannot be reached.
-    pub fn deflect_into(
-        &self,
-        (row, is_zeros): (Row, bool),
-        workspace: &mut Workspace,
-    ) -> Result<Option<Contact>> {
-        let press = match is_zeros {
-            true => contact::press_onto_zeros,
-            false => contact::press_into,
-        };
-        let (patch, models, poses) = (self.patch, self.models, self.poses);
-        press(patch, models, poses, self.goal, row, workspace)
-    }
-
-    /// Computes the press again (deflections are equal up to rounding) and stores its contacts in the workspace. `pressed` is the result of the press. If
-    /// nothing is touched, returns `None`; the content of the workspace is then undefined.
-    ///
-    /// # Errors
-    /// If a force cannot be reached.
-    pub fn meet(
-        &self,
-        pressed: Option<Contact>,
-        workspace: &mut Workspace,
-    ) -> Result<Option<Contact>> {
-        let (patch, models, poses) = (self.patch, self.models, self.poses);
-        let approach = Approach::new(patch, DVec3::Z)?;
-        if let (Some(pressed), false) = (pressed, self.goal == contact::Goal::Pose) {
-            // The contacts of a flat patch depend on its travel only.
-            let travel = pressed.travel;
-            let met = approach.contacts_at_travel(models, poses, travel, workspace)?;
-            if let Some(met) = met {
-                return Ok(Some(met).filter(|met| met.n_touched > 0));
-            }
-        }
-        let to_depth = |depth, workspace: &mut Workspace| {
-            approach.press_to_depth(models, poses, depth, workspace)
-        };
-        match self.goal {
-            contact::Goal::Pose => contact::press_with_contacts(patch, models, poses, workspace),
-            contact::Goal::Depth(depth) => to_depth(depth, workspace),
-            contact::Goal::Travel(travel) => {
-                let first = first_contact(patch, models, poses, workspace)?;
-                let depth = first.map(|first| travel - first);
-                match depth.filter(|depth| *depth > 0.0) {
-                    Some(depth) => to_depth(depth, workspace),
-                    None => Ok(None),
-                }
-            }
-            contact::Goal::Force(force) => approach.press_to_force(models, poses, force, workspace),
-        }
+        Press::new(patch, models, poses, (self.kind)(self.amount(number)))
     }
 }

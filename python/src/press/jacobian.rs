@@ -11,7 +11,7 @@
 //! own object, and the travel changes with all of them.
 
 use crate::errors::bad_input;
-use bubbletouch::contact::{Goal, TaxelContact};
+use bubbletouch::contact::{TaxelContact, Until};
 use bubbletouch::world::Patch;
 use glam::DVec3;
 use pyo3::prelude::*;
@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 pub const N: usize = 6;
 
 /// Returns whether the axes of all taxels of a patch are +z.
-fn is_flat(patch: &Patch) -> bool {
+pub fn is_flat(patch: &Patch) -> bool {
     patch.layout().as_grid().is_some() || patch.layout().axes().iter().all(|axis| *axis == DVec3::Z)
 }
 
@@ -28,8 +28,8 @@ fn is_flat(patch: &Patch) -> bool {
 ///
 /// # Errors
 /// If the goal is a depth and the patch is not flat.
-pub fn check(goal: Goal, patch: &Patch) -> PyResult<()> {
-    if !matches!(goal, Goal::Depth(_)) || is_flat(patch) {
+pub fn check(goal: Until, patch: &Patch) -> PyResult<()> {
+    if !matches!(goal, Until::Depth(_)) || is_flat(patch) {
         return Ok(());
     }
     let given = "with a depth, on a patch that is not flat";
@@ -44,7 +44,7 @@ pub fn check(goal: Goal, patch: &Patch) -> PyResult<()> {
 /// are the positions of the objects after the press.
 pub fn fill(
     changes: &mut [f64],
-    goal: Goal,
+    goal: Until,
     patch: &Patch,
     (contacts, origins): (&[TaxelContact], &[DVec3]),
 ) {
@@ -62,14 +62,14 @@ pub fn fill(
     let rise = |contact: &TaxelContact| -contact.gradient().z;
     let mut travels = vec![[0.0; N]; origins.len()];
     match goal {
-        Goal::Pose | Goal::Travel(_) => {}
-        Goal::Depth(_) => {
+        Until::Pose | Until::Travel(_) => {}
+        Until::Depth(_) => {
             let deepest = contacts.iter().max_by(|a, b| a.needed.total_cmp(&b.needed));
             if let Some(deepest) = deepest {
                 travels[deepest.object] = change(deepest).map(|change| -change);
             }
         }
-        Goal::Force(_) => {
+        Until::Force(_) => {
             let mut rises = 0.0;
             for contact in moving() {
                 let stiffness = taxel(contact).stiffness;

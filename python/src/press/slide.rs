@@ -6,7 +6,7 @@ use crate::errors::{bad_input, exception};
 use crate::model::Objects;
 use crate::poses::Poses;
 use crate::press::goal::Goal;
-use bubbletouch::contact::{Approach, ContactMode, FrictionState, Workspace};
+use bubbletouch::contact::{ContactMode, FrictionState, Workspace};
 use bubbletouch::world::{self, Shear, Shears};
 use glam::DVec3;
 use numpy::{IntoPyArray, PyArrayMethods, PyUntypedArrayMethods};
@@ -79,10 +79,8 @@ pub fn press_and_slide<'py>(
     let work = |number: usize, rows: Rows, scratch: &mut (Workspace, FrictionState)| {
         let (workspace, friction) = scratch;
         let poses = &given.poses[number * models.len()..][..models.len()];
-        let motion = (depth.amount(number), slides[number]);
-        let approach = Approach::new(patch, DVec3::Z).map_err(exception)?;
-        let state = Some(&mut *friction);
-        let pressed = approach.press_and_slide(models, poses, motion, state, workspace);
+        let press = depth.of_pose(number, patch, (models, poses));
+        let pressed = press.slide(slides[number], Some(&mut *friction), workspace);
         let Some(contact) = pressed.map_err(exception)? else {
             return Ok(());
         };

@@ -1,7 +1,7 @@
 //! Press of a patch on one rigid object to a given normal force, near the object's pose.
 
 use super::parts::{RigidObject, SkinPatch};
-use bubbletouch::contact::{HeldForce, MovedObject, Workspace, press_to_force};
+use bubbletouch::contact::{HeldForce, MovedObject, Press, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use glam::DVec3;
 
@@ -40,7 +40,8 @@ pub fn press_pair(
     poses.extend(at_poses());
     if part.is_even && direction == DVec3::Z {
         // All starts of the taxels come from one deep press of the grid. The press approaches from outside, so the travel may be far from the pose.
-        let pressed = press_to_force(&part.patch, &object.models, poses, force, workspace);
+        let pressed =
+            Press::new(&part.patch, &object.models, poses, Until::Force(force)).run(workspace);
         if let Ok(Some(contact)) = pressed
             && contact.travel.abs() <= reach
         {

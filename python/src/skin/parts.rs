@@ -1,6 +1,6 @@
 //! Patches and bodies of a skin, and the press of a patch under a body at its pose.
 
-use bubbletouch::contact::{LoadRange, Workspace, Wrench, is_flat, press_at_pose};
+use bubbletouch::contact::{LoadRange, Press, Until, Workspace, Wrench, is_flat};
 use bubbletouch::geometry::{Aabb, Pose};
 use bubbletouch::objects::Model;
 use bubbletouch::world::{self, Taxels};
@@ -112,7 +112,9 @@ impl SkinPatch {
         workspace: &mut Workspace,
     ) {
         let model = std::slice::from_ref(&body.model);
-        press_at_pose(&self.patch, model, &[patch_from_body], workspace).expect("checked poses");
+        Press::new(&self.patch, model, &[patch_from_body], Until::Pose)
+            .run(workspace)
+            .expect("checked poses");
         take_maximum(frame, workspace.deflections());
     }
 

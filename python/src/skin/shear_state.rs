@@ -4,7 +4,7 @@ use super::parts::{RigidObject, SkinPatch, add_wrench};
 use crate::arrays::{to_rows, whole_number};
 use crate::errors::{bad_input, guarded};
 use bubbletouch::contact::{
-    ContactMode, FrictionState, NormalForce, TaxelContact, Workspace, press_with_contacts,
+    ContactMode, FrictionState, NormalForce, Press, TaxelContact, Until, Workspace,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::Model;
@@ -95,7 +95,10 @@ impl ShearState {
         wrench: &mut [f64],
         workspace: &mut Workspace,
     ) {
-        press_with_contacts(patch, models, poses, workspace).expect("checked poses");
+        Press::new(patch, models, poses, Until::Pose)
+            .with_contacts()
+            .run(workspace)
+            .expect("checked poses");
         // A rigid object moves with its first body.
         let object_of = |body: usize| {
             objects

@@ -13,8 +13,8 @@ use crate::model::model_of;
 use crate::patch::Patch;
 use crate::press::output::Output;
 use bubbletouch::contact::{
-    AssignedLoads, CarriedLoad, LoadPart, LoadWorkspace, PointLoad, Workspace, Wrench, carry_loads,
-    press_at_pose, share_friction, travel_direction,
+    AssignedLoads, CarriedLoad, LoadPart, LoadWorkspace, PointLoad, Press, Until, Workspace,
+    Wrench, carry_loads, share_friction, travel_direction,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::Model;
@@ -537,7 +537,8 @@ impl Skin {
                     .object_poses
                     .extend(object_of.members.iter().map(deeper));
                 let deeper = &scratch.object_poses;
-                press_at_pose(&part_of.deep(reach), &object_of.models, deeper, workspace)
+                Press::new(&part_of.deep(reach), &object_of.models, deeper, Until::Pose)
+                    .run(workspace)
                     .expect("checked poses");
                 let deep = (workspace.deflections(), reach);
                 carry_loads(

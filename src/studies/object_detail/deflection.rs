@@ -1,6 +1,6 @@
 //! Deflections on a model, and their comparison with the deflections on the exact mesh.
 
-use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
+use crate::contact::{Press, Until, Workspace};
 use crate::studies::prelude::*;
 use crate::studies::shared_steps::median_s;
 
@@ -82,8 +82,8 @@ impl Truth {
         };
         for touch in &touched.touches {
             let pose = touch.patch_from_object(&touched.rests[touch.rest]);
-            let contact =
-                press_to_depth(array.patch(), object, &[pose], touch.depth, &mut workspace)?;
+            let contact = Press::new(array.patch(), object, &[pose], Until::Depth(touch.depth))
+                .run(&mut workspace)?;
             let Some(contact) = contact else {
                 truth.n_missed += 1;
                 continue;
@@ -109,7 +109,9 @@ impl Truth {
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         DeflectionError::new(self.errors_of(|pose, reading, workspace| {
-            press_to_depth(patch, object, pose, reading.depth, workspace).map(drop)
+            Press::new(patch, object, pose, Until::Depth(reading.depth))
+                .run(workspace)
+                .map(drop)
         }))
     }
 
@@ -135,7 +137,9 @@ impl Truth {
         let mut workspace = Workspace::new();
         let mut press = |reading: &Reading| {
             let pose = [reading.patch_from_object];
-            press_to_depth(patch, object, &pose, reading.depth, &mut workspace).expect(CHECKED);
+            Press::new(patch, object, &pose, Until::Depth(reading.depth))
+                .run(&mut workspace)
+                .expect(CHECKED);
         };
         // One run before the measurement allocates the workspace and fills the caches.
         self.readings.iter().for_each(&mut press);
@@ -147,7 +151,9 @@ impl Truth {
     fn errors(&self, model: &Model, offset: f64) -> Vec<f64> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         self.errors_of(|pose, reading, workspace| {
-            press_to_travel(patch, object, pose, reading.travel - offset, workspace).map(drop)
+            Press::new(patch, object, pose, Until::Travel(reading.travel - offset))
+                .run(workspace)
+                .map(drop)
         })
     }
 
@@ -173,8 +179,9 @@ impl Truth {
         let mut workspace = Workspace::new();
         let ahead = self.readings.iter().filter_map(|reading| {
             let pose = [reading.patch_from_object];
-            let first = first_contact(patch, object, &pose, &mut workspace).expect(CHECKED)?;
-            let ahead = reading.travel - reading.depth - first;
+            let touch = Press::new(patch, object, &pose, Until::Depth(0.0)).run(&mut workspace);
+            let first_contact = touch.expect(CHECKED)?.travel;
+            let ahead = reading.travel - reading.depth - first_contact;
             Some((ahead - reading.depth, ahead + reading.depth))
         });
         ahead.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))

@@ -3,7 +3,7 @@
 use crate::contact::equilibrium::{
     EquilibriumSolver, FreeObject, Ground, Outcome as EquilibriumOutcome, PlacedSkin,
 };
-use crate::contact::{Approach, DamperState, Workspace, press_at_pose, spring_load};
+use crate::contact::{DamperState, Press, Until, Workspace, spring_load};
 use crate::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, Steps, System, run,
 };
@@ -196,7 +196,7 @@ fn put_to_rest(scene: &ConfigurationScene, mass: f64) -> Result<Answer> {
     let mut workspace = Workspace::new();
     let poses: Vec<Pose> = balances.iter().map(|balance| balance.pose).collect();
     let models = vec![test_bed.ball.clone(); n_balls];
-    press_at_pose(&test_bed.patch, &models, &poses, &mut workspace)?;
+    Press::new(&test_bed.patch, &models, &poses, Until::Pose).run(&mut workspace)?;
     let imbalances = balances.iter().map(|balance| match balance.outcome {
         EquilibriumOutcome::AtRest => balance.imbalance,
         _ => f64::INFINITY,
@@ -216,8 +216,9 @@ fn press_to_weight(scene: &ConfigurationScene) -> Result<Answer> {
         test_bed.pose.translation + 1e-3 * DVec3::Z,
     )];
     let mut workspace = Workspace::new();
-    let approach = Approach::new(&test_bed.patch, DVec3::Z)?;
-    let press = approach.press_to_force(ball, &above, weight, &mut workspace)?;
+    let press = Press::new(&test_bed.patch, ball, &above, Until::Force(weight))
+        .with_contacts()
+        .run(&mut workspace)?;
     let carried = spring_load(&test_bed.patch, workspace.contacts()).spring_force;
     Ok(Answer {
         force_imbalance: press.map_or(f64::INFINITY, |_| (carried / weight - 1.0).abs()),
@@ -240,7 +241,7 @@ fn press_and_release(scene: &ConfigurationScene, plan: &VelocityPlan) -> Result<
     };
     for step in 1..=answer.n_steps {
         let pose = plan.pose_at(step as f64 * dt);
-        press_at_pose(patch, ball, &[pose], &mut workspace)?;
+        Press::new(patch, ball, &[pose], Until::Pose).run(&mut workspace)?;
         state.step(patch.taxels(), dt, workspace.deflections());
         if step == frames[0] {
             let force: f64 = state.force.iter().sum();

@@ -2,7 +2,7 @@
 
 mod own_parts;
 
-use bubbletouch_sim::contact::{Goal, Row, Workspace, press_into, press_to_depth};
+use bubbletouch_sim::contact::{Press, Row, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{LengthUnit, TriangleMesh};
 use bubbletouch_sim::objects::Catalogue;
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut workspace = Workspace::new();
     let mut press = |place: f64, depth: f64| {
         let pose = Pose::from_translation(place * DVec3::X);
-        press_to_depth(&patch, &ball, &[pose], depth, &mut workspace)
+        Press::new(&patch, &ball, &[pose], Until::Depth(depth)).run(&mut workspace)
     };
     assert!(press(0.0, 1e-3)?.is_some_and(|contact| contact.n_touched > 0));
     // Numbers that are none, and an output of another size, are errors of one sentence.
@@ -87,9 +87,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             assert!(sentence.contains(&number.to_string()), "{sentence}");
         }
     }
-    let (goal, mut row) = (Goal::Depth(1e-3), [0.0; 63]);
+    let (goal, mut row) = (Until::Depth(1e-3), [0.0; 63]);
     let row = Row::Double(&mut row);
-    let pressed = press_into(&patch, &ball, &[Pose::default()], goal, row, &mut workspace);
+    let pressed = Press::new(&patch, &ball, &[Pose::default()], goal).write(row, &mut workspace);
     let sentence = pressed.expect_err("63 values for 64 taxels").to_string();
     println!("{sentence}");
     assert!(sentence.contains("63 values for 64 taxels"));

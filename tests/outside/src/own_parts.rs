@@ -2,7 +2,7 @@
 
 mod transmission;
 
-use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::Catalogue;
 use bubbletouch::recognition::classifiers::foreign::{Foreign, ForeignClassifier, ForeignModel};
@@ -261,7 +261,7 @@ fn deflections() -> bubbletouch::Result<f64> {
     let mut sum = 0.0;
     for x in [0.0, 4e-3] {
         let pose = Pose::from_translation([x, 0.0, 0.0].into());
-        press_to_depth(&patch, &ball, &[pose], 3e-3, &mut workspace);
+        Press::new(&patch, &ball, &[pose], Until::Depth(3e-3)).run(&mut workspace);
         sum += workspace.deflections().iter().sum::<f64>() / 2.0;
     }
     Ok(sum)

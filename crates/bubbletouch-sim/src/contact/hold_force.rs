@@ -1,11 +1,10 @@
 //! Motion of one object, or of all objects together, along a line until a skin carries a given force, within travel limits.
 
-use super::checks::check_direction;
 use super::force_goal::FORCE_ACCURACY;
+use super::press::check_direction;
 use super::root_search::crossing;
 use super::spring_load::sample;
-use super::tree::deflect_with_contacts;
-use super::{Goal, Workspace};
+use super::{Record, Until, Workspace, tree};
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, check_poses};
 use crate::objects::Model;
@@ -45,7 +44,7 @@ impl MovedObject<'_> {
     /// returned.
     ///
     /// # Errors
-    /// If the poses are invalid, as in [`press`](crate::contact::press()), the direction is not a unit vector, a travel is not finite, or the force is
+    /// If the poses are invalid, as in [`Press::run`](crate::contact::Press::run), the direction is not a unit vector, a travel is not finite, or the force is
     /// negative or not finite. If `moving` is not the index of an object.
     pub fn hold(
         &self,
@@ -58,7 +57,7 @@ impl MovedObject<'_> {
         check_direction(self.direction)?;
         not_negative("touch force", force, "N")?;
         for travel in travels {
-            Goal::Travel(travel).check()?;
+            Until::Travel(travel).check()?;
         }
         let n = self.objects.len();
         if self.moving.is_some_and(|moving| moving >= n) {
@@ -77,7 +76,8 @@ impl MovedObject<'_> {
             for (pose, start) in poses[range.clone()].iter_mut().zip(&starts) {
                 pose.translation = *start + travel * self.direction;
             }
-            deflect_with_contacts(self.patch, self.objects, poses, workspace);
+            let placed = (self.objects, &poses[..]);
+            tree::press(self.patch, placed, Record::Contacts, workspace);
             let is_moved = |number| range.contains(&number);
             sample(self.patch, workspace.contacts(), self.direction, is_moved)
         };

@@ -11,31 +11,29 @@
 //! equations for faces, edges and corners.
 //!
 //! **Behind the substrate.** A press to a depth, a travel or a force approaches from the front, and all spheres count at any depth. The deflection of a
-//! taxel of a flat patch therefore never decreases with the depth. At a pose without a path ([`press_at_pose`], [`press_with_contacts`]) and for free
-//! objects, a sphere or a mesh counts until it is wholly behind the substrate. The rule is applied to each taxel separately. The obstacle is behind if a
+//! taxel of a flat patch therefore never decreases with the depth. At a pose without a path ([`Until::Pose`]) and for free objects,
+//! a sphere or a mesh counts until it is wholly behind the substrate. The rule is applied to each taxel separately. The obstacle is behind if a
 //! taxel resting on its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (module `law`). A ball that moves through a skin therefore leaves
 //! it taxel by taxel. In a time loop and along a press, a part that pushed a taxel in the previous step continues to push this taxel.
 //!
 //! A taxel that an object would push further than its stroke s is saturated; [`Contact`] counts such taxels.
 //!
-//! A **direct press** ([`press_to_depth`], [`press_to_travel`], [`press_to_force`]) evaluates the law at the final pose. [`Approach`] presses along
-//! directions other than z and can then slide sideways. A **time loop** ([`simulate()`], [`DamperState`]) adds the damper: a free taxel
-//! relaxes, `k δ + c δ̇ = 0`. Without a damper both agree exactly, so a scene without dampers needs no loop.
+//! A **press** ([`Press`]) moves a patch along a direction until a condition is met ([`Until`]), and can then [slide](Press::slide) it sideways. On a flat
+//! patch the law is evaluated at the final pose only. In a time loop, [`DamperState`] adds the damper: a free taxel relaxes, `k δ + c δ̇ = 0`. Without a
+//! damper both agree exactly, so a scene without dampers needs no loop.
 //!
 //! On a flat grid with equal radii and substrate heights, the kernel works along rows, and rasterises the triangles of meshes. On any other layout, a search
-//! tree finds the taxels near each sphere, and eight neighbouring taxels together search the triangles of a mesh. [`press_with_contacts`] also records which part of which object determines each deflection ([`TaxelContact`]).
+//! tree finds the taxels near each sphere, and eight neighbouring taxels together search the triangles of a mesh. A press [with contacts](Press::with_contacts) also records which part of which object determines each deflection ([`TaxelContact`]).
 //! [`spring_load`] sums the forces of the springs.
 //!
 //! A free object rests where its weight and the forces of the taxels balance: [`equilibrium`].
 //!
-//! A **touch to a force** ends where the springs carry Σ k δ = F together; the result equals a press to the travel found.
-//! [`MovedObject`] presses one object among others to a force.
+//! A press to a force ends where the springs carry Σ k δ = F together. [`MovedObject`] presses one object among others to a force.
 //!
 //! **Friction** is optional. With [`Shear`](crate::world::Shear) springs the objects drag the taxels sideways until they slip. With friction each taxel
 //! measures a three-axis force ([`FrictionState`] has the equations). Without friction, and also with μ = 0, the forces are bitwise equal to `spring_load`.
 
 mod assigned_loads;
-mod checks;
 mod damper;
 pub mod equilibrium;
 mod force_goal;
@@ -50,7 +48,6 @@ mod point_loads;
 mod press;
 mod press_summary;
 mod root_search;
-mod simulate;
 mod spring_load;
 mod taxel_contact;
 mod tree;
@@ -75,16 +72,11 @@ pub use point_loads::{
     CarriedLoad, LoadPart, LoadWorkspace, PointLoad, carry_loads, is_flat, share_friction,
     travel_direction,
 };
-pub use press::{
-    Goal, first_contact, press, press_at_pose, press_into, press_onto_zeros, press_to_depth,
-    press_to_force, press_to_travel, press_with_contacts,
-};
+pub use press::{Press, Record, Until};
 pub use press_summary::Contact;
 pub(crate) use root_search::{Sample, crossing};
-pub use simulate::{SimulatedRecording, simulate};
 pub use spring_load::{AxialLoad, SpringLoad, axial_load, spring_load};
 pub use taxel_contact::{GRAZING, TaxelContact};
-pub use tree::Approach;
-pub(crate) use tree::deflect_with_contacts;
+pub(crate) use tree::press;
 pub use workspace::Workspace;
 pub use wrench::Wrench;

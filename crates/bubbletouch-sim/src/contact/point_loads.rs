@@ -446,7 +446,7 @@ fn solve_semidefinite(mut matrix: [[f64; 6]; 6], mut values: [f64; 6]) -> [f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Workspace, press_at_pose};
+    use crate::contact::{Press, Until, Workspace};
     use crate::objects::{Model, Sphere, SphereUnion};
     use crate::random::Seed;
     use crate::world::{Grid, Taxel};
@@ -476,7 +476,9 @@ mod tests {
         let patch = Patch::grid(grid, taxel).unwrap();
         let mut workspace = Workspace::new();
         let pose = Pose::from_translation(at - REACH * DVec3::Z);
-        press_at_pose(&patch, objects, &[pose], &mut workspace).unwrap();
+        Press::new(&patch, objects, &[pose], Until::Pose)
+            .run(&mut workspace)
+            .unwrap();
         workspace.deflections().to_vec()
     }
 
@@ -562,13 +564,13 @@ mod tests {
             &mut workspace,
         );
         let mut pressed = Workspace::new();
-        crate::contact::press_to_force(
+        crate::contact::Press::new(
             &patch,
             &objects,
             &[Pose::from_translation(at)],
-            3.0,
-            &mut pressed,
+            crate::contact::Until::Force(3.0),
         )
+        .run(&mut pressed)
         .unwrap();
         let differences = deflections
             .iter()

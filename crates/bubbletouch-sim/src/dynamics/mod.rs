@@ -40,7 +40,7 @@ pub use implicit_euler::ImplicitEuler;
 pub use rapier_settings::{RapierContacts, RapierJoints, RapierSettings};
 #[cfg(feature = "rapier")]
 pub use rapier_world::RapierWorld;
-pub use recording::{Divergence, DynamicRecording, Steps, run};
+pub use recording::{Divergence, DynamicRecording, SimulatedRecording, Steps, run};
 pub use rest::{Rest, rest};
 pub use semi_implicit::SemiImplicit;
 pub use state::{Integrator, Rider, State};

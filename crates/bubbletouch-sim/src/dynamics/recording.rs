@@ -2,7 +2,6 @@
 
 use super::state::{Integrator, State};
 use super::system::System;
-use crate::contact::SimulatedRecording;
 use crate::error::{Error, Result};
 use crate::text::in_range::positive;
 use ndarray::{Array1, Array2};
@@ -27,6 +26,19 @@ pub enum Divergence {
     NotFinite,
     /// The energy exceeds the limit of the run.
     EnergyGrowth,
+}
+
+/// Deflections and forces of a patch's taxels, recorded over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulatedRecording {
+    /// Time of each frame, seconds, shape (n_frames,).
+    pub time: Array1<f64>,
+    /// Deflections, metres, shape (n_frames, n_taxels).
+    pub deflection: Array2<f64>,
+    /// Forces, newtons, shape (n_frames, n_taxels).
+    pub force: Array2<f64>,
+    /// Number of taxels at the end of their stroke, summed over frames.
+    pub n_saturated: usize,
 }
 
 /// Recorded frames of a dynamic simulation, and the motion of the object.

@@ -1,6 +1,6 @@
 //! Mechanical system: taxels with mass, and an object that can move only along the taxels' axis.
 
-use crate::contact::{Workspace, deflect_with_contacts};
+use crate::contact::{Record, Workspace, press};
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, check_poses};
 use crate::objects::Model;
@@ -154,7 +154,8 @@ impl<'a> System<'a> {
 fn starts(patch: &Patch, object: &Model, pose: &Pose, reach: f64) -> Vec<f64> {
     let mut workspace = Workspace::new();
     let low = Pose::new(pose.rotation, pose.translation - reach * DVec3::Z);
-    deflect_with_contacts(patch, std::slice::from_ref(object), &[low], &mut workspace);
+    let placed = (std::slice::from_ref(object), &[low][..]);
+    press(patch, placed, Record::Contacts, &mut workspace);
     let mut starts = vec![f64::INFINITY; patch.n_taxels()];
     for contact in workspace.contacts() {
         starts[contact.taxel] = reach - contact.needed;

@@ -1,6 +1,6 @@
 //! Human touches of a study, which are drawn once and recorded with each array; their pictures are film strips.
 
-use crate::contact::{Workspace, press_with_contacts};
+use crate::contact::{Press, Until, Workspace};
 use crate::objects::Hand;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
@@ -87,7 +87,9 @@ pub fn record_touch(
         let known = shape.take().filter(|(hand, _)| *hand == state.hand);
         let (_, hand) =
             shape.insert(known.unwrap_or_else(|| (state.hand, [state.spheres().into()])));
-        let contact = press_with_contacts(skin, hand, &[state.patch_from_hand], workspace);
+        let contact = Press::new(skin, hand, &[state.patch_from_hand], Until::Pose)
+            .with_contacts()
+            .run(workspace);
         let contact = contact.expect("a hand has a finite pose");
         n_saturated += contact.map_or(0, |contact| contact.n_saturated);
         let row = row.into_slice().expect("rows are whole");

@@ -1,8 +1,6 @@
 //! Touches of pressed objects: an array is pressed on an object and slides along it. All configurations share the frames.
 
-use crate::contact::{
-    Approach, Contact, FrictionState, Workspace, press_to_depth, saturation_limit,
-};
+use crate::contact::{Contact, FrictionState, Press, Until, Workspace, saturation_limit};
 use crate::studies::prelude::*;
 use crate::studies::recognition::frames::{
     Frames, Samples, TouchSet, TouchToRead, sample_frames, touches_to_read,
@@ -69,13 +67,16 @@ impl ArrayPress<'_> {
             let at_rest = || FrictionState::at_rest(patch, Shears::Equal(shear));
             friction.get_or_insert_with(|| at_rest().expect("checked shear springs"));
         } else if slide == DVec2::ZERO {
-            return press_to_depth(patch, &self.object, &[pose], way, press).expect(CHECKED);
+            return Press::new(patch, &self.object, &[pose], Until::Depth(way))
+                .run(press)
+                .expect(CHECKED);
         }
         let slid = (way - depth).max(0.0) * slide.normalize_or_zero();
-        let motion = (way.min(depth), slid.extend(0.0));
-        let approach = Approach::new(patch, DVec3::Z).expect("an axis has length one");
-        let pressed =
-            approach.press_and_slide(&self.object, &[pose], motion, friction.as_mut(), press);
+        let pressed = Press::new(patch, &self.object, &[pose], Until::Depth(way.min(depth))).slide(
+            slid.extend(0.0),
+            friction.as_mut(),
+            press,
+        );
         pressed.expect(CHECKED)
     }
 

@@ -1,6 +1,6 @@
 //! Transmission studies: the sum of the deflections that measurements of a touch report.
 
-use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::kinds::prelude::*;
 use bubbletouch::sensing::{Ensemble, Projection};
 use bubbletouch::signal::{Chain, SignalWorkspace};
@@ -140,7 +140,7 @@ impl Study for TransmissionStudy {
             let mut sum_m = 0.0;
             for (number, touch) in of.touches.iter().enumerate() {
                 let pose = [touch.patch_from_object(&of.rests[touch.rest])];
-                press_to_depth(patch, model, &pose, touch.depth, &mut workspace);
+                Press::new(patch, model, &pose, Until::Depth(touch.depth)).run(&mut workspace);
                 let mut frame = workspace.deflections().to_vec();
                 let of_touch = seed.numbered(number as u64);
                 chain.apply(&mut frame, None, &of_touch, &mut SignalWorkspace::default());

@@ -90,7 +90,7 @@ pub struct FrictionLoad {
 /// Shear springs of one patch with friction, carried from one time step to the next.
 ///
 /// ```
-/// use bubbletouch_sim::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
+/// use bubbletouch_sim::contact::{FrictionState, NormalForce, Press, Until, Workspace};
 /// use bubbletouch_sim::geometry::Pose;
 /// use bubbletouch_sim::objects::{Sphere, SphereUnion};
 /// use bubbletouch_sim::world::{Layout, Shear, Shears, Patch, Taxel, Taxels};
@@ -107,7 +107,7 @@ pub struct FrictionLoad {
 /// let mut workspace = Workspace::new();
 /// for step in 0..=10 {
 ///     let pose = Pose::from_translation(DVec3::new(1e-4 * f64::from(step), 0.0, 0.029));
-///     press_with_contacts(&palm, &objects, &[pose], &mut workspace)?;
+///     Press::new(&palm, &objects, &[pose], Until::Pose).with_contacts().run(&mut workspace)?;
 ///     friction.step(&palm, workspace.contacts(), &[pose], NormalForce::Springs);
 /// }
 ///

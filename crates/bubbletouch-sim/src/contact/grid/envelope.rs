@@ -15,7 +15,8 @@ use super::lines::GridLines;
 use super::pair_batch::{
     Column, EdgePairs, FacePairs, MAY_BE_BEHIND, PAIRS, Pair, PairList, Placement,
 };
-use super::placed_objects::{PlacedObjects, TravelGoal};
+use super::placed_objects::PlacedObjects;
+use crate::contact::Until;
 use crate::contact::instructions::{Instructions, for_instructions};
 use crate::contact::mesh::skin_mesh::{MeshAt, stop_in_front};
 use crate::contact::mesh::swept_triangle::{FACE_SLACK, SweptEdge, SweptFace, corner_height};
@@ -81,7 +82,7 @@ impl Envelope {
     pub fn look(
         &mut self,
         placed: &PlacedObjects,
-        (goal, first): (TravelGoal, f64),
+        (until, first): (Until, f64),
         instructions: Instructions,
     ) -> bool {
         self.clear(
@@ -106,7 +107,7 @@ impl Envelope {
                 },
                 behind: placed.behind,
                 lines: placed.lines,
-                goal,
+                until,
                 others: first,
                 bound: f64::INFINITY,
                 waiting: &mut scratch.waiting,
@@ -219,7 +220,7 @@ struct Sweep<'a> {
     /// Height of the substrate, metres; −∞ if the press comes from the front.
     behind: f64,
     lines: &'a GridLines,
-    goal: TravelGoal,
+    until: Until,
     /// Travel at first contact with the spheres, metres.
     others: f64,
     envelope: &'a mut Envelope,
@@ -327,13 +328,8 @@ impl Sweep<'_> {
     /// Returns the travel, metres, beyond which the heights do not affect the press.
     #[inline(always)]
     fn limit(&self) -> f64 {
-        match self.goal {
-            TravelGoal::Travel(travel) => travel,
-            TravelGoal::Pose => 0.0,
-            TravelGoal::Depth(depth) => {
-                self.envelope.first.min(self.bound).min(self.others) + depth
-            }
-        }
+        let first = self.envelope.first.min(self.bound).min(self.others);
+        self.until.limit(first)
     }
 
     /// Adds the candidates behind whose substrates triangles may lie.
@@ -571,7 +567,7 @@ impl Sweep<'_> {
     #[inline(always)]
     fn lower_to_face(&mut self, face: &SweptFace, [columns, rows]: [Range<usize>; 2]) {
         let slack = FACE_SLACK * self.placement.reach;
-        let is_for_depth = matches!(self.goal, TravelGoal::Depth(_));
+        let is_for_depth = matches!(self.until, Until::Depth(_));
         for row in rows {
             let y = self.lines.y.positions[row];
             let first = row * self.envelope.n_columns;

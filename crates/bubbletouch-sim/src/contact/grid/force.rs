@@ -5,17 +5,16 @@
 //! from which the travel for a force follows.
 
 use super::output_buffer::OutputBuffer;
-use super::placed_objects::TravelGoal;
 use super::press::GridPress;
-use crate::contact::Contact;
 use crate::contact::force_goal::{FORCE_ACCURACY, unreachable_force};
 use crate::contact::root_search::{Sample, crossing};
+use crate::contact::{Contact, Until};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::EvenGrid;
 
-/// Presses a grid of taxels until its spring force reaches a target; the fast path of `press_to_force`. All taxels have one stiffness, N/m.
+/// Presses a grid of taxels until its spring force reaches a target; the fast path of [`Until::Force`]. All taxels have one stiffness, N/m.
 pub(crate) fn press(
     (grid, stiffness): (&EvenGrid, f64),
     objects: &[Model],
@@ -24,7 +23,7 @@ pub(crate) fn press(
     (press, output): (&mut GridPress, &mut OutputBuffer),
 ) -> Result<Option<Contact>> {
     let stroke = grid.stroke;
-    let gathered = press.gather(grid, objects, patch_from_objects, TravelGoal::Depth(stroke));
+    let gathered = press.gather(grid, objects, patch_from_objects, Until::Depth(stroke));
     let Some(first) = gathered else {
         press.touch_nothing(grid);
         return Ok(None);
@@ -33,7 +32,7 @@ pub(crate) fn press(
     if curve.largest() < force {
         // This press is deep enough to reach every taxel that the objects can saturate.
         let depth = top(objects, patch_from_objects) + stroke - first;
-        press.gather(grid, objects, patch_from_objects, TravelGoal::Depth(depth));
+        press.gather(grid, objects, patch_from_objects, Until::Depth(depth));
         curve = ForceCurve::new(press, (grid, stiffness), first + depth);
     }
     let largest = curve.largest();

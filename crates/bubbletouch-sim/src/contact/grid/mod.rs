@@ -30,6 +30,5 @@ pub(super) use lines::GridLines;
 pub use lines::Lines;
 pub(super) use output_buffer::OutputBuffer;
 pub use output_buffer::Row;
-pub(super) use placed_objects::TravelGoal;
 pub(super) use placed_sphere::View;
 pub(super) use press::GridPress;

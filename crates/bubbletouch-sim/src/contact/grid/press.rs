@@ -4,12 +4,12 @@ use super::deflection_grid::DeflectionGrid;
 use super::envelope::Envelope;
 use super::lines::GridLines;
 use super::output_buffer::{OutputBuffer, Row};
-use super::placed_objects::{PlacedObjects, TravelGoal};
+use super::placed_objects::PlacedObjects;
 use super::placed_sphere::PlacedSphere;
 use super::sphere_search::{SphereSearch, search};
-use crate::contact::Contact;
 use crate::contact::instructions::{Instructions, for_instructions};
 use crate::contact::law::saturation_limit;
+use crate::contact::{Contact, Until};
 use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::EvenGrid;
@@ -47,7 +47,7 @@ impl GridPress {
         grid: &EvenGrid,
         objects: &[Model],
         patch_from_objects: &[Pose],
-        goal: TravelGoal,
+        until: Until,
     ) -> Option<f64> {
         assert_eq!(
             objects.len(),
@@ -55,9 +55,9 @@ impl GridPress {
             "one pose an object"
         );
         self.lines.lay(&grid.grid);
-        self.behind = match goal {
-            TravelGoal::Pose => grid.behind,
-            TravelGoal::Travel(_) | TravelGoal::Depth(_) => f64::NEG_INFINITY,
+        self.behind = match until {
+            Until::Pose => grid.behind,
+            _ => f64::NEG_INFINITY,
         };
         let placed = PlacedObjects {
             objects,
@@ -66,9 +66,9 @@ impl GridPress {
             behind: self.behind,
             lines: &self.lines,
         };
-        let mut first = search(self.instructions, &mut self.search, &placed, goal);
+        let mut first = search(self.instructions, &mut self.search, &placed, until);
         let instructions = self.instructions;
-        self.has_meshes = self.envelope.look(&placed, (goal, first), instructions);
+        self.has_meshes = self.envelope.look(&placed, (until, first), instructions);
         if self.has_meshes {
             first = first.min(self.envelope.first);
         }

@@ -1,10 +1,10 @@
 //! Search for the spheres that can press a flat grid: first by clusters of neighbouring spheres, then sphere by sphere in nearby clusters.
 
-use super::placed_objects::{PlacedObjects, TravelGoal};
+use super::placed_objects::PlacedObjects;
 use super::placed_sphere::{PlacedSphere, View};
-use crate::contact::LanesBelow;
 use crate::contact::instructions::for_instructions;
 use crate::contact::law;
+use crate::contact::{LanesBelow, Until};
 use crate::objects::{Model, SphereClusters};
 
 /// Scratch memory of a search for the spheres that can press a grid.
@@ -26,29 +26,20 @@ for_instructions! {
     /// if the goal is not a depth.
     ///
     /// For a depth, the nearest cluster is evaluated first, so that most other clusters can be excluded by their bounds.
-    pub(crate) fn search(search: &mut SphereSearch, placed: &PlacedObjects, goal: TravelGoal) -> f64 = run
+    pub(crate) fn search(search: &mut SphereSearch, placed: &PlacedObjects, until: Until) -> f64 = run
 }
 
 #[inline(always)]
-fn run(search: &mut SphereSearch, placed: &PlacedObjects, goal: TravelGoal) -> f64 {
+fn run(search: &mut SphereSearch, placed: &PlacedObjects, until: Until) -> f64 {
     search.lay(placed);
-    match goal {
-        TravelGoal::Travel(travel) => {
-            search.gather(placed.objects, travel, |_| true);
-            f64::INFINITY
-        }
-        TravelGoal::Depth(depth) => {
-            let first = search.first_touch(placed);
-            search.gather(placed.objects, first + depth, |_| true);
-            first
-        }
-        TravelGoal::Pose => {
-            search.gather(placed.objects, 0.0, |sphere| {
-                law::is_in_front(sphere.reach * sphere.reach, sphere.center.z, placed.behind)
-            });
-            f64::INFINITY
-        }
-    }
+    let first = match until {
+        Until::Depth(_) => search.first_touch(placed),
+        _ => f64::INFINITY,
+    };
+    search.gather(placed.objects, until.limit(first), |sphere| {
+        law::is_in_front(sphere.reach * sphere.reach, sphere.center.z, placed.behind)
+    });
+    first
 }
 
 impl SphereSearch {

@@ -4,16 +4,13 @@
 //! |---|---|
 //! | `near_spheres` | a sphere and taxels → the deflections that contact requires |
 //! | `press` | objects and poses → deflections and contacts |
-//! | `path` | a direction → presses from step to step along it |
-//! | `approach` | a direction → first contact, and presses past it |
-//! | `approach_force` | force → travel |
+//! | `first_contact` | a direction → travel at first contact |
+//! | `path` | a condition → presses from step to step along a direction |
 
-mod approach;
-mod approach_force;
+mod first_contact;
 mod near_spheres;
 mod path;
 mod press;
 
-pub use approach::Approach;
-pub(super) use press::deflect;
-pub(crate) use press::deflect_with_contacts;
+pub(super) use path::Path;
+pub(crate) use press::press;

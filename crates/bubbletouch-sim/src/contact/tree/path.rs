@@ -1,11 +1,16 @@
-//! Path of a patch along a line past objects, divided into steps.
+//! Press of a patch with any layout: at its pose, or along a line, divided into steps.
 
+use super::first_contact::first_contact;
 use super::press;
-use crate::contact::{Contact, FrictionState, NormalForce, Workspace};
+use crate::contact::force_goal::{FORCE_ACCURACY, unreachable_force};
+use crate::contact::root_search::{Sample, crossing};
+use crate::contact::spring_load::sample;
+use crate::contact::{Contact, FrictionState, NormalForce, Press, Record, Until, Workspace};
+use crate::error::Result;
 use crate::geometry::Pose;
-use crate::objects::Model;
-use crate::world::{EvenGrid, Patch, Taxel, TaxelTree};
+use crate::world::{EvenGrid, Patch, Taxel, Travelling};
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Length of a step along the path, relative to the shortest stroke of a taxel. If larger, a short peak of the force may be missed, and small spheres may
 /// pass through; if smaller, presses are wasted.
@@ -16,23 +21,10 @@ const FRICTION_STEP: f64 = 0.25;
 /// Maximum number of steps along a path. If strokes are far shorter than the path, the steps become longer.
 const MAX_STEPS: f64 = 4096.0;
 
-/// Path of a patch along a direction (unit vector, in the patch frame), with the poses of the objects before the motion.
-pub(crate) struct ApproachPath<'a> {
-    pub patch: &'a Patch,
-    pub objects: &'a [Model],
-    pub patch_from_objects: &'a [Pose],
-    pub direction: DVec3,
-    pub contacts: ContactRequest,
-    pub workspace: &'a mut Workspace,
-}
-
-/// Selection whether a press along a path records contacts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum ContactRequest {
-    /// Contacts are recorded at the end of the path.
-    AtEnd,
-    /// No contacts are recorded.
-    None,
+/// Press of a patch along a direction, with the scratch memory of its steps.
+pub(crate) struct Path<'a> {
+    press: &'a Press<'a>,
+    workspace: &'a mut Workspace,
 }
 
 impl Patch {
@@ -48,122 +40,211 @@ impl Patch {
     }
 }
 
-impl ApproachPath<'_> {
+impl<'a> Path<'a> {
+    /// Creates the path of a press whose numbers have been checked.
+    pub fn new(press: &'a Press, workspace: &'a mut Workspace) -> Self {
+        Self { press, workspace }
+    }
+
+    /// Presses the patch until the condition of the press is met. Returns `None` if the path misses all objects.
+    pub fn run(&mut self) -> Result<Option<Contact>> {
+        let Press { until, record, .. } = *self.press;
+        match until {
+            Until::Pose => return Ok(Some(self.at(DVec3::ZERO, record))),
+            Until::Force(force) => return self.to_force(force),
+            Until::Depth(_) | Until::Travel(_) => {}
+        }
+        let travelling = self.travelling();
+        if let (Until::Travel(travel), true) = (until, travelling.is_flat) {
+            return Ok(Some(self.through(&travelling, travel)));
+        }
+        let travels = self.travels()?;
+        Ok(match travels {
+            Some([_, travel]) if travelling.is_flat => Some(self.through(&travelling, travel)),
+            _ => self.steps(travels, DVec3::ZERO, None),
+        })
+    }
+
+    /// Returns the copy of the patch's taxels whose axes are replaced by the direction of travel.
+    fn travelling(&self) -> Cow<'a, Travelling> {
+        match self.press.along == DVec3::Z {
+            true => Cow::Borrowed(self.press.patch.ahead()),
+            false => Cow::Owned(Travelling::new(self.press.patch, self.press.along)),
+        }
+    }
+
+    /// Returns the travels at first contact and at the end of the path, metres. Returns `None` if no taxel is touched.
+    pub fn travels(&mut self) -> Result<Option<[f64; 2]>> {
+        let until = match self.press.until {
+            Until::Pose => return Ok(Some([0.0; 2])),
+            Until::Force(force) => match self.to_force(force)? {
+                Some(contact) => Until::Travel(contact.travel),
+                None => return Ok(None),
+            },
+            until => until,
+        };
+        let first = first_contact(self.press, &self.travelling());
+        let travels = first.map(|first| [first, until.limit(first)]);
+        let is_ahead = |[first, end]: &[f64; 2]| first < end || matches!(until, Until::Depth(_));
+        Ok(travels.filter(is_ahead))
+    }
+
     /// Returns the number of steps with friction for a part of the path with this `length`, metres.
     pub fn n_friction_steps(&self, length: f64) -> usize {
-        let step = FRICTION_STEP * self.patch.least(|taxel| taxel.radius);
+        let step = FRICTION_STEP * self.press.patch.least(|taxel| taxel.radius);
         // Rounding of the length must not add a step.
         let n_steps = (length / step * (1.0 - 1e-9)).ceil();
         let n_steps = n_steps.clamp(1.0, MAX_STEPS) as usize;
-        n_steps.max(self.patch.n_steps(length))
-    }
-
-    /// Presses the patch after a `travel` along the path, metres.
-    pub fn press(&mut self, travel: f64) -> Contact {
-        self.press_at(travel * self.direction)
+        n_steps.max(self.press.patch.n_steps(length))
     }
 
     /// Presses after the patch has moved by a vector (metres, in the patch frame), computed as the opposite motion of the objects.
-    pub fn press_at(&mut self, moved: DVec3) -> Contact {
-        self.at(moved, press::deflect_with_contacts)
+    fn at(&mut self, moved: DVec3, record: Record) -> Contact {
+        let Press { patch, objects, .. } = *self.press;
+        let poses = self.moved_poses(moved);
+        let contact = press::press(patch, (objects, &poses), record, self.workspace);
+        self.workspace.poses = poses;
+        contact
     }
 
     /// Presses a flat patch along its axis from the front, using taxels whose axes are the direction of travel.
-    pub fn press_through(&mut self, taxels: &TaxelTree, travel: f64) -> Contact {
-        let contact = self.at(
-            travel * self.direction,
-            |patch, objects, poses, workspace| {
-                press::push_tree(
-                    (taxels, None),
-                    patch.n_taxels(),
-                    (objects, poses),
-                    workspace,
-                );
-                press::stop(patch, workspace)
-            },
-        );
+    fn through(&mut self, travelling: &Travelling, travel: f64) -> Contact {
+        let Press {
+            patch,
+            objects,
+            along,
+            record,
+            ..
+        } = *self.press;
+        let grid = patch.even_grid().filter(|_| along == DVec3::Z);
+        let endless = grid.map(|grid| EvenGrid {
+            behind: f64::NEG_INFINITY,
+            ..*grid
+        });
+        let poses = self.moved_poses(travel * along);
+        let taxels = (&travelling.taxels, endless.as_ref());
+        let placed = (objects, &poses[..]);
+        press::push_tree(taxels, patch.n_taxels(), placed, self.workspace);
+        let contact = press::limit(patch, placed, record, self.workspace);
+        self.workspace.poses = poses;
         Contact { travel, ..contact }
     }
 
-    /// Presses a flat patch along its axis from the front as [`press_through`](Self::press_through) does, and records the contacts.
-    pub fn press_through_with_contacts(&mut self, taxels: &TaxelTree, travel: f64) -> Contact {
-        let is_along_z = self.direction == DVec3::Z;
-        let press =
-            |patch: &Patch, objects: &[Model], poses: &[Pose], workspace: &mut Workspace| {
-                let along_axis = patch.even_grid().filter(|_| is_along_z);
-                let endless = along_axis.map(|grid| EvenGrid {
-                    behind: f64::NEG_INFINITY,
-                    ..*grid
-                });
-                let (n_taxels, placed) = (patch.n_taxels(), (objects, poses));
-                press::push_tree((taxels, endless.as_ref()), n_taxels, placed, workspace);
-                press::meet(patch, objects, poses, workspace)
-            };
-        let contact = self.at(travel * self.direction, press);
-        Contact { travel, ..contact }
-    }
-
-    fn at(
-        &mut self,
-        moved: DVec3,
-        press: impl FnOnce(&Patch, &[Model], &[Pose], &mut Workspace) -> Contact,
-    ) -> Contact {
+    /// Returns the poses of the objects after the patch has moved by a vector, metres, in memory of the workspace.
+    fn moved_poses(&mut self, moved: DVec3) -> Vec<Pose> {
         let mut poses = std::mem::take(&mut self.workspace.poses);
         poses.clear();
-        let back = -moved;
-        poses.extend(self.patch_from_objects.iter().map(|pose| Pose {
-            translation: pose.translation + back,
+        poses.extend(self.press.poses.iter().map(|pose| Pose {
+            translation: pose.translation - moved,
             ..*pose
         }));
-        let counts = press(self.patch, self.objects, &poses, self.workspace);
-        self.workspace.poses = poses;
-        counts
+        poses
     }
 
     /// Presses the patch from one travel to another and then slides it along a straight line; `None` if the patch meets nothing.
-    pub fn press_and_slide(
+    pub fn steps(
         &mut self,
         travels: Option<[f64; 2]>,
         slide: DVec3,
         mut friction: Option<&mut FrictionState>,
     ) -> Option<Contact> {
+        let Press {
+            patch,
+            along,
+            record,
+            ..
+        } = *self.press;
         self.workspace.hold([]);
         if let Some(friction) = &mut friction {
-            friction.step(self.patch, &[], &[], NormalForce::Springs);
+            friction.step(patch, &[], &[], NormalForce::Springs);
         }
         let Some([first, travel]) = travels else {
-            press::deflect(self.patch, &[], &[], self.workspace);
+            press::press(patch, (&[], &[]), record, self.workspace);
             return None;
         };
         let n_steps = |length| match friction {
             Some(_) => self.n_friction_steps(length),
-            None => self.patch.n_steps(length),
+            None => patch.n_steps(length),
         };
-        let direction = self.direction;
         let depth = travel - first;
-        let pressed = parts([first, travel], n_steps(depth)).map(|part| part * direction);
+        let pressed = parts([first, travel], n_steps(depth)).map(|part| part * along);
         let length = slide.length();
         let n_slides = if length > 0.0 { n_steps(length) } else { 0 };
-        let slid = parts([0.0, 1.0], n_slides).map(|part| travel * direction + part * slide);
+        let slid = parts([0.0, 1.0], n_slides).map(|part| travel * along + part * slide);
         let mut contact = Contact::default();
         let mut places = pressed.chain(slid).peekable();
         while let Some(place) = places.next() {
             let is_last = places.peek().is_none();
-            let are_asked = is_last && self.contacts == ContactRequest::AtEnd;
-            contact = match are_asked || friction.is_some() {
-                true => self.press_at(place),
-                false => self.at(place, press::deflect),
+            let record = match is_last || friction.is_some() {
+                true => record,
+                false => Record::Deflections,
             };
+            contact = self.at(place, record);
             if !is_last {
                 self.workspace.hold_touched();
             }
             if let Some(friction) = &mut friction {
                 let (contacts, poses) = (self.workspace.contacts(), &self.workspace.poses);
-                friction.step(self.patch, contacts, poses, NormalForce::Springs);
+                friction.step(patch, contacts, poses, NormalForce::Springs);
             }
         }
         self.workspace.hold([]);
         Some(Contact { travel, ..contact })
+    }
+
+    /// Increases the travel until the springs carry `force` newtons, and records the contacts; returns `None` if the path misses all objects.
+    fn to_force(&mut self, force: f64) -> Result<Option<Contact>> {
+        self.workspace.hold([]);
+        let travel = self.travel_to_force(force);
+        let contact = travel.map(|travel| {
+            let contact = self.at(travel.unwrap_or(0.0) * self.press.along, Record::Contacts);
+            travel.map(|travel| Contact { travel, ..contact })
+        });
+        self.workspace.hold([]);
+        contact
+    }
+
+    fn travel_to_force(&mut self, force: f64) -> Result<Option<f64>> {
+        let Some(ends) = meeting(self.press) else {
+            return Ok(None);
+        };
+        let bracket = self.bracket(ends, force)?;
+        Ok(bracket.map(|bracket| {
+            let tolerance = FORCE_ACCURACY * force;
+            crossing(bracket, (force, tolerance), |travel| self.sample(travel))
+        }))
+    }
+
+    /// Returns two travels, metres, between which the springs reach `force`: smaller at the first, not smaller at the second. Returns `None` if nothing is
+    /// touched.
+    fn bracket(&mut self, [start, end]: [f64; 2], force: f64) -> Result<Option<[f64; 2]>> {
+        let mut largest = (0.0, start);
+        let n_steps = self.press.patch.n_steps(end - start);
+        let mut low = start;
+        for k in 1..=n_steps {
+            let high = start + (end - start) * (k as f64 / n_steps as f64);
+            let carried = self.sample(high).value;
+            if carried >= force {
+                return Ok(Some([low, high]));
+            }
+            if carried > largest.0 {
+                largest = (carried, high);
+            }
+            low = high;
+            self.workspace.hold_touched();
+        }
+        if largest.0 == 0.0 {
+            return Ok(None);
+        }
+        let where_to = format!("the patch has gone {:.3} mm", 1e3 * largest.1);
+        Err(unreachable_force(force, largest.0, &where_to))
+    }
+
+    /// Returns the total spring force at a travel, N, and its derivative with respect to the travel, N/m.
+    fn sample(&mut self, travel: f64) -> Sample {
+        let Press { patch, along, .. } = *self.press;
+        self.at(travel * along, Record::Contacts);
+        sample(patch, self.workspace.contacts(), -along, |_| true)
     }
 }
 
@@ -176,23 +257,18 @@ fn parts([start, end]: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
 }
 
 /// Returns the travels between which the bounding ball of the moving patch meets the bounding balls of objects; `None` if none meet.
-pub(crate) fn meeting(
-    patch: &Patch,
-    objects: &[Model],
-    patch_from_objects: &[Pose],
-    direction: DVec3,
-) -> Option<[f64; 2]> {
-    let tree = patch.tree();
+pub(super) fn meeting(press: &Press) -> Option<[f64; 2]> {
+    let tree = press.patch.tree();
     let around = tree.bounds()?;
     let center = around.center();
     let radius = 0.5 * around.size().length() + tree.largest_radius();
-    let pairs = objects.iter().zip(patch_from_objects);
+    let pairs = press.objects.iter().zip(press.poses);
     let meetings = pairs.filter_map(|(object, pose)| {
         let bounds = object.bounds();
         let away = pose.transform_point(bounds.center()) - center;
         let reach = radius + 0.5 * bounds.size().length();
-        let ahead = away.dot(direction);
-        let half2 = reach * reach - away.cross(direction).length_squared();
+        let ahead = away.dot(press.along);
+        let half2 = reach * reach - away.cross(press.along).length_squared();
         (half2 > 0.0).then(|| [ahead - half2.sqrt(), ahead + half2.sqrt()])
     });
     meetings.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])

@@ -8,29 +8,16 @@ use crate::contact::mesh::skin_mesh::MeshAt;
 use crate::contact::mesh::{LeafStops, SearchStack, stop_leaf};
 use crate::contact::taxel_contact::TaxelContact;
 use crate::contact::workspace::HeldTaxel;
-use crate::contact::{Contact, Workspace};
+use crate::contact::{Contact, Record, Workspace};
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
 use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
 use crate::world::{EvenGrid, LEAF, Patch, PlacedTaxel, TaxelTree};
 use glam::DVec3;
 
-/// Raises the deflection of each taxel to the deflection that contact with an object requires, not limited to the stroke.
-pub(crate) fn push(
-    patch: &Patch,
-    objects: &[Model],
-    patch_from_objects: &[Pose],
-    workspace: &mut Workspace,
-) {
-    let taxels = (patch.tree(), patch.even_grid());
-    let placed = (objects, patch_from_objects);
-    push_tree(taxels, patch.n_taxels(), placed, workspace);
-    push_held(patch, objects, patch_from_objects, workspace);
-}
-
 /// Raises the deflections of the taxels of a tree, which may have been built from an even grid. The function ignores object parts that are marked as held by
 /// `Workspace::hold`.
-pub(crate) fn push_tree(
+pub(super) fn push_tree(
     (taxels, even_grid): (&TaxelTree, Option<&EvenGrid>),
     n_taxels: usize,
     (objects, patch_from_objects): (&[Model], &[Pose]),
@@ -68,8 +55,7 @@ pub(crate) fn push_tree(
 /// push their taxels in any case.
 fn push_held(
     patch: &Patch,
-    objects: &[Model],
-    patch_from_objects: &[Pose],
+    (objects, patch_from_objects): (&[Model], &[Pose]),
     workspace: &mut Workspace,
 ) {
     let held = std::mem::take(&mut workspace.held);
@@ -192,19 +178,34 @@ fn push_by_mesh(
     );
 }
 
-/// Computes the deflections of the taxels and records the object part that determines each deflection.
-pub(crate) fn deflect(
+/// Presses a patch on objects at their given poses.
+pub(crate) fn press(
     patch: &Patch,
-    objects: &[Model],
-    patch_from_objects: &[Pose],
+    placed: (&[Model], &[Pose]),
+    record: Record,
     workspace: &mut Workspace,
 ) -> Contact {
-    push(patch, objects, patch_from_objects, workspace);
-    stop(patch, workspace)
+    let taxels = (patch.tree(), patch.even_grid());
+    push_tree(taxels, patch.n_taxels(), placed, workspace);
+    push_held(patch, placed, workspace);
+    limit(patch, placed, record, workspace)
+}
+
+/// Limits the deflections of the touched taxels to their strokes and, if they are recorded, computes the contacts of these taxels.
+pub(super) fn limit(
+    patch: &Patch,
+    placed: (&[Model], &[Pose]),
+    record: Record,
+    workspace: &mut Workspace,
+) -> Contact {
+    match record {
+        Record::Deflections => stop(patch, workspace),
+        Record::Contacts => meet(patch, placed, workspace),
+    }
 }
 
 /// Limits the deflections of the touched taxels to their strokes.
-pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
+fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
     let mut counts = Contact::default();
     for &taxel in &workspace.touched {
         let deflection = &mut workspace.deflections[taxel as usize];
@@ -216,22 +217,10 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
     counts
 }
 
-/// Presses a patch on objects at their given poses and records the contacts.
-pub(crate) fn deflect_with_contacts(
-    patch: &Patch,
-    objects: &[Model],
-    patch_from_objects: &[Pose],
-    workspace: &mut Workspace,
-) -> Contact {
-    push(patch, objects, patch_from_objects, workspace);
-    meet(patch, objects, patch_from_objects, workspace)
-}
-
 /// Limits the deflections of the touched taxels to their strokes, and records the contacts of these taxels.
-pub(crate) fn meet(
+fn meet(
     patch: &Patch,
-    objects: &[Model],
-    patch_from_objects: &[Pose],
+    (objects, patch_from_objects): (&[Model], &[Pose]),
     workspace: &mut Workspace,
 ) -> Contact {
     workspace.touched.sort_unstable();

@@ -1,9 +1,6 @@
 //! Laws of approaches by a skin of any layout: comparison with the grid kernel, and with all pairs of spheres and taxels.
 
-use bubbletouch_sim::contact::{
-    Approach, Contact, Goal, Row, Workspace, first_contact, press, press_into, press_onto_zeros,
-    press_to_depth, press_to_force, press_to_travel, press_with_contacts,
-};
+use bubbletouch_sim::contact::{Contact, Press, Row, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
 use bubbletouch_sim::world::{ArrayLayout, Grid, Layout, Patch, Taxels};
@@ -32,7 +29,6 @@ fn random_union(rng: &mut impl Rng) -> SphereUnion {
 fn on_a_grid_it_is_the_grids_own_press() {
     let mut rng = rng("approach", 0);
     let patch = Patch::grid(GRID, TAXEL).unwrap();
-    let approach = Approach::new(&patch, DVec3::Z).unwrap();
     let (mut workspace, mut of_grid) = (Workspace::new(), Workspace::new());
     let (mut n_touched, mut n_deep) = (0, 0);
     for case in 0..400 {
@@ -49,10 +45,9 @@ fn on_a_grid_it_is_the_grids_own_press() {
             .map(|_| random_pose(&mut rng, 0.03))
             .collect();
         let depth = TAXEL.stroke * 10f64.powf(rng.gen_range(-2.0..0.5));
-        let touch = approach
-            .press_to_depth(&objects, &poses, depth, &mut workspace)
-            .unwrap();
-        let contact = press_to_depth(&patch, &objects, &poses, depth, &mut of_grid).unwrap();
+        let press = Press::new(&patch, &objects, &poses, Until::Depth(depth));
+        let touch = press.with_contacts().run(&mut workspace).unwrap();
+        let contact = press.run(&mut of_grid).unwrap();
         assert_eq!(touch.is_some(), contact.is_some(), "case {case}");
         for (own, grid) in workspace.deflections().iter().zip(of_grid.deflections()) {
             assert!((own - grid).abs() < 1e-12, "case {case}: {own} for {grid}");
@@ -92,22 +87,22 @@ fn a_press_into_a_row_leaves_the_frame_and_nothing_else_there() {
         };
         let (objects, poses) = ([object], [random_pose(&mut rng, 0.03)]);
         let goal = match case % 4 {
-            0 => Goal::Pose,
-            1 => Goal::Depth(1e-3),
-            2 => Goal::Travel(rng.gen_range(-0.02..0.02)),
-            _ => Goal::Force(1e-3),
+            0 => Until::Pose,
+            1 => Until::Depth(1e-3),
+            2 => Until::Travel(rng.gen_range(-0.02..0.02)),
+            _ => Until::Force(1e-3),
         };
-        let pressed = press(&patch, &objects, &poses, goal, &mut workspace).unwrap();
+        let press = Press::new(&patch, &objects, &poses, goal);
+        let pressed = press.run(&mut workspace).unwrap();
         let n = patch.n_taxels();
         for before in [f64::NAN, 0.0] {
             let (mut doubles, mut singles) = (vec![before; n], vec![before as f32; n]);
             for row in [Row::Double(&mut doubles), Row::Single(&mut singles)] {
-                let press_into = match before == 0.0 {
-                    true => press_onto_zeros,
-                    false => press_into,
+                let same = match before == 0.0 {
+                    true => press.write_onto_zeros(row, &mut into),
+                    false => press.write(row, &mut into),
                 };
-                let same = press_into(&patch, &objects, &poses, goal, row, &mut into).unwrap();
-                assert_eq!(same, pressed, "case {case}");
+                assert_eq!(same.unwrap(), pressed, "case {case}");
                 assert_eq!(into.deflections(), workspace.deflections(), "case {case}");
             }
             assert_eq!(doubles, workspace.deflections(), "case {case}");
@@ -135,11 +130,14 @@ fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
         let skin = Patch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap();
         let direction =
             DVec3::new(rng.gen_range(-0.3..0.3), rng.gen_range(-0.3..0.3), 1.0).normalize();
-        let approach = Approach::new(&skin, direction).unwrap();
         let union = random_union(&mut rng);
         let pose = random_pose(&mut rng, 0.05);
         let objects = [Model::from(union.clone())];
-        let found = approach.first_contact(&objects, &[pose]).unwrap();
+        let found = Press::new(&skin, &objects, &[pose], Until::Depth(0.0))
+            .along(direction)
+            .run(&mut workspace)
+            .unwrap();
+        let found = found.map(|contact| contact.travel);
         let mut expected = f64::INFINITY;
         for sphere in union.spheres() {
             for center in skin.layout().centers() {
@@ -168,7 +166,9 @@ fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
                 translation: pose.translation - travel * direction,
                 ..pose
             };
-            press_with_contacts(&skin, &objects, &[moved], &mut workspace)
+            Press::new(&skin, &objects, &[moved], Until::Pose)
+                .with_contacts()
+                .run(&mut workspace)
                 .unwrap()
                 .unwrap_or_default()
                 .n_touched
@@ -183,19 +183,21 @@ fn what_was_pressed_goes_on_being_pressed_behind_the_substrate() {
     let mut workspace = Workspace::new();
     let layout = ArrayLayout::Cap.taxels(&GRID, 0.03).unwrap();
     let skin = Patch::new("cap", layout, Taxels::Equal(TAXEL)).unwrap();
-    let approach = Approach::new(&skin, DVec3::Z).unwrap();
     let pin = Sphere {
         center: DVec3::ZERO,
         radius: 0.5e-3,
     };
     let objects = [SphereUnion::new(vec![pin]).unwrap().into()];
     let pose = Pose::from_translation(0.05 * DVec3::Z);
-    let touch = approach
-        .press_to_depth(&objects, &[pose], 3.0 * TAXEL.stroke, &mut workspace)
+    let touch = Press::new(&skin, &objects, &[pose], Until::Depth(3.0 * TAXEL.stroke))
+        .with_contacts()
+        .run(&mut workspace)
         .unwrap();
     assert!(touch.unwrap().n_saturated >= 1);
     let moved = Pose::from_translation((0.05 - touch.unwrap().travel) * DVec3::Z);
-    let there = press_with_contacts(&skin, &objects, &[moved], &mut workspace)
+    let there = Press::new(&skin, &objects, &[moved], Until::Pose)
+        .with_contacts()
+        .run(&mut workspace)
         .unwrap()
         .unwrap_or_default();
     assert_eq!(there.n_touched, 0, "without its way it is behind");
@@ -229,30 +231,29 @@ fn taxels_that_do_not_know_their_grid_are_pressed_alike() {
                 n_touched[goal] += a.n_touched;
             };
         let depth = TAXEL.stroke * 10f64.powf(rng.gen_range(-2.0..0.5));
-        let a = press_to_depth(&grid, &objects, &poses, depth, &mut of_grid).unwrap();
-        let b = press_to_depth(&loose, &objects, &poses, depth, &mut of_loose).unwrap();
+        let a = Press::new(&grid, &objects, &poses, Until::Depth(depth))
+            .run(&mut of_grid)
+            .unwrap();
+        let b = Press::new(&loose, &objects, &poses, Until::Depth(depth))
+            .run(&mut of_loose)
+            .unwrap();
         same(a, b, [&of_grid, &of_loose], 0);
-        let first = first_contact(&grid, &objects, &poses, &mut of_grid).unwrap();
-        let found = first_contact(&loose, &objects, &poses, &mut of_loose).unwrap();
-        let (Some(first), Some(found)) = (first, found) else {
-            assert_eq!((first, found), (None, None), "case {case}");
+        let Some(contact) = a else {
             continue;
         };
-        assert!(
-            (first - found).abs() < 1e-12,
-            "case {case}: {first} {found}"
-        );
-        let travel = first + rng.gen_range(-1e-3..0.02);
-        let a = press_to_travel(&grid, &objects, &poses, travel, &mut of_grid)
+        let travel = contact.travel - depth + rng.gen_range(-1e-3..0.02);
+        let a = Press::new(&grid, &objects, &poses, Until::Travel(travel))
+            .run(&mut of_grid)
             .unwrap()
             .unwrap_or_default();
-        let b = press_to_travel(&loose, &objects, &poses, travel, &mut of_loose)
+        let b = Press::new(&loose, &objects, &poses, Until::Travel(travel))
+            .run(&mut of_loose)
             .unwrap()
             .unwrap_or_default();
         same(Some(a), Some(b), [&of_grid, &of_loose], 1);
         let force = 10f64.powf(rng.gen_range(-3.0..0.0));
-        let a = press_to_force(&grid, &objects, &poses, force, &mut of_grid);
-        let b = press_to_force(&loose, &objects, &poses, force, &mut of_loose);
+        let a = Press::new(&grid, &objects, &poses, Until::Force(force)).run(&mut of_grid);
+        let b = Press::new(&loose, &objects, &poses, Until::Force(force)).run(&mut of_loose);
         assert_eq!(a.is_ok(), b.is_ok(), "case {case}: {force} N");
         if let (Ok(a), Ok(b)) = (a, b) {
             same(a, b, [&of_grid, &of_loose], 2);

@@ -3,7 +3,7 @@
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Outcome, PlacedSkin,
 };
-use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
+use bubbletouch_sim::contact::{Press, Until, Workspace, spring_load};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
 use bubbletouch_sim::random::Seed;
@@ -126,7 +126,10 @@ fn the_skin_feels_the_weight_that_rests_on_it() {
     assert_eq!(rest.outcome, Outcome::AtRest);
     let objects = [Model::from(union.clone())];
     let mut workspace = Workspace::new();
-    press_with_contacts(&patch, &objects, &[rest.pose], &mut workspace).unwrap();
+    Press::new(&patch, &objects, &[rest.pose], Until::Pose)
+        .with_contacts()
+        .run(&mut workspace)
+        .unwrap();
     let load = spring_load(&patch, workspace.contacts());
     // For taxels between two spheres, only one sphere counts as deciding, so the lateral forces may differ slightly.
     assert!(
@@ -200,13 +203,10 @@ fn two_skins_in_a_v_carry_a_ball_together() {
         .map(|skin| {
             let pose = skin.world_from_patch.inverse().compose(&rest.pose);
             let mut workspace = Workspace::new();
-            press_with_contacts(
-                &patch,
-                &[Model::from(union.clone())],
-                &[pose],
-                &mut workspace,
-            )
-            .unwrap();
+            Press::new(&patch, &[Model::from(union.clone())], &[pose], Until::Pose)
+                .with_contacts()
+                .run(&mut workspace)
+                .unwrap();
             let force = spring_load(&patch, workspace.contacts()).on_object.force;
             (skin.world_from_patch.rotation * force).z
         })

@@ -1,10 +1,7 @@
 //! Laws of presses to a force: comparison with slow bisection and with a press to the travel found, and errors for unreachable forces.
 
 use crate::random_scenes::Scene;
-use bubbletouch_sim::contact::{
-    Approach, Workspace, first_contact, press_to_depth, press_to_force, press_to_travel,
-    press_with_contacts, spring_load,
-};
+use bubbletouch_sim::contact::{Press, Until, Workspace, spring_load};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::TriangleMesh;
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
@@ -47,6 +44,12 @@ fn random_scene(name: &str, case: u64) -> (Scene, Vec<Pose>) {
     (Scene { patch, objects }, poses)
 }
 
+/// Returns the travel at first contact, metres.
+fn first_contact(scene: &Scene, poses: &[Pose]) -> f64 {
+    let press = Press::new(&scene.patch, &scene.objects, poses, Until::Depth(0.0));
+    press.run(&mut Workspace::new()).unwrap().unwrap().travel
+}
+
 fn force_of(workspace: &Workspace) -> f64 {
     TAXEL.stiffness * workspace.deflections().iter().sum::<f64>()
 }
@@ -56,7 +59,9 @@ fn reachable_force(scene: &Scene, poses: &[Pose], case: u64) -> Option<f64> {
     let mut workspace = Workspace::new();
     let mut rng = rng("share", case);
     let depth = TAXEL.stroke * 10f64.powf(rng.gen_range(-3.0..0.5));
-    press_to_depth(&scene.patch, &scene.objects, poses, depth, &mut workspace).unwrap()?;
+    Press::new(&scene.patch, &scene.objects, poses, Until::Depth(depth))
+        .run(&mut workspace)
+        .unwrap()?;
     Some(force_of(&workspace) * rng.gen_range(0.5..1.0))
 }
 
@@ -67,20 +72,22 @@ fn a_touch_to_a_force_is_where_a_slow_bisection_finds_it() {
     for case in 0..300 {
         let (scene, poses) = random_scene("bisection", case);
         let Some(force) = reachable_force(&scene, &poses, case) else {
-            let missed = press_to_force(&scene.patch, &scene.objects, &poses, 1.0, &mut workspace);
+            let missed = Press::new(&scene.patch, &scene.objects, &poses, Until::Force(1.0))
+                .run(&mut workspace);
             assert!(missed.unwrap().is_none());
             assert!(workspace.deflections().iter().all(|&d| d == 0.0));
             continue;
         };
-        let first = first_contact(&scene.patch, &scene.objects, &poses, &mut slow)
-            .unwrap()
-            .unwrap();
-        let contact = press_to_force(&scene.patch, &scene.objects, &poses, force, &mut workspace);
+        let first = first_contact(&scene, &poses);
+        let contact = Press::new(&scene.patch, &scene.objects, &poses, Until::Force(force))
+            .run(&mut workspace);
         let contact = contact.unwrap().unwrap();
         let (mut low, mut high) = (first, first + 4.0 * TAXEL.stroke);
         while 0.5 * (low + high) > low && 0.5 * (low + high) < high {
             let middle = 0.5 * (low + high);
-            press_to_travel(&scene.patch, &scene.objects, &poses, middle, &mut slow).unwrap();
+            Press::new(&scene.patch, &scene.objects, &poses, Until::Travel(middle))
+                .run(&mut slow)
+                .unwrap();
             let carries_less = force_of(&slow) < force;
             *(if carries_less { &mut low } else { &mut high }) = middle;
         }
@@ -105,25 +112,24 @@ fn a_touch_to_a_force_is_the_press_at_its_travel_and_at_its_depth() {
         let Some(force) = reachable_force(&scene, &poses, case) else {
             continue;
         };
-        let contact =
-            press_to_force(&scene.patch, &scene.objects, &poses, force, &mut workspace).unwrap();
+        let contact = Press::new(&scene.patch, &scene.objects, &poses, Until::Force(force))
+            .run(&mut workspace)
+            .unwrap();
         let contact = contact.unwrap();
-        let there = press_to_travel(
+        let there = Press::new(
             &scene.patch,
             &scene.objects,
             &poses,
-            contact.travel,
-            &mut other,
+            Until::Travel(contact.travel),
         )
+        .run(&mut other)
         .unwrap()
         .unwrap_or_default();
         assert_eq!(contact, there);
         assert_eq!(workspace.deflections(), other.deflections(), "to the bit");
-        let depth = contact.travel
-            - first_contact(&scene.patch, &scene.objects, &poses, &mut other)
-                .unwrap()
-                .unwrap();
-        press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut other)
+        let depth = contact.travel - first_contact(&scene, &poses);
+        Press::new(&scene.patch, &scene.objects, &poses, Until::Depth(depth))
+            .run(&mut other)
             .unwrap()
             .unwrap();
         for (a, b) in workspace.deflections().iter().zip(other.deflections()) {
@@ -144,9 +150,9 @@ fn more_force_goes_further() {
         let mut before = f64::NEG_INFINITY;
         for k in 1..=20 {
             let force = most * f64::from(k) / 20.0;
-            let contact =
-                press_to_force(&scene.patch, &scene.objects, &poses, force, &mut workspace)
-                    .unwrap();
+            let contact = Press::new(&scene.patch, &scene.objects, &poses, Until::Force(force))
+                .run(&mut workspace)
+                .unwrap();
             let travel = contact.unwrap().travel;
             assert!(travel > before, "case {case}: {force} N");
             before = travel;
@@ -173,13 +179,13 @@ fn a_single_taxel_is_a_spring() {
     let scene = ball_over(grid, 0.03);
     let mut workspace = Workspace::new();
     for force in [1e-9, 0.1, 0.4, 0.5] {
-        let contact = press_to_force(
+        let contact = Press::new(
             &scene.patch,
             &scene.objects,
             &[Pose::IDENTITY],
-            force,
-            &mut workspace,
+            Until::Force(force),
         )
+        .run(&mut workspace)
         .unwrap();
         let travel = contact.unwrap().travel;
         let expected = 0.1 - 0.03 - TAXEL.radius + force / TAXEL.stiffness;
@@ -196,13 +202,13 @@ fn what_cannot_be_reached_is_refused_with_the_largest_force() {
     };
     let mut workspace = Workspace::new();
     let mut message = |scene: &Scene, force: f64| {
-        let result = press_to_force(
+        let result = Press::new(
             &scene.patch,
             &scene.objects,
             &[Pose::IDENTITY],
-            force,
-            &mut workspace,
-        );
+            Until::Force(force),
+        )
+        .run(&mut workspace);
         result.unwrap_err().to_string()
     };
     let scene = ball_over(grid, 0.03);
@@ -219,13 +225,13 @@ fn what_cannot_be_reached_is_refused_with_the_largest_force() {
     );
     // The force of all taxels at their strokes can be reached, but no larger force.
     let scene = ball_over(grid, 0.03);
-    let all = press_to_force(
+    let all = Press::new(
         &scene.patch,
         &scene.objects,
         &[Pose::IDENTITY],
-        4.0,
-        &mut workspace,
+        Until::Force(4.0),
     )
+    .run(&mut workspace)
     .unwrap();
     assert_eq!(all.unwrap().n_touched, 8);
 }
@@ -269,33 +275,26 @@ fn no_part_passes_through_a_skin_on_the_way_to_a_force() {
         let scene = Scene::of_one(&patch, &object);
         let start = [Pose::from_translation(0.01 * DVec3::Z)];
         for force in [1.0, 50.0] {
-            let pressed =
-                press_to_force(&scene.patch, &scene.objects, &start, force, &mut workspace);
+            let pressed = Press::new(&scene.patch, &scene.objects, &start, Until::Force(force))
+                .run(&mut workspace);
             let pressed = pressed.unwrap().unwrap();
             let felt = force_of(&workspace);
             assert!((felt - force).abs() < 1e-9, "{felt} of {force} N");
-            let first = first_contact(&scene.patch, &scene.objects, &start, &mut workspace)
-                .unwrap()
-                .unwrap();
+            let first = first_contact(&scene, &start);
             let has_gone_through = pressed.travel - first > 0.04;
             assert_eq!(has_gone_through, force > 10.0);
-            let skin = patch.clone();
-            let objects = &scene.objects;
-            let found = Approach::new(&skin, DVec3::Z).unwrap().press_to_force(
-                objects,
-                &start,
-                force,
-                &mut on_skin,
-            );
+            let found = Press::new(&scene.patch, &scene.objects, &start, Until::Force(force))
+                .with_contacts()
+                .run(&mut on_skin);
             let found = found.unwrap().unwrap();
             assert!((found.travel - pressed.travel).abs() < 1e-12);
-            press_to_travel(
+            Press::new(
                 &scene.patch,
                 &scene.objects,
                 &start,
-                found.travel,
-                &mut workspace,
+                Until::Travel(found.travel),
             )
+            .run(&mut workspace)
             .unwrap();
             for (a, b) in on_skin.deflections().iter().zip(workspace.deflections()) {
                 assert!((a - b).abs() < 1e-12, "{force} N: {a} {b}");
@@ -305,7 +304,9 @@ fn no_part_passes_through_a_skin_on_the_way_to_a_force() {
         // Afterwards the workspace can press objects at their given poses, with correct results.
         let behind = [Pose::from_translation(-0.3 * DVec3::Z)];
         assert_eq!(
-            press_with_contacts(&skin, &scene.objects, &behind, &mut on_skin)
+            Press::new(&skin, &scene.objects, &behind, Until::Pose)
+                .with_contacts()
+                .run(&mut on_skin)
                 .unwrap()
                 .unwrap_or_default()
                 .n_touched,
@@ -359,12 +360,10 @@ fn a_skin_moved_to_a_force_carries_it_and_first_there() {
     for case in 0..200 {
         let (skin, objects, pose, way) = random_way(case);
         let force = 10f64.powf(rng("force", case).gen_range(-3.0..0.5));
-        let press = Approach::new(&skin, way).unwrap().press_to_force(
-            &objects,
-            &[pose],
-            force,
-            &mut workspace,
-        );
+        let press = Press::new(&skin, &objects, &[pose], Until::Force(force))
+            .along(way)
+            .with_contacts()
+            .run(&mut workspace);
         let press = press.unwrap().unwrap();
         let carried = spring_load(&skin, workspace.contacts()).spring_force;
         // The last bit of a position in the scene, which is about 0.1 m large, changes the force by the stiffness of the touched taxels.
@@ -381,7 +380,10 @@ fn a_skin_moved_to_a_force_carries_it_and_first_there() {
         let deflections = workspace.deflections().to_vec();
         let mut force_at = |travel: f64| {
             let moved = Pose::from_translation(-travel * way).compose(&pose);
-            press_with_contacts(&skin, &objects, &[moved], &mut slow).unwrap();
+            Press::new(&skin, &objects, &[moved], Until::Pose)
+                .with_contacts()
+                .run(&mut slow)
+                .unwrap();
             spring_load(&skin, slow.contacts()).spring_force
         };
         for k in 0..100 {
@@ -408,8 +410,10 @@ fn ways_that_miss_or_cannot_be_gone_are_told_apart() {
     let skin = scene.patch.clone();
     let mut workspace = Workspace::new();
     let mut press = |pose: Pose, way: DVec3, force: f64| {
-        let approach = Approach::new(&skin, way)?;
-        approach.press_to_force(&scene.objects, &[pose], force, &mut workspace)
+        Press::new(&skin, &scene.objects, &[pose], Until::Force(force))
+            .along(way)
+            .with_contacts()
+            .run(&mut workspace)
     };
     let here = Pose::IDENTITY;
     assert!(press(here, DVec3::X, 1.0).unwrap().is_none());

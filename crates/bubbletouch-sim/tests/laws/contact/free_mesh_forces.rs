@@ -4,7 +4,7 @@ use super::free_meshes::{BALANCED, DOWN, Free, G, Rest, at, bed, on_bed, settle}
 use super::mesh::stopping_height_by_search;
 use crate::{reference_data, scans};
 use bubbletouch_sim::contact::equilibrium::{Outcome, Touched};
-use bubbletouch_sim::contact::{Workspace, press_with_contacts};
+use bubbletouch_sim::contact::{Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Triangle, TriangleMesh};
 use bubbletouch_sim::objects::{MeshModel, Model};
@@ -194,7 +194,10 @@ fn a_taxel_in_a_valley_shares_its_force_between_the_faces() {
         assert_eq!(n_ties(&rest), 1);
         let mut workspace = Workspace::new();
         let models = [free[0].model.clone()];
-        press_with_contacts(&patch, &models, &[found.pose], &mut workspace).unwrap();
+        Press::new(&patch, &models, &[found.pose], Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
+            .unwrap();
         let contact = workspace.contacts()[0];
         let alone = contact.push(100.0 * contact.deflection).force;
         assert!((alone.z - weight).abs() < 1e-6 * weight);

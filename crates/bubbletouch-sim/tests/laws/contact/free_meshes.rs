@@ -4,7 +4,7 @@ use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, HalfSpace, Obstacle, Outcome, PlacedSkin,
     RigidContact, TaxelLoad, Touched, overlap,
 };
-use bubbletouch_sim::contact::{Workspace, press_with_contacts};
+use bubbletouch_sim::contact::{Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::TriangleMesh;
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
@@ -130,7 +130,10 @@ fn residual(patch: &Patch, free: &[Free], rest: &Rest) -> f64 {
         .map(|solution| solution.pose)
         .collect();
     let mut workspace = Workspace::new();
-    press_with_contacts(patch, &models, &poses, &mut workspace).unwrap();
+    Press::new(patch, &models, &poses, Until::Pose)
+        .with_contacts()
+        .run(&mut workspace)
+        .unwrap();
     let mut sums: Vec<(DVec3, DVec3)> = free
         .iter()
         .zip(&poses)

@@ -1,8 +1,8 @@
 //! Laws of friction on skins: friction cone, dissipation, steps of any size, symmetry, and textbook solutions for slip.
 
 use bubbletouch_sim::contact::{
-    Approach, ContactMode, ContactModeCounts, DamperState, FrictionLoad, FrictionState,
-    NormalForce, Workspace, press_with_contacts, spring_load,
+    ContactMode, ContactModeCounts, DamperState, FrictionLoad, FrictionState, NormalForce, Press,
+    Until, Workspace, spring_load,
 };
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
@@ -59,7 +59,10 @@ impl Bench {
     }
 
     fn step(&mut self, poses: &[Pose]) -> ContactModeCounts {
-        press_with_contacts(&self.skin, &self.objects, poses, &mut self.workspace).unwrap();
+        Press::new(&self.skin, &self.objects, poses, Until::Pose)
+            .with_contacts()
+            .run(&mut self.workspace)
+            .unwrap();
         let contacts = self.workspace.contacts();
         self.state
             .step(&self.skin, contacts, poses, NormalForce::Springs)
@@ -246,12 +249,7 @@ fn a_pressed_block_sticks_to_its_springs_and_then_slides_with_mu_n() {
     let mut workspace = Workspace::new();
     let above = Pose::from_translation(0.01 * DVec3::Z);
     let weight = 12.0;
-    let pressed = Approach::new(&skin, DVec3::Z).unwrap().press_to_force(
-        &objects,
-        &[above],
-        weight,
-        &mut workspace,
-    );
+    let pressed = Press::new(&skin, &objects, &[above], Until::Force(weight)).run(&mut workspace);
     let travel = pressed.unwrap().unwrap().travel;
     let mut bench = Bench::new(skin, objects, Shears::Equal(SHEAR));
     let n = bench.skin.n_taxels() as f64;
@@ -441,7 +439,10 @@ fn a_damped_taxel_grips_with_all_that_presses_it() {
             let step = f64::from(k);
             let place = DVec3::new(5e-3 * step, 0.0, -1e-3 - 0.5e-3 * step);
             let poses = [Pose::from_translation(place)];
-            press_with_contacts(&skin, &objects, &poses, &mut workspace).unwrap();
+            Press::new(&skin, &objects, &poses, Until::Pose)
+                .with_contacts()
+                .run(&mut workspace)
+                .unwrap();
             damper.step(skin.taxels(), 1e-3, workspace.deflections());
             let normal = NormalForce::Dampers(&damper);
             state.step(&skin, workspace.contacts(), &poses, normal);

@@ -3,7 +3,7 @@
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, Outcome, PlacedSkin, TangentialSpring,
 };
-use bubbletouch_sim::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
+use bubbletouch_sim::contact::{FrictionState, NormalForce, Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
 use bubbletouch_sim::random::Seed;
@@ -92,7 +92,10 @@ impl HeldObject {
 
     fn feel(&mut self) {
         let pose = self.balance.pose.seen_from(&self.world_from_patch);
-        press_with_contacts(&self.patch, &self.objects, &[pose], &mut self.workspace).unwrap();
+        Press::new(&self.patch, &self.objects, &[pose], Until::Pose)
+            .with_contacts()
+            .run(&mut self.workspace)
+            .unwrap();
         let contacts = self.workspace.contacts();
         let at_rest = self.balancer.tangential_springs();
         let normal = NormalForce::Springs;
@@ -308,7 +311,10 @@ fn where_a_plate_rests_on_tips_that_stick_and_slip_its_energy_is_least() {
             .collect();
         let mut workspace = Workspace::new();
         let mut energy = |pose: &Pose| {
-            press_with_contacts(&held.patch, &held.objects, &[*pose], &mut workspace).unwrap();
+            Press::new(&held.patch, &held.objects, &[*pose], Until::Pose)
+                .with_contacts()
+                .run(&mut workspace)
+                .unwrap();
             let springs = workspace.deflections().iter();
             let springs: f64 = springs.map(|d| 0.5 * STIFFNESS * d * d).sum();
             let tips = held.tips.iter().zip(&reaches).map(|(tip, &reach)| {
@@ -394,7 +400,10 @@ fn lumps_that_share_taxels_are_held_together() {
             }
             n_at_rest += 1;
             poses = [found[0].pose, found[1].pose];
-            press_with_contacts(&patch, &models, &poses, &mut workspace).unwrap();
+            Press::new(&patch, &models, &poses, Until::Pose)
+                .with_contacts()
+                .run(&mut workspace)
+                .unwrap();
             let at_rest = balancer.tangential_springs();
             n_slipped += at_rest.iter().filter(|tip| tip.has_slipped).count();
             for (number, pose) in poses.iter().enumerate() {

@@ -2,9 +2,8 @@
 
 use crate::random_scenes::Scene;
 use crate::scans::scan;
-use bubbletouch_sim::contact::{
-    Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
-};
+use crate::time_loop::time_loop;
+use bubbletouch_sim::contact::{Contact, Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres};
 use bubbletouch_sim::random::Seed;
@@ -12,6 +11,7 @@ use bubbletouch_sim::world::{Grid, Patch, Phase, RestPoses, Taxel, Touch, Veloci
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
+use std::slice::from_ref;
 
 const TAXEL: Taxel = Taxel {
     radius: 1e-3,
@@ -99,8 +99,11 @@ fn what_an_earlier_press_touched_is_wiped() {
         scene.patch = Patch::grid(grid, TAXEL).unwrap();
         let depth = rng.gen_range(1e-4..1e-2);
         let mut fresh = Workspace::new();
-        let contacts = [&mut reused, &mut fresh]
-            .map(|w| press_to_depth(&scene.patch, &scene.objects, &poses, depth, w).unwrap());
+        let contacts = [&mut reused, &mut fresh].map(|w| {
+            Press::new(&scene.patch, &scene.objects, &poses, Until::Depth(depth))
+                .run(w)
+                .unwrap()
+        });
         assert_eq!(contacts[0], contacts[1], "case {case}");
         assert_eq!(reused.deflections(), fresh.deflections(), "case {case}");
         n_touched += contacts[0].map_or(0, |contact| contact.n_touched);
@@ -115,32 +118,29 @@ fn first_contact_is_where_the_first_taxel_begins_to_move() {
     let mut n_met = 0;
     for _ in 0..1000 {
         let (scene, poses) = random_scene(&mut rng);
-        let Some(first) =
-            first_contact(&scene.patch, &scene.objects, &poses, &mut workspace).unwrap()
-        else {
-            let contact =
-                press_to_depth(&scene.patch, &scene.objects, &poses, 1e-3, &mut workspace).unwrap();
-            assert!(contact.is_none() && workspace.deflections().iter().all(|&d| d == 0.0));
+        let press = Press::new(&scene.patch, &scene.objects, &poses, Until::Depth(0.0));
+        let Some(Contact { travel: first, .. }) = press.run(&mut workspace).unwrap() else {
+            assert!(workspace.deflections().iter().all(|&d| d == 0.0));
             continue;
         };
         n_met += 1;
-        let before = press_to_travel(
+        let before = Press::new(
             &scene.patch,
             &scene.objects,
             &poses,
-            first - 1e-9,
-            &mut workspace,
+            Until::Travel(first - 1e-9),
         )
+        .run(&mut workspace)
         .unwrap()
         .unwrap_or_default();
         assert_eq!(before.n_touched, 0);
-        let after = press_to_travel(
+        let after = Press::new(
             &scene.patch,
             &scene.objects,
             &poses,
-            first + 1e-9,
-            &mut workspace,
+            Until::Travel(first + 1e-9),
         )
+        .run(&mut workspace)
         .unwrap()
         .unwrap_or_default();
         assert!(after.n_touched > 0);
@@ -155,7 +155,8 @@ fn the_deepest_taxel_of_a_press_is_at_the_depth() {
     for _ in 0..500 {
         let (scene, poses) = random_scene(&mut rng);
         let depth = rng.gen_range(1e-4..TAXEL.stroke);
-        if press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut workspace)
+        if Press::new(&scene.patch, &scene.objects, &poses, Until::Depth(depth))
+            .run(&mut workspace)
             .unwrap()
             .is_some()
         {
@@ -190,21 +191,22 @@ fn the_direct_press_equals_the_time_loop_without_a_damper_however_deep() {
             .iter()
             .map(|&pose| VelocityPlan::new(pose, vec![]).unwrap())
             .collect();
-        let recording =
-            simulate(&scene.patch, &scene.objects, &patch_plan, &fixed, 1e-3, 300).unwrap();
-        let last = patch_plan.pose_at(recording.time[299]).inverse();
+        let frames = time_loop(&scene, [from_ref(&patch_plan), &fixed], 1e-3, 300);
+        let last = patch_plan.pose_at(300.0 * 1e-3).inverse();
         let finals: Vec<Pose> = poses.iter().map(|pose| last.compose(pose)).collect();
-        let counted = press_to_travel(&scene.patch, &scene.objects, &finals, 0.0, &mut workspace)
+        let counted = Press::new(&scene.patch, &scene.objects, &finals, Until::Travel(0.0))
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default();
         assert_eq!(
-            recording.deflection.row(299).as_slice().unwrap(),
+            frames.deflections[299],
             workspace.deflections(),
             "case {case}: exactly"
         );
-        let spring = recording.deflection.row(299).mapv(|d| 100.0 * d);
-        assert_eq!(recording.force.row(299), spring, "a spring alone");
-        let there = press_at_pose(&scene.patch, &scene.objects, &finals, &mut workspace)
+        let spring: Vec<f64> = frames.deflections[299].iter().map(|d| 100.0 * d).collect();
+        assert_eq!(frames.forces[299], spring, "a spring alone");
+        let there = Press::new(&scene.patch, &scene.objects, &finals, Until::Pose)
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default();
         n_through += usize::from(there.n_touched < counted.n_touched);
@@ -237,17 +239,23 @@ fn what_comes_up_from_behind_or_around_the_patch_does_not_press_in_the_time_loop
     let way = [go(-DVec3::Z), go(DVec3::X), go(-DVec3::X)];
     let start = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
     let plan = VelocityPlan::new(start, way.to_vec()).unwrap();
-    let recording = simulate(&scene.patch, &scene.objects, &still, &[plan], 1e-3, 300).unwrap();
-    let reads = |frame: usize| recording.deflection.row(frame).sum();
-    assert_eq!(reads(30), 0.0, "still in front");
-    assert_eq!(reads(99), 25.0 * TAXEL.stroke, "gone through");
-    assert_eq!(reads(199), 0.0, "beside");
-    assert_eq!(reads(299), 0.0, "under it again");
+    let frames = time_loop(&scene, [from_ref(&still), &[plan]], 1e-3, 300);
+    let reads = |frame: usize, deflection: f64| {
+        let mut taxels = frames.deflections[frame].iter();
+        taxels.all(|read| *read == deflection)
+    };
+    assert!(reads(30, 0.0), "still in front");
+    assert!(reads(99, TAXEL.stroke), "gone through");
+    assert!(reads(199, 0.0), "beside");
+    assert!(reads(299, 0.0), "under it again");
     // The top of the object is 1 mm behind the substrate.
     let below = Pose::from_translation(DVec3::new(0.0, 0.0, -0.05));
     let up = VelocityPlan::new(below, vec![go(0.32 * DVec3::Z)]).unwrap();
-    let recording = simulate(&scene.patch, &scene.objects, &still, &[up], 1e-3, 100).unwrap();
-    assert_eq!(recording.deflection.row(99).sum(), 0.0, "from behind");
+    let frames = time_loop(&scene, [from_ref(&still), &[up]], 1e-3, 100);
+    assert!(
+        frames.deflections[99].iter().all(|d| *d == 0.0),
+        "from behind"
+    );
 }
 
 #[test]
@@ -267,13 +275,13 @@ fn a_ball_pressed_on_the_array_leaves_its_cap() {
         objects: vec![SphereUnion::new(vec![ball]).unwrap().into()],
     };
     let mut workspace = Workspace::new();
-    let contact = press_to_depth(
+    let contact = Press::new(
         &scene.patch,
         &scene.objects,
         &[Pose::IDENTITY],
-        depth,
-        &mut workspace,
+        Until::Depth(depth),
     )
+    .run(&mut workspace)
     .unwrap()
     .unwrap();
     assert!((contact.travel - (0.3 - radius - TAXEL.radius + depth)).abs() < 1e-15);
@@ -304,23 +312,23 @@ fn saturation_is_counted_and_stops_at_the_stroke() {
         objects: vec![SphereUnion::new(vec![wall]).unwrap().into()],
     };
     let mut workspace = Workspace::new();
-    let at_stroke = press_to_depth(
+    let at_stroke = Press::new(
         &scene.patch,
         &scene.objects,
         &[Pose::IDENTITY],
-        TAXEL.stroke,
-        &mut workspace,
+        Until::Depth(TAXEL.stroke),
     )
+    .run(&mut workspace)
     .unwrap()
     .unwrap();
     assert_eq!(at_stroke.n_saturated, 0);
-    let beyond = press_to_depth(
+    let beyond = Press::new(
         &scene.patch,
         &scene.objects,
         &[Pose::IDENTITY],
-        0.02,
-        &mut workspace,
+        Until::Depth(0.02),
     )
+    .run(&mut workspace)
     .unwrap()
     .unwrap();
     assert_eq!((beyond.n_touched, beyond.n_saturated), (81, 81));
@@ -354,8 +362,9 @@ fn deeper_is_never_less(name: &str, model: &Model, workspace: &mut Workspace) {
     let mut before = vec![0.0; grid.n_taxels()];
     let (mut n_touched, mut n_saturated) = (0, 0);
     for depth in DEPTHS {
-        let contact =
-            press_to_depth(&scene.patch, &scene.objects, &[pose], depth, workspace).unwrap();
+        let contact = Press::new(&scene.patch, &scene.objects, &[pose], Until::Depth(depth))
+            .run(workspace)
+            .unwrap();
         let contact = contact.unwrap_or_else(|| panic!("{name} is under the patch"));
         let now = workspace.deflections();
         let is_less = now.iter().zip(&before).any(|(now, before)| now < before);
@@ -431,7 +440,8 @@ fn a_ball_leaves_taxel_by_taxel_on_its_way_through_the_substrate() {
     let mut press = |z| {
         let scene = scene(z);
         let pose = [Pose::IDENTITY];
-        press_at_pose(&scene.patch, &scene.objects, &pose, &mut workspace)
+        Press::new(&scene.patch, &scene.objects, &pose, Until::Pose)
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default()
     };

@@ -2,9 +2,9 @@
 
 use crate::double_double::Double;
 use crate::random_scenes::{Scene, TAXEL, direction, random_pose, rng};
+use crate::time_loop::time_loop;
 use bubbletouch_sim::contact::{
-    DamperState, GRAZING, Workspace, press_at_pose, press_to_depth, press_to_force,
-    press_with_contacts, relaxation_factor, simulate, spring_load,
+    DamperState, GRAZING, Press, Until, Workspace, relaxation_factor, spring_load,
 };
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
@@ -60,14 +60,13 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_th
         let object = sphere(center, radius);
         let of_object = object.spheres()[0];
         let scene = scene(object);
-        press_at_pose(
-            &scene.patch,
-            &scene.objects,
-            &[Pose::IDENTITY],
-            &mut workspace,
-        )
-        .unwrap();
-        press_with_contacts(&skin, &scene.objects, &[Pose::IDENTITY], &mut of_skin).unwrap();
+        Press::new(&scene.patch, &scene.objects, &[Pose::IDENTITY], Until::Pose)
+            .run(&mut workspace)
+            .unwrap();
+        Press::new(&skin, &scene.objects, &[Pose::IDENTITY], Until::Pose)
+            .with_contacts()
+            .run(&mut of_skin)
+            .unwrap();
         for (taxel, &place) in skin.layout().centers().iter().enumerate() {
             let exact = exactly_needed(place, TAXEL.radius, &of_object).unwrap_or(0.0);
             // Change of √(S² − b²) = δ + h due to the last bit of S².
@@ -106,17 +105,9 @@ fn a_million_metres_from_the_origin_a_press_is_the_same_to_the_bit() {
         let away = 1e6 * direction(&mut rng).round();
         let [here, there] = [DVec3::ZERO, away].map(|away| {
             let plans = [patch, object].map(|at| still(Pose::new(turn, at + away)));
-            simulate(
-                &scene.patch,
-                &scene.objects,
-                &plans[0],
-                &plans[1..],
-                1e-3,
-                1,
-            )
-            .unwrap()
+            time_loop(&scene, [&plans[..1], &plans[1..]], 1e-3, 1)
         });
-        assert!(here.deflection.iter().any(|&d| d > 0.0), "case {case}");
+        assert!(here.deflections[0].iter().any(|&d| d > 0.0), "case {case}");
         assert_eq!(here, there, "case {case}");
     }
 }
@@ -146,12 +137,13 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
             rng.gen_range(-6e-3..6e-3),
             height,
         );
-        press_at_pose(
+        Press::new(
             &ball.patch,
             &ball.objects,
             &[Pose::from_translation(place)],
-            &mut workspace,
+            Until::Pose,
         )
+        .run(&mut workspace)
         .unwrap();
         let behind = -taxel.stroke - taxel.radius;
         n_through += usize::from(height < behind);
@@ -191,33 +183,31 @@ fn what_jumps_through_the_skin_between_two_frames_is_not_felt_and_what_is_seen_t
     let plans = [VelocityPlan::new(start, vec![fast]).unwrap()];
     let still = VelocityPlan::new(Pose::IDENTITY, Vec::new()).unwrap();
     let scene = scene(sphere(DVec3::ZERO, 1e-2));
-    let felt = |dt: f64, n_frames| {
-        simulate(&scene.patch, &scene.objects, &still, &plans, dt, n_frames).unwrap()
-    };
-    assert!(felt(1.0, 3).deflection.iter().all(|&d| d == 0.0));
+    let still = [still];
+    let felt = |dt: f64, n_frames| time_loop(&scene, [&still, &plans], dt, n_frames);
+    assert!(felt(1.0, 3).deflections.concat().iter().all(|&d| d == 0.0));
     let fine = felt(0.01, 300);
-    assert!(fine.n_saturated > 0 && fine.deflection.iter().any(|&d| d == TAXEL.stroke));
+    assert!(fine.n_saturated > 0 && fine.deflections.concat().contains(&TAXEL.stroke));
     let mut workspace = Workspace::new();
     let last = Pose::from_translation(DVec3::new(0.0, 0.0, -0.15));
-    press_at_pose(&scene.patch, &scene.objects, &[last], &mut workspace).unwrap();
+    Press::new(&scene.patch, &scene.objects, &[last], Until::Pose)
+        .run(&mut workspace)
+        .unwrap();
     assert_eq!(
         workspace.deflections().iter().sum::<f64>(),
         0.0,
         "behind the substrate"
     );
-    press_to_depth(
+    Press::new(
         &scene.patch,
         &scene.objects,
         &[Pose::IDENTITY],
-        0.2,
-        &mut workspace,
+        Until::Depth(0.2),
     )
+    .run(&mut workspace)
     .unwrap()
     .unwrap();
-    assert_eq!(
-        fine.deflection.row(299).as_slice().unwrap(),
-        workspace.deflections()
-    );
+    assert_eq!(fine.deflections[299], workspace.deflections());
 }
 
 #[test]
@@ -232,25 +222,25 @@ fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
             radius,
         });
         let scene = scene(union(needle.collect()));
-        press_to_depth(
+        Press::new(
             &scene.patch,
             &scene.objects,
             &[Pose::IDENTITY],
-            2e-3,
-            &mut workspace,
+            Until::Depth(2e-3),
         )
+        .run(&mut workspace)
         .unwrap()
         .unwrap();
         let middle = workspace.deflections()[GRID.n_taxels() / 2];
         assert!((middle - 2e-3).abs() < 1e-15, "{thickness} m: {middle}");
         // If the patch is pressed past the stroke, only the end of the object is behind the substrate. The taxel is still saturated.
-        let deep = press_to_depth(
+        let deep = Press::new(
             &scene.patch,
             &scene.objects,
             &[Pose::IDENTITY],
-            10e-3,
-            &mut workspace,
+            Until::Depth(10e-3),
         )
+        .run(&mut workspace)
         .unwrap()
         .unwrap();
         let middle = workspace.deflections()[GRID.n_taxels() / 2];
@@ -270,13 +260,13 @@ fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
     for radius in [0.5, 10.0, 1e3] {
         let scene = scene(sphere(DVec3::new(0.0, 0.0, radius + 0.01), radius));
         let press = |force, workspace: &mut Workspace| {
-            press_to_force(
+            Press::new(
                 &scene.patch,
                 &scene.objects,
                 &[Pose::IDENTITY],
-                force,
-                workspace,
+                Until::Force(force),
             )
+            .run(workspace)
         };
         for share in [1e-9, 0.3, 0.999, 1.0] {
             press(share * all, &mut workspace).unwrap().unwrap();
@@ -295,20 +285,23 @@ fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
             error.contains(&most) && error.contains("at their stroke"),
             "{error}"
         );
-        let deep = press_to_depth(
+        let deep = Press::new(
             &scene.patch,
             &scene.objects,
             &[Pose::IDENTITY],
-            0.1,
-            &mut workspace,
+            Until::Depth(0.1),
         )
+        .run(&mut workspace)
         .unwrap()
         .unwrap();
         assert_eq!((deep.n_touched, deep.n_saturated), (n, n));
         let skin = scene.patch.clone();
         let mut of_skin = Workspace::new();
         let pressed = Pose::from_translation(DVec3::new(0.0, 0.0, -deep.travel));
-        press_with_contacts(&skin, &scene.objects, &[pressed], &mut of_skin).unwrap();
+        Press::new(&skin, &scene.objects, &[pressed], Until::Pose)
+            .with_contacts()
+            .run(&mut of_skin)
+            .unwrap();
         let load = spring_load(&skin, of_skin.contacts());
         assert_eq!(load.saturated_share, 1.0);
         assert!((load.spring_force / all - 1.0).abs() < 1e-12);
@@ -334,7 +327,10 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
             continue;
         }
         let flank = Model::from(sphere(DVec3::new(beside, 0.0, height), radius));
-        press_with_contacts(&skin, &[flank], &[Pose::IDENTITY], &mut workspace).unwrap();
+        Press::new(&skin, &[flank], &[Pose::IDENTITY], Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
+            .unwrap();
         // Rounding may move the shallowest flanks out of reach entirely.
         let [contact] = workspace.contacts() else {
             assert!(cosine < 1e-7, "case {case}: {cosine}");
@@ -376,7 +372,10 @@ fn a_taxel_exactly_between_two_spheres_is_pushed_as_far_as_each_of_them_needs() 
         let pair = union(vec![at(beside), at(-beside)]);
         let exact = exactly_needed(DVec3::ZERO, TAXEL.radius, &pair.spheres()[0]);
         let exact = exact.unwrap().clamp(0.0, TAXEL.stroke);
-        press_with_contacts(&skin, &[pair.into()], &[Pose::IDENTITY], &mut workspace).unwrap();
+        Press::new(&skin, &[pair.into()], &[Pose::IDENTITY], Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
+            .unwrap();
         let found = workspace.deflections()[0];
         assert!(
             (found - exact).abs() <= 8.0 * f64::EPSILON * reach,

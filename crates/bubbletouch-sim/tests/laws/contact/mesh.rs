@@ -1,10 +1,7 @@
 //! Laws of contact with a mesh: one taxel and one triangle against a search, a patch against every triangle, and closed forms.
 
 use crate::random_scenes::Scene;
-use bubbletouch_sim::contact::{
-    Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
-    stopping_height,
-};
+use bubbletouch_sim::contact::{Contact, Press, Until, Workspace, stopping_height};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Triangle, TriangleMesh};
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
@@ -14,6 +11,7 @@ use rand::Rng;
 
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
+use crate::time_loop::time_loop;
 
 /// Returns a triangle of size 1: arbitrary, thin, collinear, a point, vertical, horizontal, or with a vertical edge.
 fn odd_triangle(rng: &mut impl Rng, kind: u64) -> Triangle {
@@ -223,7 +221,9 @@ fn a_patch_feels_what_every_triangle_does_to_every_taxel() {
         let (scene, poses) = random_scene(&mut rng, case);
         let heights = every_triangle(&scene, &poses);
         let travel = rng.gen_range(-0.03..0.03);
-        press_to_travel(&scene.patch, &scene.objects, &poses, travel, &mut workspace).unwrap();
+        Press::new(&scene.patch, &scene.objects, &poses, Until::Travel(travel))
+            .run(&mut workspace)
+            .unwrap();
         let all = f64::NEG_INFINITY;
         let expected = deflections(&scene, &heights, travel, all);
         assert_close(
@@ -236,9 +236,8 @@ fn a_patch_feels_what_every_triangle_does_to_every_taxel() {
 
         let lowest = heights.iter().flat_map(|(_, heights)| heights).copied();
         let lowest = lowest.fold(f64::INFINITY, f64::min);
-        let Some(first) =
-            first_contact(&scene.patch, &scene.objects, &poses, &mut workspace).unwrap()
-        else {
+        let press = Press::new(&scene.patch, &scene.objects, &poses, Until::Depth(0.0));
+        let Some(Contact { travel: first, .. }) = press.run(&mut workspace).unwrap() else {
             assert_eq!(lowest, f64::INFINITY, "case {case}");
             continue;
         };
@@ -250,7 +249,8 @@ fn a_patch_feels_what_every_triangle_does_to_every_taxel() {
             0 => rng.gen_range(0.0..0.2),
             _ => rng.gen_range(0.0..0.02),
         };
-        let contact = press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut workspace)
+        let contact = Press::new(&scene.patch, &scene.objects, &poses, Until::Depth(depth))
+            .run(&mut workspace)
             .unwrap()
             .unwrap();
         assert_eq!(contact.travel, first + depth);
@@ -273,7 +273,8 @@ fn a_box_pressed_flat_is_flat_and_its_edge_is_round() {
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
     let objects = vec![MeshModel::new(cuboid(DVec3::new(10.4e-3, 0.02, 0.05))).into()];
     let mut workspace = Workspace::new();
-    let contact = press_to_depth(&patch, &objects, &[pose], 2e-3, &mut workspace)
+    let contact = Press::new(&patch, &objects, &[pose], Until::Depth(2e-3))
+        .run(&mut workspace)
         .unwrap()
         .unwrap();
     assert!((contact.travel - (2e-3 - TAXEL.radius)).abs() < 1e-16);
@@ -306,7 +307,9 @@ fn a_finer_ball_feels_like_a_sphere() {
     );
     let mut workspace = Workspace::new();
     let mut felt = |object: Model| {
-        press_to_travel(&patch, &[object], &[pose], 4e-3, &mut workspace).unwrap();
+        Press::new(&patch, &[object], &[pose], Until::Travel(4e-3))
+            .run(&mut workspace)
+            .unwrap();
         workspace.deflections().to_vec()
     };
     let sphere = Sphere {
@@ -352,10 +355,12 @@ fn spheres_and_a_mesh_in_one_scene_feel_like_the_larger_of_both() {
         let poses = vec![pose; objects.len()];
         let objects: Vec<Model> = objects.iter().map(|&o| o.clone()).collect();
         let contact = match travel {
-            Some(travel) => press_to_travel(&patch, &objects, &poses, travel, &mut workspace)
+            Some(travel) => Press::new(&patch, &objects, &poses, Until::Travel(travel))
+                .run(&mut workspace)
                 .unwrap()
                 .unwrap_or_default(),
-            None => press_to_depth(&patch, &objects, &poses, 3e-3, &mut workspace)
+            None => Press::new(&patch, &objects, &poses, Until::Depth(3e-3))
+                .run(&mut workspace)
                 .unwrap()
                 .unwrap(),
         };
@@ -389,7 +394,8 @@ fn a_mesh_behind_the_substrate_does_not_count_unless_it_was_pressed_through_the_
     let mut workspace = Workspace::new();
     let mut n_touched = |height: f64| {
         let pose = Pose::from_translation(DVec3::new(0.0, 0.0, height));
-        press_at_pose(&scene.patch, &scene.objects, &[pose], &mut workspace)
+        Press::new(&scene.patch, &scene.objects, &[pose], Until::Pose)
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default()
             .n_touched
@@ -398,7 +404,8 @@ fn a_mesh_behind_the_substrate_does_not_count_unless_it_was_pressed_through_the_
     assert_eq!(n_touched(-0.01701), 0);
     assert_eq!(n_touched(-0.01699), 64);
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
-    let through = press_to_depth(&scene.patch, &scene.objects, &[pose], 0.05, &mut workspace)
+    let through = Press::new(&scene.patch, &scene.objects, &[pose], Until::Depth(0.05))
+        .run(&mut workspace)
         .unwrap()
         .unwrap();
     assert_eq!((through.n_touched, through.n_saturated), (64, 64));
@@ -410,8 +417,8 @@ fn a_mesh_behind_the_substrate_does_not_count_unless_it_was_pressed_through_the_
     };
     let still = VelocityPlan::new(Pose::IDENTITY, Vec::new()).unwrap();
     let plan = VelocityPlan::new(pose, vec![down]).unwrap();
-    let recording = simulate(&scene.patch, &scene.objects, &still, &[plan], 1e-3, 100).unwrap();
-    let last = recording.deflection.row(99);
+    let frames = time_loop(&scene, [&[still], &[plan]], 1e-3, 100);
+    let last = &frames.deflections[99];
     assert!(last.iter().all(|&deflection| deflection == TAXEL.stroke));
 }
 

@@ -2,9 +2,7 @@
 
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
-use bubbletouch_sim::contact::{
-    Instructions, Workspace, press_at_pose, press_to_depth, press_with_contacts, stopping_height,
-};
+use bubbletouch_sim::contact::{Instructions, Press, Until, Workspace, stopping_height};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Surface, Triangle, TriangleMesh};
 use bubbletouch_sim::objects::{MeshModel, Model};
@@ -105,13 +103,16 @@ fn a_grid_on_a_mesh_equals_a_cast_for_each_taxel() {
         let (patch, mesh, rounding, pose) = random_scene(case);
         let objects = [model(&mesh, rounding)];
         let mut casts = Workspace::new();
-        let expected = press_with_contacts(&patch, &objects, &[pose], &mut casts)
+        let expected = Press::new(&patch, &objects, &[pose], Until::Pose)
+            .with_contacts()
+            .run(&mut casts)
             .unwrap()
             .unwrap_or_default();
         let mut first: Option<Vec<f64>> = None;
         for &instructions in Instructions::here() {
             let mut workspace = Workspace::with(instructions);
-            let found = press_at_pose(&patch, &objects, &[pose], &mut workspace)
+            let found = Press::new(&patch, &objects, &[pose], Until::Pose)
+                .run(&mut workspace)
                 .unwrap()
                 .unwrap_or_default();
             for (found, expected) in workspace.deflections().iter().zip(casts.deflections()) {
@@ -157,19 +158,24 @@ fn a_grid_on_a_rough_scan_equals_a_cast_for_each_taxel() {
         let objects = [model(&mesh, 0.0)];
         let depth = rng.gen_range(0.2..1.5) * TAXEL.stroke;
         let mut workspace = Workspace::new();
-        let contact = press_to_depth(&patch, &objects, &[far], depth, &mut workspace)
+        let contact = Press::new(&patch, &objects, &[far], Until::Depth(depth))
+            .run(&mut workspace)
             .unwrap()
             .unwrap();
         let pose = Pose::new(pose.rotation, DVec3::new(0.0, 0.0, 0.1 - contact.travel));
         let mut casts = Workspace::new();
-        n_touched += press_with_contacts(&patch, &objects, &[pose], &mut casts)
+        n_touched += Press::new(&patch, &objects, &[pose], Until::Pose)
+            .with_contacts()
+            .run(&mut casts)
             .unwrap()
             .unwrap_or_default()
             .n_touched;
         let mut first: Option<Vec<f64>> = None;
         for &instructions in Instructions::here() {
             let mut workspace = Workspace::with(instructions);
-            press_at_pose(&patch, &objects, &[pose], &mut workspace).unwrap();
+            Press::new(&patch, &objects, &[pose], Until::Pose)
+                .run(&mut workspace)
+                .unwrap();
             for (found, expected) in workspace.deflections().iter().zip(casts.deflections()) {
                 let difference = (found - expected).abs();
                 assert!(difference < 1e-12, "case {case}: {found} {expected}");
@@ -216,7 +222,9 @@ fn a_grid_on_a_mesh_equals_all_triangles_one_by_one() {
         let (patch, mesh, rounding, pose) = random_scene(case);
         let placed = Surface::new(mesh.moved(&pose));
         let mut workspace = Workspace::new();
-        press_at_pose(&patch, &[model(&mesh, rounding)], &[pose], &mut workspace).unwrap();
+        Press::new(&patch, &[model(&mesh, rounding)], &[pose], Until::Pose)
+            .run(&mut workspace)
+            .unwrap();
         let taxel = patch.taxels().at(0);
         let reach = taxel.radius + rounding;
         for (found, center) in workspace.deflections().iter().zip(patch.layout().centers()) {

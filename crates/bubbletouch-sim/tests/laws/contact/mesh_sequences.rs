@@ -3,9 +3,7 @@
 use super::mesh_at_pose::by_every_triangle;
 use crate::mesh_shapes::{cuboid, prism, refined, sheet};
 use crate::random_scenes::{TAXEL, random_pose, rng};
-use bubbletouch_sim::contact::{
-    Workspace, press_at_pose, press_to_depth, press_to_travel, stopping_height,
-};
+use bubbletouch_sim::contact::{Press, Until, Workspace, stopping_height};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Surface, TriangleMesh};
 use bubbletouch_sim::objects::{MeshModel, Model};
@@ -113,15 +111,18 @@ fn presses_in_one_workspace_equal_all_triangles_one_by_one() {
             // At a pose, the law of all triangles needs a closed mesh.
             let goal = rng.gen_range(if is_closed { 0..3 } else { 0..2 });
             let contact = match goal {
-                0 => press_to_depth(&patch, &objects, &[pose], depth, &mut workspace)
+                0 => Press::new(&patch, &objects, &[pose], Until::Depth(depth))
+                    .run(&mut workspace)
                     .unwrap()
                     .unwrap(),
-                1 => press_to_travel(&patch, &objects, &[pose], travel, &mut workspace)
+                1 => Press::new(&patch, &objects, &[pose], Until::Travel(travel))
+                    .run(&mut workspace)
                     .unwrap()
                     .unwrap_or_default(),
                 _ => {
                     pose.translation.z -= travel;
-                    press_at_pose(&patch, &objects, &[pose], &mut workspace)
+                    Press::new(&patch, &objects, &[pose], Until::Pose)
+                        .run(&mut workspace)
                         .unwrap()
                         .unwrap_or_default()
                 }

@@ -2,11 +2,7 @@
 //! contains the number.
 
 use bubbletouch_sim::contact::equilibrium::{EquilibriumSolver, FreeObject, Ground, PlacedSkin};
-use bubbletouch_sim::contact::{
-    Approach, FrictionState, Goal, MovedObject, Row, Workspace, first_contact, press,
-    press_at_pose, press_into, press_onto_zeros, press_to_depth, press_to_force, press_to_travel,
-    press_with_contacts, simulate,
-};
+use bubbletouch_sim::contact::{FrictionState, MovedObject, Press, Row, Until, Workspace};
 use bubbletouch_sim::dynamics::{Drive, System};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{LengthUnit, TriangleMesh};
@@ -14,14 +10,14 @@ use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereClusters, SphereU
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::signal::SensorError;
 use bubbletouch_sim::whole_body::{BodyState, WholeBody};
-use bubbletouch_sim::world::{Grid, Layout, Patch, Phase, Shear, Shears, Taxels, VelocityPlan};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Shear, Shears, Taxels};
 use bubbletouch_sim::{Error, Result};
 use glam::{DQuat, DVec3};
 
 use crate::random_scenes::TAXEL;
 
-/// Public press with an object at a pose, and with the number that ends the press; presses without such a number ignore the number.
-struct Press {
+/// Use of a public press with an object at a pose, and with the number that ends the press; presses without such a number ignore the number.
+struct Case {
     name: &'static str,
     /// Allowed numbers; `None` if the press has no number.
     allowed: Option<fn(f64) -> bool>,
@@ -32,135 +28,114 @@ const NOT_NEGATIVE: Option<fn(f64) -> bool> = Some(|number| number >= 0.0);
 const POSITIVE: Option<fn(f64) -> bool> = Some(|number| number > 0.0);
 const ANY: Option<fn(f64) -> bool> = Some(|_| true);
 
-fn z(patch: &Patch) -> Approach<'_> {
-    Approach::new(patch, DVec3::Z).unwrap()
-}
-
-fn fixed(poses: &[Pose]) -> Result<Vec<VelocityPlan>> {
-    let plans = poses
-        .iter()
-        .map(|pose| VelocityPlan::new(*pose, Vec::new()));
-    plans.collect()
-}
-
-const PRESSES: &[Press] = &[
-    Press {
-        name: "press at a pose",
+const CASES: &[Case] = &[
+    Case {
+        name: "at a pose",
         allowed: None,
         run: |patch, objects, poses, _| {
-            press(patch, objects, poses, Goal::Pose, &mut Workspace::new()).map(drop)
+            let press = Press::new(patch, objects, poses, Until::Pose);
+            press.run(&mut Workspace::new()).map(drop)
         },
     },
-    Press {
-        name: "press_at_pose",
+    Case {
+        name: "at a pose, with contacts",
         allowed: None,
         run: |patch, objects, poses, _| {
-            press_at_pose(patch, objects, poses, &mut Workspace::new()).map(drop)
+            let press = Press::new(patch, objects, poses, Until::Pose);
+            press.with_contacts().run(&mut Workspace::new()).map(drop)
         },
     },
-    Press {
-        name: "press_with_contacts",
-        allowed: None,
-        run: |patch, objects, poses, _| {
-            press_with_contacts(patch, objects, poses, &mut Workspace::new()).map(drop)
-        },
-    },
-    Press {
-        name: "first_contact",
-        allowed: None,
-        run: |patch, objects, poses, _| {
-            first_contact(patch, objects, poses, &mut Workspace::new()).map(drop)
-        },
-    },
-    Press {
-        name: "press_to_depth",
+    Case {
+        name: "to a depth",
         allowed: NOT_NEGATIVE,
-        run: |patch, objects, poses, depth| {
-            press_to_depth(patch, objects, poses, depth, &mut Workspace::new()).map(drop)
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Depth(number));
+            press.run(&mut Workspace::new()).map(drop)
         },
     },
-    Press {
-        name: "press_to_travel",
+    Case {
+        name: "to a depth, with contacts",
+        allowed: NOT_NEGATIVE,
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Depth(number));
+            press.with_contacts().run(&mut Workspace::new()).map(drop)
+        },
+    },
+    Case {
+        name: "to a travel",
         allowed: ANY,
-        run: |patch, objects, poses, travel| {
-            press_to_travel(patch, objects, poses, travel, &mut Workspace::new()).map(drop)
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Travel(number));
+            press.run(&mut Workspace::new()).map(drop)
         },
     },
-    Press {
-        name: "press_to_force",
-        allowed: POSITIVE,
-        run: |patch, objects, poses, force| {
-            press_to_force(patch, objects, poses, force, &mut Workspace::new()).map(drop)
-        },
-    },
-    Press {
-        name: "press_into",
-        allowed: NOT_NEGATIVE,
-        run: |patch, objects, poses, depth| {
-            let (goal, mut row) = (Goal::Depth(depth), vec![0.0; patch.n_taxels()]);
-            let row = Row::Double(&mut row);
-            press_into(patch, objects, poses, goal, row, &mut Workspace::new()).map(drop)
-        },
-    },
-    Press {
-        name: "press_onto_zeros",
-        allowed: POSITIVE,
-        run: |patch, objects, poses, force| {
-            let (goal, mut row) = (Goal::Force(force), vec![0.0; patch.n_taxels()]);
-            let row = Row::Single(&mut row);
-            press_onto_zeros(patch, objects, poses, goal, row, &mut Workspace::new()).map(drop)
-        },
-    },
-    Press {
-        name: "Approach::first_contact",
-        allowed: None,
-        run: |patch, objects, poses, _| z(patch).first_contact(objects, poses).map(drop),
-    },
-    Press {
-        name: "Approach::press_to_depth",
-        allowed: NOT_NEGATIVE,
-        run: |patch, objects, poses, depth| {
-            let pressed = z(patch).press_to_depth(objects, poses, depth, &mut Workspace::new());
-            pressed.map(drop)
-        },
-    },
-    Press {
-        name: "Approach::press_to_force",
-        allowed: POSITIVE,
-        run: |patch, objects, poses, force| {
-            let pressed = z(patch).press_to_force(objects, poses, force, &mut Workspace::new());
-            pressed.map(drop)
-        },
-    },
-    Press {
-        name: "Approach::contacts_at_travel",
+    Case {
+        name: "to a travel, with contacts",
         allowed: ANY,
-        run: |patch, objects, poses, travel| {
-            let met = z(patch).contacts_at_travel(objects, poses, travel, &mut Workspace::new());
-            met.map(drop)
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Travel(number));
+            press.with_contacts().run(&mut Workspace::new()).map(drop)
         },
     },
-    Press {
-        name: "Approach::press_and_slide to a depth",
+    Case {
+        name: "to a force",
+        allowed: POSITIVE,
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Force(number));
+            press.run(&mut Workspace::new()).map(drop)
+        },
+    },
+    Case {
+        name: "to a force, with contacts",
+        allowed: POSITIVE,
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Force(number));
+            press.with_contacts().run(&mut Workspace::new()).map(drop)
+        },
+    },
+    Case {
+        name: "written",
         allowed: NOT_NEGATIVE,
-        run: |patch, objects, poses, depth| {
-            let (motion, mut room) = ((depth, 1e-3 * DVec3::X), Workspace::new());
-            z(patch)
-                .press_and_slide(objects, poses, motion, None, &mut room)
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Depth(number));
+            let mut row = vec![0.0; patch.n_taxels()];
+            press
+                .write(Row::Double(&mut row), &mut Workspace::new())
                 .map(drop)
         },
     },
-    Press {
-        name: "Approach::press_and_slide along a line",
-        allowed: ANY,
-        run: |patch, objects, poses, slide| {
-            let (motion, mut room) = ((1e-3, slide * DVec3::X), Workspace::new());
-            z(patch)
-                .press_and_slide(objects, poses, motion, None, &mut room)
+    Case {
+        name: "written onto zeros",
+        allowed: POSITIVE,
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Force(number));
+            let mut row = vec![0.0; patch.n_taxels()];
+            press
+                .write_onto_zeros(Row::Single(&mut row), &mut Workspace::new())
                 .map(drop)
         },
     },
-    Press {
+    Case {
+        name: "slide from a depth",
+        allowed: NOT_NEGATIVE,
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Depth(number));
+            press
+                .slide(1e-3 * DVec3::X, None, &mut Workspace::new())
+                .map(drop)
+        },
+    },
+    Case {
+        name: "slide along a line",
+        allowed: ANY,
+        run: |patch, objects, poses, number| {
+            let press = Press::new(patch, objects, poses, Until::Depth(1e-3));
+            press
+                .slide(number * DVec3::X, None, &mut Workspace::new())
+                .map(drop)
+        },
+    },
+    Case {
         name: "MovedObject::hold",
         allowed: NOT_NEGATIVE,
         run: |patch, objects, poses, force| {
@@ -175,7 +150,7 @@ const PRESSES: &[Press] = &[
             held.map(drop)
         },
     },
-    Press {
+    Case {
         name: "MovedObject::hold within travels",
         allowed: ANY,
         run: |patch, objects, poses, travel| {
@@ -190,28 +165,7 @@ const PRESSES: &[Press] = &[
             held.map(drop)
         },
     },
-    Press {
-        name: "simulate",
-        allowed: POSITIVE,
-        run: |patch, objects, poses, dt| {
-            let still = VelocityPlan::new(Pose::IDENTITY, Vec::new())?;
-            simulate(patch, objects, &still, &fixed(poses)?, dt, 2).map(drop)
-        },
-    },
-    Press {
-        name: "simulate at a speed",
-        allowed: ANY,
-        run: |patch, objects, poses, speed| {
-            let phase = Phase {
-                duration: 1.0,
-                linear: speed * DVec3::Z,
-                angular: DVec3::ZERO,
-            };
-            let moving = VelocityPlan::new(Pose::IDENTITY, vec![phase])?;
-            simulate(patch, objects, &moving, &fixed(poses)?, 1e-3, 2).map(drop)
-        },
-    },
-    Press {
+    Case {
         name: "BodyState::press",
         allowed: POSITIVE,
         run: |patch, objects, poses, dt| {
@@ -223,7 +177,7 @@ const PRESSES: &[Press] = &[
                 .map(drop)
         },
     },
-    Press {
+    Case {
         name: "BodyState::place",
         allowed: None,
         run: |patch, _, poses, _| {
@@ -231,7 +185,7 @@ const PRESSES: &[Press] = &[
             BodyState::at_rest(&body).place(&body, poses)
         },
     },
-    Press {
+    Case {
         name: "EquilibriumSolver::solve_all",
         allowed: None,
         run: |patch, objects, poses, _| {
@@ -296,7 +250,7 @@ fn no_press_accepts_a_number_that_is_none() {
     let mut n_refused = 0;
     for patch in &patches() {
         for object in &objects {
-            for press in PRESSES {
+            for press in CASES {
                 // Whole bodies and equilibria press spheres only.
                 let is_of_spheres = ["BodyState", "Equilibrium"];
                 if object.spheres().is_none()
@@ -309,7 +263,7 @@ fn no_press_accepts_a_number_that_is_none() {
                 let run = |pose: Pose, number| {
                     (press.run)(patch, std::slice::from_ref(object), &[pose], number)
                 };
-                if press.name != "Approach::press_to_force" || object.spheres().is_some() {
+                if press.name != "to a force, with contacts" || object.spheres().is_some() {
                     let allowed = run(PLACE, 1e-3);
                     assert!(allowed.is_ok(), "{}: {allowed:?}", press.name);
                 }
@@ -348,22 +302,20 @@ fn no_press_accepts_a_number_that_is_none() {
             }
         }
     }
-    assert_eq!(n_refused, 3 * 2 * (2 * PRESSES.len() - 3));
+    assert_eq!(n_refused, 3 * 2 * (2 * CASES.len() - 3));
 }
 
 #[test]
 fn an_output_of_another_size_is_refused() {
     for patch in &patches() {
-        let (objects, goal) = ([ball()], Goal::Depth(1e-3));
+        let (objects, goal) = ([ball()], Until::Depth(1e-3));
         for n in [0, patch.n_taxels() - 1, patch.n_taxels() + 1] {
-            for press in [press_into, press_onto_zeros] {
-                let (mut double, mut single) = (vec![0.0; n], vec![0.0; n]);
-                for row in [Row::Double(&mut double), Row::Single(&mut single)] {
-                    let pressed =
-                        press(patch, &objects, &[PLACE], goal, row, &mut Workspace::new());
-                    check("output", n as f64, pressed.map(drop));
-                }
-            }
+            let press = Press::new(patch, &objects, &[PLACE], goal);
+            let (mut double, mut single) = (vec![0.0; n], vec![0.0; n]);
+            let written = press.write(Row::Double(&mut double), &mut Workspace::new());
+            check("output", n as f64, written.map(drop));
+            let written = press.write_onto_zeros(Row::Single(&mut single), &mut Workspace::new());
+            check("output", n as f64, written.map(drop));
         }
         let [other] = patches()
             .into_iter()
@@ -376,14 +328,8 @@ fn an_output_of_another_size_is_refused() {
             friction: 0.5,
         });
         let mut friction = FrictionState::at_rest(&other, shear).unwrap();
-        let motion = (1e-3, DVec3::ZERO);
-        let slid = z(patch).press_and_slide(
-            &objects,
-            &[PLACE],
-            motion,
-            Some(&mut friction),
-            &mut Workspace::new(),
-        );
+        let press = Press::new(patch, &objects, &[PLACE], goal);
+        let slid = press.slide(DVec3::ZERO, Some(&mut friction), &mut Workspace::new());
         check("friction", other.n_taxels() as f64, slid.map(drop));
     }
 }
@@ -398,11 +344,8 @@ fn a_direction_has_length_one() {
         (f64::NAN * DVec3::X, f64::NAN),
         (f64::INFINITY * DVec3::X, f64::INFINITY),
     ] {
-        check(
-            "Approach",
-            number,
-            Approach::new(&patch, direction).map(drop),
-        );
+        let press = Press::new(&patch, &objects, &[PLACE], Until::Depth(1e-3)).along(direction);
+        check("press", number, press.run(&mut Workspace::new()).map(drop));
         let moved = MovedObject {
             patch: &patch,
             objects: &objects,

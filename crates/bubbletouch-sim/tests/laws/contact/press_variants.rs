@@ -1,6 +1,6 @@
 //! Presses of a grid give equal bits with all vector instructions that the machine has.
 
-use bubbletouch_sim::contact::{Instructions, Workspace, press_to_depth};
+use bubbletouch_sim::contact::{Instructions, Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
 use bubbletouch_sim::world::{Grid, Patch};
@@ -43,9 +43,9 @@ fn vector_instructions_change_no_bit() {
         let depth = rng.gen_range(1e-4..2e-2);
         let press = |instructions: Instructions| {
             let mut workspace = Workspace::with(instructions);
-            let contact =
-                press_to_depth(&scene.patch, &scene.objects, &poses, depth, &mut workspace)
-                    .unwrap();
+            let contact = Press::new(&scene.patch, &scene.objects, &poses, Until::Depth(depth))
+                .run(&mut workspace)
+                .unwrap();
             let deflections = workspace.deflections().iter();
             (
                 contact,

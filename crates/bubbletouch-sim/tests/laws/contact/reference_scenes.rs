@@ -2,7 +2,7 @@
 //!
 //! The environment variable BUBBLETOUCH_REFERENCE contains the folder of the scenes; without it the test prints a note and is skipped.
 
-use bubbletouch_sim::contact::{Workspace, press_at_pose};
+use bubbletouch_sim::contact::{Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
 use bubbletouch_sim::world::{Grid, Patch, Taxel};
@@ -96,7 +96,9 @@ fn deflections(json: &Value, frame: &Value, spheres: &[Vec<f64>], patch: &Patch)
     }
     let poses = vec![Pose::IDENTITY; objects.len()];
     let mut workspace = Workspace::new();
-    press_at_pose(patch, &objects, &poses, &mut workspace).unwrap();
+    Press::new(patch, &objects, &poses, Until::Pose)
+        .run(&mut workspace)
+        .unwrap();
     workspace.deflections().to_vec()
 }
 

@@ -2,9 +2,7 @@
 
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{TAXEL, random_pose, rng};
-use bubbletouch_sim::contact::{
-    Workspace, press_at_pose, press_to_depth, press_to_travel, press_with_contacts,
-};
+use bubbletouch_sim::contact::{Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
 use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
@@ -29,9 +27,14 @@ fn fingertip(taxel: Taxel) -> Patch {
 fn at_pose(patch: &Patch, model: &Model, pose: &Pose) -> Vec<f64> {
     let (objects, poses) = (std::slice::from_ref(model), std::slice::from_ref(pose));
     let mut workspace = Workspace::new();
-    press_at_pose(patch, objects, poses, &mut workspace).unwrap();
+    Press::new(patch, objects, poses, Until::Pose)
+        .run(&mut workspace)
+        .unwrap();
     let deflections = workspace.deflections().to_vec();
-    press_with_contacts(patch, objects, poses, &mut workspace).unwrap();
+    Press::new(patch, objects, poses, Until::Pose)
+        .with_contacts()
+        .run(&mut workspace)
+        .unwrap();
     assert!(largest_difference(&deflections, workspace.deflections()) < 1e-12);
     deflections
 }
@@ -151,18 +154,14 @@ fn taxels_on_a_rounded_mesh_are_larger_taxels_on_the_mesh() {
             };
             let mut workspace = Workspace::new();
             let objects = std::slice::from_ref(model);
-            let contact = press_to_depth(&patch, objects, &[pose], depth, &mut workspace)
+            let contact = Press::new(&patch, objects, &[pose], Until::Depth(depth))
+                .run(&mut workspace)
                 .unwrap()
                 .unwrap();
-            let travelled = press_to_travel(
-                &patch,
-                objects,
-                &[pose],
-                contact.travel,
-                &mut Workspace::new(),
-            )
-            .unwrap()
-            .unwrap_or_default();
+            let travelled = Press::new(&patch, objects, &[pose], Until::Travel(contact.travel))
+                .run(&mut Workspace::new())
+                .unwrap()
+                .unwrap_or_default();
             assert_eq!(travelled.n_touched, contact.n_touched);
             let deflections = workspace.deflections().to_vec();
             let moved = Pose::new(turn, pose.translation - contact.travel * DVec3::Z);
@@ -171,7 +170,10 @@ fn taxels_on_a_rounded_mesh_are_larger_taxels_on_the_mesh() {
             if is_flat {
                 assert!(largest_difference(&pushed, &deflections) < 1e-12);
             }
-            press_with_contacts(&patch, objects, &[moved], &mut workspace).unwrap();
+            Press::new(&patch, objects, &[moved], Until::Pose)
+                .with_contacts()
+                .run(&mut workspace)
+                .unwrap();
             for contact in workspace.contacts() {
                 let axis = patch.layout().axes()[contact.taxel];
                 let center = patch.layout().centers()[contact.taxel] - contact.needed * axis;

@@ -1,6 +1,6 @@
 //! Laws of contact between skins of any shape and meshes: comparison with every triangle, with the grid kernel, and with a forearm on a table.
 
-use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
+use bubbletouch_sim::contact::{Press, Until, Workspace, spring_load};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Surface, TriangleMesh};
 use bubbletouch_sim::objects::{MeshModel, Model};
@@ -71,13 +71,10 @@ fn a_contact_lies_on_its_triangle_a_radius_from_the_taxel() {
     for case in 0..120 {
         let (skin, mesh, pose) = random_scene(case);
         let placed = mesh.moved(&pose);
-        press_with_contacts(
-            &skin,
-            &[MeshModel::new(mesh).into()],
-            &[pose],
-            &mut workspace,
-        )
-        .unwrap();
+        Press::new(&skin, &[MeshModel::new(mesh).into()], &[pose], Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
+            .unwrap();
         for contact in workspace.contacts() {
             let axis = skin.layout().axes()[contact.taxel];
             let pushed = skin.layout().centers()[contact.taxel] - contact.needed * axis;
@@ -106,7 +103,10 @@ fn balls_as_spheres_and_as_fine_meshes_press_nearly_the_same() {
     let pose = Pose::from_translation(DVec3::new(0.02, 0.01, 0.043));
     let [a, b] = [mesh, ball].map(|model: Model| {
         let mut workspace = Workspace::new();
-        press_with_contacts(&skin, &[model], &[pose], &mut workspace).unwrap();
+        Press::new(&skin, &[model], &[pose], Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
+            .unwrap();
         let load = spring_load(&skin, workspace.contacts());
         (workspace.deflections().to_vec(), load)
     });
@@ -137,7 +137,9 @@ fn what_a_forearm_lies_on_does_not_press_its_other_side() {
     // The top of the mesh is at x = −0.029. Taxels rest at x = −0.03 with a radius of 1 mm, so they are pushed by up to 2 mm.
     let pose = Pose::from_translation(DVec3::new(-0.039, 0.0, 0.0));
     let mut workspace = Workspace::new();
-    let counts = press_with_contacts(&skin, &[table], &[pose], &mut workspace)
+    let counts = Press::new(&skin, &[table], &[pose], Until::Pose)
+        .with_contacts()
+        .run(&mut workspace)
         .unwrap()
         .unwrap_or_default();
     assert!(
@@ -169,7 +171,9 @@ fn walls_on_both_sides_of_a_forearm_press_only_their_own_sides() {
     let both = TriangleMesh::new("walls", corners.collect(), faces.collect()).unwrap();
     let mut workspace = Workspace::new();
     let model: Model = MeshModel::new(both).into();
-    let counts = press_with_contacts(&skin, &[model], &[Pose::IDENTITY], &mut workspace)
+    let counts = Press::new(&skin, &[model], &[Pose::IDENTITY], Until::Pose)
+        .with_contacts()
+        .run(&mut workspace)
         .unwrap()
         .unwrap_or_default();
     assert!(
@@ -192,7 +196,9 @@ fn a_taxel_whose_substrate_is_inside_of_a_mesh_is_saturated() {
     for mesh in [cuboid(DVec3::splat(0.05)), icosphere(0.05, 3)] {
         assert!(Surface::new(mesh.clone()).contains(DVec3::ZERO));
         let model: Model = MeshModel::new(mesh).into();
-        let counts = press_with_contacts(&skin, &[model], &[Pose::IDENTITY], &mut workspace)
+        let counts = Press::new(&skin, &[model], &[Pose::IDENTITY], Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default();
         assert_eq!((counts.n_touched, counts.n_saturated), (25, 25));

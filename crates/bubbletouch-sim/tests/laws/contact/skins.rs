@@ -1,7 +1,7 @@
 //! Laws of contact on skins of any shape: comparison with a search along each taxel's axis, and with mirrored scenes.
 
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
-use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
+use bubbletouch_sim::contact::{Press, Until, Workspace, spring_load};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
 use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
@@ -137,7 +137,9 @@ fn every_taxel_stops_where_a_search_along_its_axis_says() {
     let (mut n_touched, mut n_saturated, mut n_flanks) = (0, 0, 0);
     for case in 0..70 {
         let (skin, objects, poses) = random_scene("search", case);
-        let counts = press_with_contacts(&skin, &objects, &poses, &mut workspace)
+        let counts = Press::new(&skin, &objects, &poses, Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default();
         let placed: Vec<Model> = objects
@@ -175,7 +177,9 @@ fn a_contact_says_what_its_taxel_touches() {
     let mut workspace = Workspace::new();
     for case in 0..140 {
         let (skin, objects, poses) = random_scene("contacts", case);
-        let counts = press_with_contacts(&skin, &objects, &poses, &mut workspace)
+        let counts = Press::new(&skin, &objects, &poses, Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default();
         let contacts = workspace.contacts();
@@ -249,12 +253,16 @@ fn the_contacts_of_a_grid_are_those_of_the_same_taxels_one_by_one() {
             .iter()
             .map(|object| moved(object, &poses[0].inverse()))
             .collect();
-        let counts = press_with_contacts(&skin, &objects, &poses, &mut by_rows)
+        let counts = Press::new(&skin, &objects, &poses, Until::Pose)
+            .with_contacts()
+            .run(&mut by_rows)
             .unwrap()
             .unwrap_or_default();
         assert_eq!(
             counts,
-            press_with_contacts(&loose, &objects, &poses, &mut one_by_one)
+            Press::new(&loose, &objects, &poses, Until::Pose)
+                .with_contacts()
+                .run(&mut one_by_one)
                 .unwrap()
                 .unwrap_or_default()
         );
@@ -294,7 +302,10 @@ fn a_mirrored_scene_gives_mirrored_deflections() {
             .map(|(o, p)| moved(o, p))
             .collect();
         let identity = vec![Pose::IDENTITY; placed.len()];
-        press_with_contacts(&skin, &placed, &identity, &mut here).unwrap();
+        Press::new(&skin, &placed, &identity, Until::Pose)
+            .with_contacts()
+            .run(&mut here)
+            .unwrap();
         let centers = skin.layout().centers().iter().map(|&c| mirror(c)).collect();
         let axes = skin.layout().axes().iter().map(|&a| mirror(a)).collect();
         let layout = Layout::new(centers, axes).unwrap();
@@ -309,12 +320,14 @@ fn a_mirrored_scene_gives_mirrored_deflections() {
                 .unwrap()
                 .into()
         });
-        press_with_contacts(
+        Press::new(
             &mirrored,
             &objects.collect::<Vec<Model>>(),
             &identity,
-            &mut there,
+            Until::Pose,
         )
+        .with_contacts()
+        .run(&mut there)
         .unwrap();
         for (taxel, (a, b)) in here
             .deflections()
@@ -344,7 +357,10 @@ fn skin_and_objects_push_each_other_equally_and_every_spring_along_its_axis() {
     let mut workspace = Workspace::new();
     for case in 0..100 {
         let (skin, objects, poses) = random_scene("reaction", case);
-        press_with_contacts(&skin, &objects, &poses, &mut workspace).unwrap();
+        Press::new(&skin, &objects, &poses, Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
+            .unwrap();
         let contacts = workspace.contacts();
         let load = spring_load(&skin, contacts);
         let both = load.on_object + load.on_patch();
@@ -383,7 +399,10 @@ fn pressure_has_its_centre_under_the_ball_and_says_what_is_saturated() {
     let mut workspace = Workspace::new();
     let mut load = |depth: f64| {
         let pose = Pose::from_translation((ball.radius + TAXEL.radius - depth) * DVec3::Z);
-        press_with_contacts(&skin, &objects, &[pose], &mut workspace).unwrap();
+        Press::new(&skin, &objects, &[pose], Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
+            .unwrap();
         spring_load(&skin, workspace.contacts())
     };
     let light = load(1e-3);
@@ -408,7 +427,10 @@ fn of_two_spheres_that_push_a_taxel_the_same_the_first_decides() {
     let mut workspace = Workspace::new();
     for x in [2e-3, -2e-3] {
         let objects = [union(&[x, -x]).into(), union(&[-x]).into()];
-        press_with_contacts(&skin, &objects, &[Pose::IDENTITY; 2], &mut workspace).unwrap();
+        Press::new(&skin, &objects, &[Pose::IDENTITY; 2], Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
+            .unwrap();
         let [contact] = workspace.contacts() else {
             panic!("one taxel is touched")
         };

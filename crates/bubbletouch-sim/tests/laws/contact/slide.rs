@@ -1,8 +1,6 @@
 //! Laws of a skin that is pressed and then dragged: closed forms, mirror symmetry, and a path of many small steps.
 
-use bubbletouch_sim::contact::{
-    Approach, FrictionState, NormalForce, Workspace, press_with_contacts,
-};
+use bubbletouch_sim::contact::{FrictionState, NormalForce, Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
 use bubbletouch_sim::world::{ArrayLayout, Grid, Patch, Shear, Shears, Taxels};
@@ -36,15 +34,14 @@ fn ball(radius: f64) -> [Model; 1] {
 
 /// Returns the forces on all taxels after a press and a slide.
 fn forces(skin: &Patch, objects: &[Model], pose: Pose, motion: (f64, DVec3)) -> Vec<DVec3> {
-    let approach = Approach::new(skin, DVec3::Z).unwrap();
     let mut friction = FrictionState::at_rest(skin, Shears::Equal(SHEAR)).unwrap();
     let mut workspace = Workspace::new();
     // Earlier presses must not affect the result.
     let before = (2e-3, DVec3::new(1e-3, 2e-3, 0.0));
-    for motion in [before, motion] {
+    for (depth, slide) in [before, motion] {
         let state = Some(&mut friction);
-        approach
-            .press_and_slide(objects, &[pose], motion, state, &mut workspace)
+        Press::new(skin, objects, &[pose], Until::Depth(depth))
+            .slide(slide, state, &mut workspace)
             .unwrap();
     }
     friction.force3().to_vec()
@@ -99,16 +96,19 @@ fn the_shear_is_that_of_many_small_steps() {
         let start = Pose::from_translation(DVec3::new(1.3e-3, -0.7e-3, 0.06));
         let (depth, slide) = (3e-3, DVec3::new(3e-3, 1.5e-3, 0.0));
         let found = forces(&skin, &objects, start, (depth, slide));
-        let approach = Approach::new(&skin, DVec3::Z).unwrap();
-        let first = approach.first_contact(&objects, &[start]).unwrap().unwrap();
         let mut friction = FrictionState::at_rest(&skin, Shears::Equal(SHEAR)).unwrap();
         let mut workspace = Workspace::new();
+        let touch = Press::new(&skin, &objects, &[start], Until::Depth(0.0)).run(&mut workspace);
+        let first = touch.unwrap().unwrap().travel;
         let mut to = |moved: DVec3| {
             let pose = Pose {
                 translation: start.translation - moved,
                 ..start
             };
-            press_with_contacts(&skin, &objects, &[pose], &mut workspace).unwrap();
+            Press::new(&skin, &objects, &[pose], Until::Pose)
+                .with_contacts()
+                .run(&mut workspace)
+                .unwrap();
             friction.step(&skin, workspace.contacts(), &[pose], NormalForce::Springs);
             friction.force3().to_vec()
         };

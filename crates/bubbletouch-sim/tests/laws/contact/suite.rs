@@ -4,10 +4,7 @@
 use crate::counting::allocations;
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
-use bubbletouch_sim::contact::{
-    Workspace, press_at_pose, press_to_depth, press_to_force, press_to_travel, press_with_contacts,
-    spring_load, stopping_height,
-};
+use bubbletouch_sim::contact::{Press, Until, Workspace, spring_load, stopping_height};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Triangle, TriangleMesh};
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereClusters, SphereUnion};
@@ -152,12 +149,17 @@ type Perturbation = fn(&Scene) -> Option<Vec<f64>>;
 const WAYS: [(&str, Perturbation); 4] = [
     ("at a pose", |scene| {
         let mut workspace = Workspace::new();
-        press_at_pose(&scene.patch, &scene.models, &scene.poses, &mut workspace).unwrap();
+        Press::new(&scene.patch, &scene.models, &scene.poses, Until::Pose)
+            .run(&mut workspace)
+            .unwrap();
         Some(workspace.deflections().to_vec())
     }),
     ("with contacts", |scene| {
         let mut workspace = Workspace::new();
-        press_with_contacts(&scene.patch, &scene.models, &scene.poses, &mut workspace).unwrap();
+        Press::new(&scene.patch, &scene.models, &scene.poses, Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
+            .unwrap();
         Some(workspace.deflections().to_vec())
     }),
     ("taxels one by one", |scene| {
@@ -165,7 +167,9 @@ const WAYS: [(&str, Perturbation); 4] = [
         let loose = Layout::new(places.centers().to_vec(), places.axes().to_vec()).unwrap();
         let loose = Patch::new("loose", loose, scene.patch.taxels().clone()).unwrap();
         let mut workspace = Workspace::new();
-        press_at_pose(&loose, &scene.models, &scene.poses, &mut workspace).unwrap();
+        Press::new(&loose, &scene.models, &scene.poses, Until::Pose)
+            .run(&mut workspace)
+            .unwrap();
         Some(workspace.deflections().to_vec())
     }),
     ("as a body", |scene| {
@@ -301,13 +305,13 @@ fn a_way_from_the_front_counts_all_and_takes_nothing_away_on_flat_patches() {
         let mut before = vec![0.0; scene.patch.n_taxels()];
         for step in 0..12 {
             let travel = -0.004 + 0.002 * f64::from(step);
-            press_to_travel(
+            Press::new(
                 &scene.patch,
                 &scene.models,
                 &scene.poses,
-                travel,
-                &mut workspace,
+                Until::Travel(travel),
             )
+            .run(&mut workspace)
             .unwrap();
             let found = workspace.deflections();
             let pairs = found.iter().zip(&before);
@@ -427,7 +431,9 @@ fn force_and_torque_are_minus_the_gradient_of_the_energy() {
         };
         let objects = [object];
         let pose = Pose::from_translation(place + (radius - 1e-3) * axis);
-        let contact = press_with_contacts(&patch, &objects, &[pose], &mut workspace)
+        let contact = Press::new(&patch, &objects, &[pose], Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default();
         let parts: Vec<usize> = workspace.contacts().iter().map(|c| c.part).collect();
@@ -439,7 +445,9 @@ fn force_and_torque_are_minus_the_gradient_of_the_energy() {
         // The slope of the energy has kinks between triangles.
         let mut is_smooth = true;
         let mut energy = |motion: Pose| {
-            press_with_contacts(&patch, &objects, &[motion.compose(&pose)], &mut workspace)
+            Press::new(&patch, &objects, &[motion.compose(&pose)], Until::Pose)
+                .with_contacts()
+                .run(&mut workspace)
                 .unwrap();
             let by = workspace.contacts().iter().map(|contact| contact.part);
             is_smooth &= by.eq(parts.iter().copied());
@@ -479,13 +487,16 @@ type Repeated = fn(&Patch, &[Model], &[Pose], &mut Workspace) -> usize;
 
 const ON_ANY_LAYOUT: [(&str, Repeated); 2] = [
     ("at a pose", |patch, objects, poses, workspace| {
-        press_at_pose(patch, objects, poses, workspace)
+        Press::new(patch, objects, poses, Until::Pose)
+            .run(workspace)
             .unwrap()
             .unwrap_or_default()
             .n_touched
     }),
     ("with contacts", |patch, objects, poses, workspace| {
-        let contact = press_with_contacts(patch, objects, poses, workspace)
+        let contact = Press::new(patch, objects, poses, Until::Pose)
+            .with_contacts()
+            .run(workspace)
             .unwrap()
             .unwrap_or_default();
         assert!(
@@ -499,17 +510,20 @@ const ON_ANY_LAYOUT: [(&str, Repeated); 2] = [
 
 const ON_FLAT_GRIDS: [(&str, Repeated); 3] = [
     ("to a travel", |patch, objects, poses, workspace| {
-        press_to_travel(patch, objects, poses, 0.0, workspace)
+        Press::new(patch, objects, poses, Until::Travel(0.0))
+            .run(workspace)
             .unwrap()
             .unwrap_or_default()
             .n_touched
     }),
     ("to a depth", |patch, objects, poses, workspace| {
-        let contact = press_to_depth(patch, objects, poses, 1e-3, workspace).unwrap();
+        let contact = Press::new(patch, objects, poses, Until::Depth(1e-3))
+            .run(workspace)
+            .unwrap();
         contact.unwrap().n_touched
     }),
     ("to a force", |patch, objects, poses, workspace| {
-        let contact = press_to_force(patch, objects, poses, 0.01, workspace);
+        let contact = Press::new(patch, objects, poses, Until::Force(0.01)).run(workspace);
         contact.unwrap().unwrap().n_touched
     }),
 ];

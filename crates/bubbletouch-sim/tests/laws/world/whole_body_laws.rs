@@ -1,6 +1,6 @@
 //! Laws of a whole body: its kernel agrees with the kernel for skins of any shape, and its cost depends only on the contact.
 
-use bubbletouch_sim::contact::{DamperState, Workspace, press_with_contacts, relaxation_factor};
+use bubbletouch_sim::contact::{DamperState, Press, Until, Workspace, relaxation_factor};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
 use bubbletouch_sim::whole_body::{
@@ -111,7 +111,9 @@ impl Touch {
             .map(|pose| patch_from_world.compose(pose))
             .collect();
         let mut workspace = Workspace::new();
-        let contact = press_with_contacts(skin, &models, &poses, &mut workspace)
+        let contact = Press::new(skin, &models, &poses, Until::Pose)
+            .with_contacts()
+            .run(&mut workspace)
             .unwrap()
             .unwrap_or_default();
         (workspace.deflections().to_vec(), contact.n_saturated)
