@@ -7,7 +7,7 @@
 //! δ*_i = min(s, max(0, max_j δ_ij))
 //! ```
 //!
-//! On a mesh the taxel stays on its substrate's side of every triangle swept by a ball of radius ρ. The module `swept_triangle` has the
+//! On a mesh the taxel stays on its substrate's side of every triangle swept by a ball of radius ρ. The module `law::triangle` has the
 //! equations for faces, edges and corners.
 //!
 //! **Behind the substrate.** A press to a depth, a travel or a force approaches from the front, and all spheres count at any depth. The deflection of a
@@ -67,7 +67,7 @@ pub(crate) use instructions::for_instructions;
 pub(crate) use lanes_below::LanesBelow;
 pub use law::saturation_limit;
 #[doc(hidden)]
-pub use mesh::stopping_height;
+pub use law::triangle::stopping_height;
 pub use point_loads::{
     CarriedLoad, LoadPart, LoadWorkspace, PointLoad, carry_loads, is_flat, share_friction,
     travel_direction,

@@ -18,8 +18,9 @@ use super::pair_batch::{
 use super::placed_objects::PlacedObjects;
 use crate::contact::Until;
 use crate::contact::instructions::{Instructions, for_instructions};
-use crate::contact::mesh::skin_mesh::{MeshAt, stop_in_front};
-use crate::contact::mesh::swept_triangle::{FACE_SLACK, SweptEdge, SweptFace, corner_height};
+use crate::contact::law::stop_in_front;
+use crate::contact::law::triangle::{FACE_SLACK, SweptEdge, SweptFace, corner_height};
+use crate::contact::mesh::skin_mesh::MeshAt;
 use crate::mesh::Triangle;
 use crate::objects::Model;
 use crate::objects::mesh_blocks::{ContactTriangle, LANES, Lane, MAX_DEPTH, MeshBlocks};
@@ -494,10 +495,8 @@ impl Sweep<'_> {
             }
             let corner = self.placement.place(triangle.corners[part - 3]);
             let reach = self.placement.reach;
-            if corner.z - reach < self.envelope.heights[pair.taxel as usize]
-                && let Some(height) = corner_height(corner, reach, at)
-            {
-                self.lower_to(row, column, height);
+            if corner.z - reach < self.envelope.heights[pair.taxel as usize] {
+                self.lower_to(row, column, corner_height(corner, reach, at));
             }
         }
         if self.edges.n > PAIRS - 3 {
@@ -529,7 +528,8 @@ impl Sweep<'_> {
         }
         let face = &triangle.face;
         let normal = self.placement.rotation * face.normal;
-        if let Some(swept) = SweptFace::new(&corners, normal, reach) {
+        let swept = SweptFace::new(&corners, normal, reach);
+        if !swept.is_steep() {
             self.lower_to_face(&swept, [columns.clone(), rows.clone()]);
             cover(&mut self.envelope.rows, rows.clone());
             cover(&mut self.envelope.columns, columns.clone());
@@ -538,9 +538,13 @@ impl Sweep<'_> {
             if face.has_edge(k) {
                 let (from, to) = (corners[k], corners[(k + 1) % 3]);
                 let across = self.placement.rotation * face.across[k];
-                if let Some(swept) = SweptEdge::new(from, to, reach, [normal, across]) {
-                    self.lower_under(swept.ground(), [&columns, &rows], |at| swept.height(at));
-                }
+                let swept = SweptEdge::new(from, to, reach, &[normal, across]);
+                self.lower_under(swept.ground(), [&columns, &rows], |at| {
+                    match swept.is_beside(at) {
+                        true => swept.height(at),
+                        false => f64::INFINITY,
+                    }
+                });
             }
             if face.has_corner(k) {
                 let corner = corners[k];
@@ -587,7 +591,7 @@ impl Sweep<'_> {
         &mut self,
         (low, high): (DVec2, DVec2),
         [columns, rows]: [&Range<usize>; 2],
-        height: impl Fn(DVec2) -> Option<f64>,
+        height: impl Fn(DVec2) -> f64,
     ) {
         let lines = self.lines;
         for row in rows.clone() {
@@ -597,11 +601,8 @@ impl Sweep<'_> {
             }
             for column in columns.clone() {
                 let x = lines.x.positions[column];
-                if x >= low.x
-                    && x <= high.x
-                    && let Some(height) = height(DVec2::new(x, y))
-                {
-                    self.lower_to(row, column, height);
+                if x >= low.x && x <= high.x {
+                    self.lower_to(row, column, height(DVec2::new(x, y)));
                 }
             }
         }

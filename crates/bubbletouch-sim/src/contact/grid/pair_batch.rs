@@ -1,10 +1,9 @@
 //! Contact of pairs of a taxel and a triangle, many pairs at once in vectors of double precision.
 //!
-//! The formulas are the formulas of [`swept_triangle`](crate::contact::mesh::swept_triangle), in the same order of operations. The numbers of the pairs are
-//! stored in columns. The loops over pairs have no branches, and the compiler converts them to vector instructions.
+//! The formulas are in [`triangle`](crate::contact::law::triangle). The numbers of the pairs are stored in columns. The loops over pairs have no branches, and the compiler converts them to vector instructions.
 
 use super::lines::GridLines;
-use crate::contact::mesh::swept_triangle::{HIDDEN_SLACK, STEEP};
+use crate::contact::law::triangle::{SweptEdge, SweptFace};
 use crate::objects::mesh_blocks::ContactTriangle;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -178,7 +177,8 @@ impl FacePairs {
             let corner = placement.place(get(&self.corners[0], lane));
             let normal = placement.turn(get(&self.normal, lane));
             let at = DVec2::new(self.x[lane], self.y[lane]);
-            self.heights[lane] = face_height(corner, normal, placement.reach, at);
+            let face = SweptFace::new(&[corner; 3], normal, placement.reach);
+            self.heights[lane] = face.height(at);
         }
     }
 
@@ -203,23 +203,13 @@ impl FacePairs {
             let c = placement.place(get(c, lane));
             let normal = placement.turn(get(&self.normal, lane));
             let at = DVec2::new(self.x[lane], self.y[lane]);
-            let sign = if normal.z > 0.0 { 1.0 } else { -1.0 };
-            let shift = -(sign * reach) * normal;
-            let spread = self.spread[lane];
-            let slope = sign * normal.z;
-            let is_steep = slope < STEEP;
-            let is_certain = slope > spread + 1e-6;
-            let swept = [
-                (a + shift).truncate(),
-                (b + shift).truncate(),
-                (c + shift).truncate(),
-            ];
+            let face = SweptFace::new(&[a, b, c], normal, reach);
+            let is_steep = face.is_steep();
+            let slope = face.sign * normal.z;
+            let is_certain = slope > self.spread[lane] + 1e-6;
             let (mut is_near, mut outside) = (true, 0);
             for k in 0..3 {
-                let (from, to) = (swept[k], swept[(k + 1) % 3]);
-                let edge = to - from;
-                let length = edge.x.abs() + edge.y.abs();
-                let side = sign * edge.perp_dot(at - from);
+                let [side, length] = face.side(k, at);
                 // Distance beyond the side at which the taxel touches neither the side nor its corners.
                 let side_spread = if is_certain {
                     self.side_spread[k][lane]
@@ -234,7 +224,7 @@ impl FacePairs {
             let beside = outside | (corners << 3);
 
             let lowest = least(least(a.z, b.z), c.z);
-            let height = face_height(a, normal, reach, at);
+            let height = face.height(at);
             // No contact with the triangle is below the plane of the face, moved down by the radius.
             let is_lower = height - slack / slope < self.limit[lane];
             let is_wanted = (is_near & is_lower) | is_steep;
@@ -249,15 +239,6 @@ impl FacePairs {
             self.heights[lane] = if is_under { height } else { f64::INFINITY };
         }
     }
-}
-
-/// Returns the height at which the face with the corner `corner` and the unit normal `normal` stops a taxel, metres.
-#[inline(always)]
-fn face_height(corner: DVec3, normal: DVec3, reach: f64, at: DVec2) -> f64 {
-    let sign = if normal.z > 0.0 { 1.0 } else { -1.0 };
-    let shift = -(sign * reach) * normal;
-    let rise = normal.truncate().dot(at - (corner + shift).truncate());
-    corner.z + shift.z - rise / normal.z
 }
 
 /// Pairs of taxels and edges of triangles.
@@ -306,48 +287,15 @@ impl EdgePairs {
     #[inline(always)]
     pub fn evaluate(&mut self, placement: Placement) {
         let n = self.n.next_multiple_of(WIDTH).min(PAIRS);
-        let radius = placement.reach;
         for lane in 0..n {
             let from = placement.place(get(&self.ends[0], lane));
-            let edge = placement.place(get(&self.ends[1], lane)) - from;
-            let slack = HIDDEN_SLACK * radius * (edge.y.abs() + edge.x.abs());
-            let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-            for normals in &self.normals {
-                let normal = placement.turn(get(normals, lane));
-                let shift = radius * (normal.x * -edge.y + normal.y * edge.x);
-                let is_left = normal.z > 0.0;
-                let is_right = !is_left & ((normal.z < 0.0) | (shift != 0.0));
-                let (right_end, left_end) = (slack - shift, shift - slack);
-                high = if is_left & (right_end < high) {
-                    right_end
-                } else {
-                    high
-                };
-                low = if is_right & (left_end > low) {
-                    left_end
-                } else {
-                    low
-                };
-            }
-            let x = self.x[lane] - from.x;
-            let y = self.y[lane] - from.y;
-            let length2 = edge.x * edge.x + edge.y * edge.y;
-            let whole2 = length2 + edge.z * edge.z;
-            let beside = edge.x * y - edge.y * x;
-            let (length, whole) = (length2.sqrt(), whole2.sqrt());
-            let (sine, cosine) = (edge.z / whole, length / whole);
-            let d = beside / length;
-            let r2 = radius * radius - d * d;
-            let r = (if r2 > 0.0 { r2 } else { 0.0 }).sqrt();
-            let foot = (edge.x * x + edge.y * y) / length - r * sine;
-            let is_edge = (length2 > STEEP * STEEP * whole2)
-                & (beside >= low)
-                & (beside <= high)
-                & (beside * beside <= radius * radius * length2)
-                & (foot >= 0.0)
-                & (foot <= length);
-            let height = from.z + foot * (edge.z / length) - r * cosine;
-            self.heights[lane] = if is_edge { height } else { f64::INFINITY };
+            let to = placement.place(get(&self.ends[1], lane));
+            let normals = [
+                placement.turn(get(&self.normals[0], lane)),
+                placement.turn(get(&self.normals[1], lane)),
+            ];
+            let edge = SweptEdge::new(from, to, placement.reach, &normals);
+            self.heights[lane] = edge.height(DVec2::new(self.x[lane], self.y[lane]));
         }
     }
 }

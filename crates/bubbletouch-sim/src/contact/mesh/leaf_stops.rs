@@ -9,12 +9,13 @@
 
 use super::eight::{Eight, GROUPS, N};
 use super::line_search::{Boxes, Triangles};
-use super::line_stop::TriangleOnRay;
 use super::skin_mesh::{MeshAt, Stop};
 use super::taxel_lines::{Lines, TaxelLines, Thickness};
 use crate::contact::instructions::for_instructions;
+use crate::contact::law::triangle;
 use crate::objects::mesh_blocks::{Block, BlockNode, LANES, MAX_DEPTH};
 use crate::world::{LEAF, Leaf};
+use glam::DMat3;
 
 /// Maximum number of taxels of a block that are compared with the triangles one after the other. If larger, blocks of large triangles take longer; if smaller,
 /// blocks of small triangles.
@@ -284,10 +285,15 @@ impl LeafSearch<'_> {
     #[inline(never)]
     fn lower(&mut self, place: usize, taxel: usize) {
         let ray = &self.lines.rays[taxel];
-        let triangle = TriangleOnRay::new(&self.mesh.model().blocks().triangles[place], ray);
-        let height = match triangle.lowest() - ray.reach < self.leaf.behind[taxel] {
+        // In this frame the taxel rises from the origin along z.
+        let (x, y) = ray.direction.any_orthonormal_pair();
+        let turn = DMat3::from_cols(x, y, ray.direction).transpose();
+        let triangle = &self.mesh.model().blocks().triangles[place];
+        let corners = triangle.corners.map(|corner| turn * (corner - ray.origin));
+        let lowest = corners[0].z.min(corners[1].z).min(corners[2].z);
+        let height = match lowest - ray.reach < self.leaf.behind[taxel] {
             true => self.height_by_rule(place, taxel),
-            false => triangle.stop(),
+            false => triangle::stop(&corners, &triangle.face, &turn, ray.reach),
         };
         if height < self.stops.heights[taxel] {
             self.stops.triangles[taxel] = Some(self.mesh.model().blocks().numbers[place]);

@@ -1,7 +1,6 @@
 //! Contact of a taxel with a mesh: the height at which the mesh stops the taxel as it moves up along its axis.
 
-use super::swept_triangle::stopping_height;
-use crate::contact::law;
+use crate::contact::law::{stop_in_front, triangle::stopping_height};
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
 use crate::objects::MeshModel;
@@ -208,23 +207,4 @@ impl<'a> AxisView<'a> {
         let turned = self.turned(triangle);
         stop_in_front(&turned, self.reach, DVec2::ZERO, self.taxel.behind)
     }
-}
-
-/// Returns the height at which a triangle stops a taxel with the radius `reach` at the position `at`, metres.
-///
-/// Returns `None` if the triangle misses the taxel, or if a taxel on its far side would be behind the substrate at height `behind`, metres.
-pub(crate) fn stop_in_front(
-    triangle: &Triangle,
-    reach: f64,
-    at: DVec2,
-    behind: f64,
-) -> Option<f64> {
-    let height = stopping_height(triangle, reach, at)?;
-    if law::reaches_front(height, behind) {
-        return Some(height);
-    }
-    // Height of the far side: the highest place of contact for a taxel that moves down from above.
-    let mirrored = Triangle(triangle.0.map(|v| DVec3::new(v.x, v.y, -v.z)));
-    let highest = -stopping_height(&mirrored, reach, at)?;
-    law::reaches_front(highest, behind).then_some(height)
 }

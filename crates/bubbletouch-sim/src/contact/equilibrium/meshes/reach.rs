@@ -16,7 +16,6 @@ use super::super::reach::Reach;
 use super::algebra::{cross_matrix, outer};
 use crate::contact::law;
 use crate::contact::mesh::skin_mesh::MeshAt;
-use crate::contact::mesh::stopping_height;
 use crate::contact::taxel_contact::GRAZING;
 use crate::geometry::Pose;
 use crate::mesh::{Edge, Face, MeshFeatures, Triangle};
@@ -161,12 +160,12 @@ impl<'a> MeshOnSkin<'a> {
     /// Returns whether a taxel on the far side of a triangle would be behind its substrate.
     fn is_behind(&self, triangle: usize, probe: &Probe) -> bool {
         let [x, y] = probe.taxel.across;
-        let mirrored = self.features.face(triangle).corners.map(|corner| {
+        let corners = self.features.face(triangle).corners.map(|corner| {
             let from = corner - probe.taxel.center;
-            DVec3::new(from.dot(x), from.dot(y), -from.dot(probe.taxel.axis))
+            DVec3::new(from.dot(x), from.dot(y), from.dot(probe.taxel.axis))
         });
-        let far_side = stopping_height(&Triangle(mirrored), probe.reach, DVec2::ZERO);
-        far_side.is_none_or(|below| !law::reaches_front(-below, probe.floor))
+        let far_side = law::far_side(&Triangle(corners), probe.reach, DVec2::ZERO);
+        !far_side.is_some_and(|far_side| law::reaches_front(far_side, probe.floor))
     }
 
     fn in_patch(&self, part: u32, stop: &Stop, is_behind: bool) -> MeshReach {

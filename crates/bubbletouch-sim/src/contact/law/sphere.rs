@@ -1,34 +1,7 @@
-//! The contact law \[BT\]: how far a sphere deflects a taxel, and which spheres can push a taxel.
-//!
-//! | symbol | meaning | unit |
-//! |---|---|---|
-//! | S | ρ + R, radii of taxel and sphere | m |
-//! | h | height of the sphere's centre above the taxel's rest centre, along the taxel's axis | m |
-//! | b | distance of the sphere's centre from the taxel's axis | m |
-//! | q | S² − b² | m² |
-//! | B | −s − ρ, height of the substrate ([`Taxel::substrate`](crate::world::Taxel::substrate)) | m |
-//!
-//! Contact with a sphere requires the deflection `δ = √q − h` ([`deflection`]) where q > 0, unless the sphere is behind the substrate. A taxel that rests on
-//! the far side of the sphere has its centre at `h + √q`; the sphere counts if that is above B. Without a root this is
-//!
-//! ```text
-//! q > max(B − h, 0)²
-//! ```
-//!
-//! ([`is_in_front`]). A press from the front has B = −∞: all spheres with q > 0 count.
-//!
-//! Every layout has its own evaluator of this law. The evaluator finds the pairs of taxels and spheres with q > 0, and shares q and h among taxels. The
-//! evaluators are `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), and `reach` (with derivatives). In `whole_body` they
-//! are `row_press` (extrusions), `dome_patch` (rings) and `draped_patch` (tiles). For a mesh the rule is applied to the heights at which the mesh stops a
-//! taxel ([`reaches_front`]).
+//! Contact with a sphere: the deflection that it requires, for single taxels and for lanes of N taxels.
 
-use super::LanesBelow;
-
-/// Returns the deflection, metres, above which a taxel with this stroke (metres) is saturated: the stroke times 1 + 1e-12. The tolerance ensures that a press
-/// to a depth of exactly the stroke saturates no taxel.
-pub fn saturation_limit(stroke: f64) -> f64 {
-    stroke * (1.0 + 1e-12)
-}
+use super::behind::is_in_front;
+use crate::contact::LanesBelow;
 
 /// Factor slightly below 1, by more than the rounding error, for comparisons of squared deflections before a root is taken. If larger, rounding decides
 /// comparisons; if smaller, roots are taken needlessly.
@@ -41,25 +14,10 @@ pub(crate) fn deflection(q: f64, height: f64) -> f64 {
     q.sqrt() - height
 }
 
-/// Returns whether a sphere can push a taxel. The taxel must meet the sphere (q > 0), and the sphere must not be behind the substrate, whose height is
-/// `behind`, metres.
-#[inline(always)]
-pub(crate) fn is_in_front(q: f64, height: f64, behind: f64) -> bool {
-    let gap = (behind - height).max(0.0);
-    q > gap * gap
-}
-
-/// Returns whether an obstacle can push a taxel: the obstacle is not wholly behind the substrate at height `behind`. `far_side` is the height at which a
-/// taxel would touch the obstacle's far side, metres.
-#[inline(always)]
-pub(super) fn reaches_front(far_side: f64, behind: f64) -> bool {
-    far_side >= behind
-}
-
 /// Returns the deflection that contact with a sphere requires, metres. Returns 0 if the sphere is behind the substrate or misses the taxel, and at most 0 if
 /// the sphere is above the taxel.
 #[inline(always)]
-pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
+pub(crate) fn needed(q: f64, height: f64, behind: f64) -> f64 {
     // The root is taken for every value, because selecting between two numbers compiles to a vector instruction and a branch does not.
     let depth = deflection(q.max(0.0), height);
     if is_in_front(q, height, behind) {
@@ -71,7 +29,7 @@ pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
 
 /// Returns whether contact with a sphere may require more than a given deflection (metres, at least 0), without taking a root. The result `false` is exact.
 #[inline(always)]
-pub(super) fn may_exceed(q: f64, height: f64, deflection: f64) -> bool {
+pub(crate) fn may_exceed(q: f64, height: f64, deflection: f64) -> bool {
     shortfall(q, height, deflection) < 0.0
 }
 
@@ -80,22 +38,6 @@ pub(super) fn may_exceed(q: f64, height: f64, deflection: f64) -> bool {
 fn shortfall(q: f64, height: f64, deflection: f64) -> f64 {
     let bar = (height + deflection).max(0.0);
     bar * bar * ALMOST - q
-}
-
-/// Returns `squares` (m²) with −1 in place of the values of spheres that cannot push their taxel. `heights` are the heights of the spheres, and `behind` is
-/// the height of the substrate, metres.
-#[inline(always)]
-pub(crate) fn squares_in_front<const N: usize>(
-    squares: &[f64; N],
-    heights: &[f64; N],
-    behind: f64,
-) -> [f64; N] {
-    let (heights, mut squares) = (*heights, *squares);
-    for k in 0..N {
-        let counts = is_in_front(squares[k], heights[k], behind);
-        squares[k] = if counts { squares[k] } else { -1.0 };
-    }
-    squares
 }
 
 /// Returns whether the deflection √q − h, which contact with a sphere requires, may exceed the present deflection in any lane. The symbols q and h are
@@ -137,6 +79,7 @@ pub(crate) fn indent<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::law::behind::{reaches_front, squares_in_front};
     use crate::random::Seed;
     use rand::Rng;
 
