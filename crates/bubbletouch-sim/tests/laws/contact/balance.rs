@@ -1,5 +1,6 @@
 //! Laws of free objects. At rest all forces balance, wherever the world's origin is; otherwise the object is reported as escaped.
 
+use crate::random_scenes::{ball, bed};
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Outcome, PlacedSkin,
 };
@@ -7,7 +8,7 @@ use bubbletouch_sim::contact::{Press, Until, Workspace, spring_load};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rayon::prelude::*;
@@ -24,23 +25,8 @@ fn taxel(stiffness: f64) -> Taxel {
     }
 }
 
-/// Creates a bed of n × n taxels, 2 mm apart.
-fn bed(n: usize, stiffness: f64) -> Patch {
-    let grid = Grid {
-        nx: n,
-        ny: n,
-        pitch: 2e-3,
-    };
-    Patch::grid(grid, taxel(stiffness)).unwrap()
-}
-
 fn placed(patch: &Patch, world_from_patch: Pose) -> PlacedSkin<'_> {
     PlacedSkin::new(patch, world_from_patch)
-}
-
-fn ball(radius: f64) -> SphereUnion {
-    let center = DVec3::ZERO;
-    SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
 }
 
 fn equilibrium(object: &FreeObject, skins: &[PlacedSkin], start: &Pose) -> Equilibrium {

@@ -1,28 +1,17 @@
 //! Limits of the balance of free objects. Each case has the behaviour that the guide's page on limits states.
 
-use crate::random_scenes::{TAXEL, direction, rng};
+use crate::random_scenes::{TAXEL, bed, direction, rng};
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Outcome, PlacedSkin,
 };
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
-use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
 const G: f64 = 9.81;
 const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
-
-/// Creates a bed of n × n taxels, 2 mm apart.
-fn bed(n: usize, stiffness: f64) -> Patch {
-    let grid = Grid {
-        nx: n,
-        ny: n,
-        pitch: 2e-3,
-    };
-    let taxel = Taxel { stiffness, ..TAXEL };
-    Patch::grid(grid, taxel).unwrap()
-}
 
 fn union(places: impl IntoIterator<Item = DVec3>, radius: f64) -> SphereUnion {
     let spheres = places.into_iter().map(|center| Sphere { center, radius });

@@ -1,12 +1,13 @@
 //! Laws of taxels with mass: closed forms, rest, energy, and the limit of explicit steps.
 
+use crate::random_scenes;
 use bubbletouch_sim::contact::equilibrium::{EquilibriumSolver, FreeObject, Outcome, PlacedSkin};
 use bubbletouch_sim::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, State, Steps, System, rest, run,
     skin_sim,
 };
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
+use bubbletouch_sim::objects::Model;
 use bubbletouch_sim::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::DVec3;
 
@@ -45,11 +46,7 @@ fn bowl(n: usize, taxel: Taxel) -> Patch {
 }
 
 fn ball() -> Model {
-    let sphere = Sphere {
-        center: DVec3::ZERO,
-        radius: BALL,
-    };
-    SphereUnion::new(vec![sphere]).unwrap().into()
+    random_scenes::ball(BALL).into()
 }
 
 fn at(height: f64) -> Pose {

@@ -5,12 +5,13 @@ use bubbletouch_sim::contact::{
     Until, Workspace, spring_load,
 };
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch_sim::objects::{MeshModel, Model};
 use bubbletouch_sim::world::{Grid, Layout, Patch, Shear, Shears, Taxel, Taxels};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 
 use crate::mesh_shapes::cuboid;
+use crate::random_scenes;
 use crate::random_scenes::{TAXEL, direction, rng};
 
 const SHEAR: Shear = Shear {
@@ -27,11 +28,8 @@ fn flat(n: usize, pitch: f64) -> Patch {
     Patch::grid(grid, TAXEL).unwrap()
 }
 
-/// Creates a ball around the origin of its frame.
 fn ball(radius: f64) -> Model {
-    let center = DVec3::ZERO;
-    let spheres = vec![Sphere { center, radius }];
-    SphereUnion::new(spheres).unwrap().into()
+    random_scenes::ball(radius).into()
 }
 
 /// Creates a box whose lower side is in the plane z = 0 of its frame.

@@ -1,24 +1,17 @@
 //! Laws of the contact stage, checked against a slow and simple oracle.
 
-use crate::random_scenes::Scene;
+use crate::random_scenes::{Scene, TAXEL};
 use crate::scans::scan;
 use crate::time_loop::time_loop;
 use bubbletouch_sim::contact::{Contact, Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::world::{Grid, Patch, Phase, RestPoses, Taxel, Touch, VelocityPlan};
+use bubbletouch_sim::world::{Grid, Patch, Phase, RestPoses, Touch, VelocityPlan};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::slice::from_ref;
-
-const TAXEL: Taxel = Taxel {
-    radius: 1e-3,
-    stiffness: 100.0,
-    damping: 0.0,
-    stroke: 5e-3,
-};
 
 fn random_scene(rng: &mut ChaCha8Rng) -> (Scene, Vec<Pose>) {
     let grid = Grid {

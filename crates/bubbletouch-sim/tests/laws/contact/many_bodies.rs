@@ -1,5 +1,6 @@
 //! Laws of several free objects: all forces balance, as computed from the geometry alone, and no object penetrates a rigid one.
 
+use crate::random_scenes::{ball, bed};
 use crate::{reference_data, scans};
 use bubbletouch_sim::contact::GRAZING;
 use bubbletouch_sim::contact::equilibrium::{
@@ -439,26 +440,6 @@ fn taxel(stiffness: f64) -> Taxel {
         damping: 0.0,
         stroke: 8e-3,
     }
-}
-
-/// Creates a bed of n × n taxels, 2 mm apart.
-fn bed(n: usize, stiffness: f64) -> Patch {
-    let grid = Grid {
-        nx: n,
-        ny: n,
-        pitch: 2e-3,
-    };
-    let taxel = Taxel {
-        radius: 1e-3,
-        stroke: 5e-3,
-        ..taxel(stiffness)
-    };
-    Patch::grid(grid, taxel).unwrap()
-}
-
-fn ball(radius: f64) -> SphereUnion {
-    let center = DVec3::ZERO;
-    SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
 }
 
 /// Returns scanned objects, packed to 1.5 mm; none if the scans are missing.

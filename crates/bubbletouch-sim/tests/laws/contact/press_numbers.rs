@@ -6,7 +6,7 @@ use bubbletouch_sim::contact::{FrictionState, MovedObject, Press, Row, Until, Wo
 use bubbletouch_sim::dynamics::{Drive, System};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{LengthUnit, TriangleMesh};
-use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereClusters, SphereUnion};
+use bubbletouch_sim::objects::{MeshModel, Model, SphereClusters};
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::signal::SensorError;
 use bubbletouch_sim::whole_body::{BodyState, WholeBody};
@@ -14,6 +14,7 @@ use bubbletouch_sim::world::{Grid, Layout, Patch, Shear, Shears, Taxels};
 use bubbletouch_sim::{Error, Result};
 use glam::{DQuat, DVec3};
 
+use crate::random_scenes;
 use crate::random_scenes::TAXEL;
 
 /// Use of a public press with an object at a pose, and with the number that ends the press; presses without such a number ignore the number.
@@ -216,11 +217,7 @@ fn patches() -> [Patch; 2] {
 }
 
 fn ball() -> Model {
-    let ball = Sphere {
-        center: DVec3::ZERO,
-        radius: 0.01,
-    };
-    SphereUnion::new(vec![ball]).unwrap().into()
+    random_scenes::ball(0.01).into()
 }
 
 /// Pose at which both patches press both objects.

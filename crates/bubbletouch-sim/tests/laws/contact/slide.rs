@@ -2,11 +2,12 @@
 
 use bubbletouch_sim::contact::{FrictionState, NormalForce, Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch_sim::objects::{MeshModel, Model};
 use bubbletouch_sim::world::{ArrayLayout, Grid, Patch, Shear, Shears, Taxels};
 use glam::{DVec2, DVec3};
 
 use crate::mesh_shapes;
+use crate::random_scenes;
 use crate::random_scenes::TAXEL;
 
 const GRID: Grid = Grid {
@@ -25,11 +26,7 @@ fn skin(layout: ArrayLayout) -> Patch {
 }
 
 fn ball(radius: f64) -> [Model; 1] {
-    let sphere = Sphere {
-        center: DVec3::ZERO,
-        radius,
-    };
-    [SphereUnion::new(vec![sphere]).unwrap().into()]
+    [random_scenes::ball(radius).into()]
 }
 
 /// Returns the forces on all taxels after a press and a slide.
