@@ -35,8 +35,8 @@ fn main() -> Result<(), Error> {
         .map_init(Workspace::new, |workspace, pose| {
             let turn = DQuat::from_rotation_z(f64::from(pose) * std::f64::consts::TAU / 1000.0);
             let pose = Pose::new(turn, DVec3::new(0.0, 0.0, -0.05));
-            let press = Press::new(&patch, &object, &[pose], Until::Depth(1e-3));
-            let contact = press.run(workspace)?;
+            let contact =
+                Press::new(&patch, &object, &[pose], Until::Depth(1e-3)).run(workspace)?;
             Ok::<_, Error>(contact.map_or(0, |contact| contact.n_touched))
         });
     let touched: Vec<usize> = touched.collect::<Result<_, _>>()?;
