@@ -2,7 +2,7 @@
 
 use crate::command::terminal::output::check_ending;
 use crate::command::terminal::streams::{note, write_out};
-use bubbletouch::calibration::{Estimate, calibrate as estimated};
+use bubbletouch::calibration::{NotIdentifiable, calibrate as estimated};
 use bubbletouch::files::write_bytes;
 use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames};
 use bubbletouch::{Error, Result};
@@ -133,9 +133,9 @@ pub fn calibrate(args: &Args) -> Result<()> {
     let (skin, zero) = files.read()?;
     let mut found =
         estimated(&skin).map_err(|error| error.under(format!("{}: ", args.frames.display())))?;
-    if args.full_scale.is_none() && found.converter.value().is_some_and(|bits| bits > 0.0) {
+    if args.full_scale.is_none() && found.converter.as_ref().is_ok_and(|bits| bits.value > 0.0) {
         let why = "the full scale of the converter is not given (--full-scale)";
-        found.converter = Estimate::NotIdentifiable(why.to_owned());
+        found.converter = Err(NotIdentifiable::from(why));
     }
     let (rows, columns) = skin.shape;
     let mut text = format!(

@@ -1,7 +1,7 @@
 //! Calibration of simulated skins with known settings: each setting is recovered within 10 %, or reported as not identifiable.
 
 use crate::study::Study;
-use bubbletouch::calibration::{Calibration, Estimate, RecordedSkin, calibrate};
+use bubbletouch::calibration::{Calibration, Measured, RecordedSkin, calibrate};
 use bubbletouch::random::Seed;
 use bubbletouch::signal::{
     Chain, Noise, NoiseUnit, Recording, SensorError, SignalStep, SignalWorkspace,
@@ -153,8 +153,8 @@ fn are_right(settings: Settings, untouched_times: Array1<f64>) -> Vec<&'static s
     ];
     for (name, estimate, expected, none) in all {
         match estimate {
-            Estimate::NotIdentifiable(_) => unknown.push(name),
-            Estimate::Found { value, interval } => {
+            Err(_) => unknown.push(name),
+            Ok(Measured { value, interval }) => {
                 let allowed = (0.1 * expected).max(none);
                 let given = format!("{settings:?}: {name}: {estimate:?}");
                 assert!((value - expected).abs() <= allowed, "{given}");

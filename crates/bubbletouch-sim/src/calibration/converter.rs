@@ -2,7 +2,7 @@
 //!
 //! The step q is the greatest common divisor of all differences of readings, computed by Euclid's algorithm with a tolerance for single precision.
 
-use super::{Estimate, RecordedSkin};
+use super::{Estimate, Measured, NotIdentifiable, RecordedSkin};
 
 /// Approximate maximum number of readings that the estimate uses. More readings take longer without a better result.
 const N_READINGS: usize = 200_000;
@@ -35,18 +35,19 @@ pub fn step(skin: &RecordedSkin, saturation: f64) -> Option<f64> {
 pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
     let n = different_readings(skin, saturation).len();
     if n < FEWEST {
-        return Estimate::unknown(format!("there are only {n} different readings"));
+        let why = format!("there are only {n} different readings");
+        return Err(NotIdentifiable(why));
     }
     let Some(step) = step(skin, saturation) else {
-        return Estimate::exactly(0.0);
+        return Ok(Measured::exactly(0.0));
     };
     let bits = (1.0 / step + 1.0).log2();
     match (bits - bits.round()).abs() < 1e-3 {
-        true => Estimate::exactly(bits.round()),
-        false => Estimate::unknown(format!(
+        true => Ok(Measured::exactly(bits.round())),
+        false => Err(NotIdentifiable(format!(
             "readings are multiples of {step:.5} of the full scale, which are {:.1} steps and no whole power of two less one: give the full scale of the converter",
             1.0 / step
-        )),
+        ))),
     }
 }
 

@@ -9,7 +9,7 @@
 use super::gain::Gains;
 use super::robust::{jackknife, mode};
 use super::saturation::CLIPPED;
-use super::{Estimate, RecordedSkin};
+use super::{Estimate, NotIdentifiable, RecordedSkin};
 use crate::signal::{Crosstalk, Effect};
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
@@ -41,7 +41,7 @@ pub(super) fn estimate(
     (noise, width): (f64, f64),
 ) -> Estimate {
     if width > 0.0 {
-        return Estimate::unknown("smoothing hides how sharp the edges of a contact are");
+        return Err("smoothing hides how sharp the edges of a contact are".into());
     }
     let stride = touched.nrows().div_ceil(N_FRAMES).max(1);
     let frames = touched.outer_iter().step_by(stride);
@@ -57,17 +57,17 @@ pub(super) fn estimate(
         let mut all = shares.concat();
         if all.len() < FEWEST {
             let n = all.len();
-            return Estimate::unknown(format!("only {n} taxels are beside an edge of a contact"));
+            let why = format!("only {n} taxels are beside an edge of a contact");
+            return Err(NotIdentifiable(why));
         }
         leak = (4.0 * mode(&mut all)).clamp(0.0, LARGEST);
     }
     if leak == LARGEST {
-        return Estimate::unknown(format!(
-            "more than {LARGEST} seems to leak: edges are not sharp"
-        ));
+        let why = format!("more than {LARGEST} seems to leak: edges are not sharp");
+        return Err(NotIdentifiable(why));
     }
     if (leak - before).abs() > CONVERGED[0].max(CONVERGED[1] * leak) {
-        return Estimate::unknown("noise or drifting zeros hide the edges of contacts");
+        return Err("noise or drifting zeros hide the edges of contacts".into());
     }
     let found = jackknife(shares.len(), |keep| {
         let kept = (0..shares.len()).filter(|&frame| keep(frame));
@@ -76,7 +76,7 @@ pub(super) fn estimate(
             .collect();
         Some(4.0 * mode(&mut kept))
     });
-    found.unwrap_or_else(|| Estimate::unknown("there are too few frames"))
+    Ok(found.ok_or("there are too few frames")?)
 }
 
 /// Returns, for each taxel beside an edge of contact, the ratio of its reading to the sum of its neighbours' deflections.

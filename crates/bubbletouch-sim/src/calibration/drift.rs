@@ -7,7 +7,7 @@
 use super::robust::{jackknife, variance};
 use super::smoothing::Smoothed;
 use super::untouched::{Untouched, Zero};
-use super::{Estimate, RecordedSkin};
+use super::{Estimate, Measured, RecordedSkin};
 use std::f64::consts::FRAC_PI_2;
 
 /// Minimum time between the first and the last frames without contact, as a fraction of the recording session. A shorter time determines the drift at the end
@@ -21,12 +21,10 @@ pub(super) fn estimate(
     untouched: Option<&Untouched>,
     (noise, width): (f64, f64),
 ) -> Estimate {
-    let Some(untouched) = untouched else {
-        return Estimate::unknown("there are too few untouched frames");
-    };
+    let untouched = untouched.ok_or("there are too few untouched frames")?;
     let span = untouched.times[untouched.times.len() - 1] - untouched.times[0];
     if span < SPAN {
-        return Estimate::unknown("untouched frames are from one time of the session");
+        return Err("untouched frames are from one time of the session".into());
     }
     let n_taxels = skin.n_taxels();
     // Variance of the mean of a run due to noise and rounding.
@@ -38,20 +36,21 @@ pub(super) fn estimate(
             true => above(untouched, taxels, FRAC_PI_2 * of_mean),
         }
     });
+    let found = found.ok_or(
+        "most untouched readings are the least that the skin reads: zeros below it are lost",
+    )?;
     let share = Smoothed::new(skin.shape, width).variance;
     let std = |variance: f64| (variance / share).max(0.0).sqrt();
     // A converter hides values below half of its step.
     let hidden = 0.5 * untouched.step;
-    match found.map(|variance| variance.map(std)) {
-        Some(Estimate::Found { value, interval }) if value < hidden => Estimate::Found {
+    let found = found.map(std);
+    Ok(match found.value < hidden {
+        true => Measured {
             value: 0.0,
-            interval: [0.0, interval[1].max(hidden)],
+            interval: [0.0, found.interval[1].max(hidden)],
         },
-        Some(found) => found,
-        None => Estimate::unknown(
-            "most untouched readings are the least that the skin reads: zeros below it are lost",
-        ),
-    }
+        false => found,
+    })
 }
 
 /// Returns how much the change of the zero offset varies between taxels (variance). The change is from the first run of frames without contact to the last

@@ -4,7 +4,7 @@
 //! taxels are classified as dead. If none of the surrounding taxels changed, the state is unknown.
 
 use super::robust::median;
-use super::{Estimate, RecordedSkin};
+use super::{Estimate, Measured, NotIdentifiable, RecordedSkin};
 use crate::statistics::interval::Interval;
 use ndarray::Axis;
 
@@ -76,17 +76,17 @@ impl FoundFaults {
         let n_taxels = self.is_sound.len();
         if 2 * self.n_known < n_taxels {
             let n_still = n_taxels - self.n_known;
-            return Estimate::unknown(format!(
+            return Err(NotIdentifiable(format!(
                 "{n_still} of {n_taxels} taxels read the same in all frames, as if nothing had touched them"
-            ));
+            )));
         }
         let n = self.faults.iter().filter(|fault| is_counted(fault)).count();
         match Interval::wilson(n, self.n_known, 0.95) {
-            Ok(Interval { low, high }) => Estimate::Found {
+            Ok(Interval { low, high }) => Ok(Measured {
                 value: n as f64 / self.n_known as f64,
                 interval: [low, high],
-            },
-            Err(error) => Estimate::unknown(error.to_string()),
+            }),
+            Err(error) => Err(NotIdentifiable(error.to_string())),
         }
     }
 }

@@ -11,7 +11,7 @@
 use super::robust::{jackknife, mean, median};
 use super::saturation::CLIPPED;
 use super::touched::Errors;
-use super::{Estimate, RecordedSkin};
+use super::{Estimate, NotIdentifiable, RecordedSkin};
 use crate::signal::{Effect, Smoothing};
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
@@ -57,10 +57,10 @@ impl Gains {
         let known = halves.iter().flatten().count();
         if known < MIN_TAXELS {
             return Self {
-                spread: Estimate::unknown(format!(
+                spread: Err(NotIdentifiable(format!(
                     "only {known} taxels are well pressed together with all of their neighbours in {} frames or more",
                     2 * MIN_FRAMES
-                )),
+                ))),
                 of_taxels: Array1::ones(halves.len()),
             };
         }
@@ -71,10 +71,11 @@ impl Gains {
             Some(covariance(&kept) / share)
         });
         let of_zeros = (errors.of_mean_zeros * inverse).powi(2);
-        let spread = spread.map(|spread| spread.lowered_by(of_zeros));
         let std = |variance: f64| variance.max(0.0).exp_m1().sqrt();
         Self {
-            spread: spread.map_or_else(|| Estimate::unknown("too few taxels"), |v| v.map(std)),
+            spread: spread
+                .map(|spread| spread.lowered_by(of_zeros).map(std))
+                .ok_or("too few taxels".into()),
             of_taxels: gains(skin, &halves),
         }
     }

@@ -14,7 +14,7 @@
 //! | [`crosstalk`] | touched frames | readings of untouched taxels beside an edge of contact, relative to their neighbours |
 //! | [`stiffness`] | touched frames, forces | force over the sum of deflections |
 //!
-//! Each estimate is a number with a 95 % interval, or [not identifiable](Estimate::NotIdentifiable) with the reason. Zero is a valid estimate: frames can
+//! Each estimate is a number with a 95 % interval, or [not identifiable](NotIdentifiable) with the reason. Zero is a valid estimate: frames can
 //! show that an effect is absent.
 
 pub mod converter;
@@ -33,11 +33,12 @@ pub mod stiffness;
 mod touched;
 mod untouched;
 
-pub use estimate::Estimate;
+pub use estimate::{Estimate, Measured, NotIdentifiable};
 pub use recorded_skin::RecordedSkin;
 pub use saturation::plateau;
 
 use crate::error::Result;
+use estimate::value;
 
 /// Estimated signal parameters of a recorded skin, each with a 95 % interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,36 +72,34 @@ pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
     let faults = faults::find(skin);
     let saturation = touched::saturation(skin, &faults);
     let converter = converter::estimate(skin, saturation);
-    let step = converter.value().map_or(0.0, converter::step_of);
+    let step = value(&converter).map_or(0.0, converter::step_of);
     let untouched = untouched::Untouched::new(skin, &faults, step);
     let untouched = untouched.as_ref();
     if let Some(untouched) = untouched {
         untouched.check(&faults)?;
     }
     let smoothing = smoothing::estimate(skin, untouched);
-    let width = smoothing.value().unwrap_or(0.0);
+    let width = value(&smoothing).unwrap_or(0.0);
     let read_noise = noise::of_readings(untouched);
-    let std = read_noise.value().unwrap_or(0.0);
+    let std = value(&read_noise).unwrap_or(0.0);
     let drift = drift::estimate(skin, untouched, (std, width));
-    let drifts = drift.value().unwrap_or(1.0);
+    let drifts = value(&drift).unwrap_or(1.0);
     let read_noise = noise::without_drift(read_noise, untouched, &drift);
     let touched = touched::touched(skin, &faults, (untouched, drifts), saturation);
     let is_clipped = untouched.is_some_and(|untouched| untouched.is_clipped);
-    let hides_zeros = is_clipped && drift.value() != Some(0.0);
+    let hides_zeros = is_clipped && value(&drift) != Some(0.0);
     let told = |estimate: Estimate| match hides_zeros {
-        true => Estimate::unknown("readings are clipped at zeros that drift"),
-        false => estimate.resolved(),
+        true => Err("readings are clipped at zeros that drift".into()),
+        false => estimate.and_then(Measured::resolved),
     };
     let errors = touched::Errors::new(skin, &touched, untouched, (&drift, &read_noise));
     let gains = gain::Gains::new(skin, &touched, (&errors, width));
     let of_gains = match is_clipped && width > 0.0 {
-        true => {
-            Estimate::unknown("readings are clipped at the zero, and smoothing mixes the gains")
-        }
+        true => Err("readings are clipped at the zero, and smoothing mixes the gains".into()),
         false => gains.spread.clone(),
     };
     Ok(Calibration {
-        noise: noise::before_smoothing(read_noise, skin, width).resolved(),
+        noise: noise::before_smoothing(read_noise, skin, width),
         crosstalk: told(crosstalk::estimate(
             skin,
             &touched,
@@ -112,11 +111,11 @@ pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
             &touched,
             is_clipped.then_some(std),
         )),
-        gain: of_gains.resolved(),
+        gain: of_gains.and_then(Measured::resolved),
         dead: faults.share(|fault| fault.is_dead),
         stuck: faults.share(|fault| !fault.is_dead),
         converter,
         smoothing,
-        drift: drift.resolved(),
+        drift: drift.and_then(Measured::resolved),
     })
 }

@@ -5,10 +5,11 @@
 //! clipped, σ is the mean over taxels of the estimate from censored readings (Tobin 1958). Smoothing reduces the variance of the noise by a
 //! known factor.
 
+use super::estimate::value;
 use super::robust::{jackknife, mean, variance};
 use super::smoothing::Smoothed;
 use super::untouched::{Untouched, Zero};
-use super::{Estimate, RecordedSkin};
+use super::{Estimate, NotIdentifiable, RecordedSkin};
 
 /// Smallest noise that can be estimated, in steps of the converter; below this value Sheppard's correction is invalid.
 const SEEN: f64 = 0.5;
@@ -18,9 +19,7 @@ const SEEN_CLIPPED: f64 = 2.0;
 
 /// Estimates the standard deviation of the noise in the readings (after any smoothing), as a fraction of the full scale.
 pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
-    let Some(untouched) = untouched else {
-        return Estimate::unknown("there are too few untouched frames");
-    };
+    let untouched = untouched.ok_or("there are too few untouched frames")?;
     let n_taxels = untouched.skin.n_taxels();
     let found = jackknife(n_taxels, |keep| {
         let taxels = (0..n_taxels).filter(|&taxel| keep(taxel));
@@ -33,14 +32,14 @@ pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
         true => (SEEN, "half a step"),
         false => (SEEN_CLIPPED, "two steps"),
     };
-    match found {
-        Some(Estimate::Found { value, .. }) if value < steps * untouched.step => {
-            Estimate::unknown(format!("it is below {words} of the converter"))
-        }
-        Some(found) => found,
-        None => Estimate::unknown(
-            "most untouched readings are the least that the skin reads: noise below it is lost",
-        ),
+    let found = found.ok_or(
+        "most untouched readings are the least that the skin reads: noise below it is lost",
+    )?;
+    match found.value < steps * untouched.step {
+        true => Err(NotIdentifiable(format!(
+            "it is below {words} of the converter"
+        ))),
+        false => Ok(found),
     }
 }
 
@@ -51,20 +50,19 @@ pub(super) fn without_drift(
     untouched: Option<&Untouched>,
     drift: &Estimate,
 ) -> Estimate {
-    let (Some(untouched), Some(drift)) = (untouched, drift.value()) else {
+    let (Some(untouched), Some(drift)) = (untouched, value(drift)) else {
         return read;
     };
-    let squared = read.map(|std| std * std);
+    let squared = read?.map(|std| std * std);
     let excess = 0.5 * drift.powi(2) * untouched.frame_interval();
-    squared
-        .lowered_by(excess)
-        .map(|square| square.max(0.0).sqrt())
+    let lowered = squared.lowered_by(excess);
+    Ok(lowered.map(|square| square.max(0.0).sqrt()))
 }
 
-/// Converts the noise of the readings to the noise before smoothing, given the smoothing `width` in pitches.
+/// Converts the noise of the readings to the noise before smoothing, given the smoothing `width` in pitches. The estimate is resolved.
 pub(super) fn before_smoothing(read: Estimate, skin: &RecordedSkin, width: f64) -> Estimate {
     let share = Smoothed::new(skin.shape, width).variance.sqrt();
-    read.map(|std| std / share)
+    read?.map(|std| std / share).resolved()
 }
 
 fn of_differences(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f64> {

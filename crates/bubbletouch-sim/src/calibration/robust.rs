@@ -1,6 +1,6 @@
 //! Statistics that are robust against outliers, and their confidence intervals.
 
-use super::Estimate;
+use super::Measured;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Number of groups of data in the jackknife method. If smaller, the interval is less accurate; if larger, the computation takes longer.
@@ -83,7 +83,7 @@ pub fn mode(values: &mut [f64]) -> f64 {
 pub fn jackknife(
     n: usize,
     estimate: impl Fn(&dyn Fn(usize) -> bool) -> Option<f64>,
-) -> Option<Estimate> {
+) -> Option<Measured> {
     let value = estimate(&|_| true).filter(|value| value.is_finite())?;
     let group = |unit: usize| unit * N_GROUPS / n.max(1);
     let without = (0..N_GROUPS).filter_map(|left_out| estimate(&|unit| group(unit) != left_out));
@@ -92,7 +92,7 @@ pub fn jackknife(
     let middle = mean(without.iter().copied());
     let squares: f64 = without.iter().map(|one| (one - middle).powi(2)).sum();
     let half = student(k - 1.0)? * ((k - 1.0) / k * squares).sqrt();
-    Some(Estimate::Found {
+    Some(Measured {
         value,
         interval: [value - half, value + half],
     })
@@ -135,13 +135,10 @@ mod tests {
                 let kept = values.iter().enumerate().filter(|(unit, _)| keep(*unit));
                 Some(mean(kept.map(|(_, value)| *value)))
             };
-            match jackknife(values.len(), of) {
-                Some(Estimate::Found {
-                    interval: [low, high],
-                    ..
-                }) => low <= 0.0 && 0.0 <= high,
-                _ => false,
-            }
+            jackknife(values.len(), of).is_some_and(|found| {
+                let [low, high] = found.interval;
+                low <= 0.0 && 0.0 <= high
+            })
         });
         assert!((180..=199).contains(&holds.count()));
     }

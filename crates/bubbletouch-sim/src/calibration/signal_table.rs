@@ -1,7 +1,7 @@
 //! Table `[signal]` of a calibration, in the format of a study.
 
 use super::smoothing::narrow;
-use super::{Calibration, Estimate};
+use super::{Calibration, Estimate, Measured};
 use crate::text::numbers::short_literal;
 
 /// Limit below which values are written as zero: half of the last written digit.
@@ -11,10 +11,10 @@ impl Calibration {
     /// Returns TOML for a skin with this pitch (millimetres): each key with its interval. Parameters that are not identifiable, or whose interval is wide,
     /// are comments with the reason.
     pub fn signal_table(&self, pitch_mm: f64) -> String {
-        let smoothing = narrow(self.smoothing.clone());
-        let smoothing = smoothing.map(|pitches| pitches * pitch_mm);
-        let [dead, stuck, converter] =
-            [&self.dead, &self.stuck, &self.converter].map(|estimate| estimate.clone().resolved());
+        let smoothing = self.smoothing.clone().and_then(narrow);
+        let smoothing = smoothing.map(|width| width.map(|pitches| pitches * pitch_mm));
+        let [dead, stuck, converter] = [&self.dead, &self.stuck, &self.converter]
+            .map(|estimate| estimate.clone().and_then(Measured::resolved));
         let parameters: [(&str, &str, &Estimate); 8] = [
             ("crosstalk", "crosstalk", &self.crosstalk),
             ("gain", "gain_std", &self.gain),
@@ -29,7 +29,7 @@ impl Calibration {
         let mut keys = String::new();
         for (step, key, estimate) in parameters {
             keys += &line(key, estimate);
-            if estimate.value().is_some() {
+            if estimate.is_ok() {
                 steps.push(format!("\"{step}\""));
             }
         }
@@ -45,10 +45,10 @@ impl Calibration {
 
 fn line(key: &str, estimate: &Estimate) -> String {
     match estimate {
-        Estimate::Found {
+        Ok(Measured {
             value,
             interval: [low, high],
-        } => {
+        }) => {
             let shown = |number: f64| match number.abs() < NONE {
                 true => "0".to_owned(),
                 false => short_literal(number),
@@ -56,6 +56,6 @@ fn line(key: &str, estimate: &Estimate) -> String {
             let [value, low, high] = [*value, *low, *high].map(shown);
             format!("{key} = {value}  # 95 % interval {low} to {high}\n")
         }
-        Estimate::NotIdentifiable(why) => format!("# {key}: not identifiable: {why}\n"),
+        Err(why) => format!("# {key}: {why}\n"),
     }
 }

@@ -6,7 +6,7 @@
 use super::estimate::NONE;
 use super::robust::jackknife;
 use super::untouched::{Untouched, Zero};
-use super::{Estimate, RecordedSkin};
+use super::{Estimate, Measured, RecordedSkin};
 use crate::signal::{Effect, Smoothing};
 use crate::world::Grid;
 use std::f64::consts::FRAC_PI_2;
@@ -82,11 +82,10 @@ impl Line {
 /// Estimates the width of the smoothing kernel, in pitches.
 pub(super) fn estimate(skin: &RecordedSkin, untouched: Option<&Untouched>) -> Estimate {
     let (rows, columns) = skin.shape;
-    let Some(untouched) = untouched else {
-        return Estimate::unknown("there are too few untouched frames to tell how noise is alike");
-    };
+    let untouched =
+        untouched.ok_or("there are too few untouched frames to tell how noise is alike")?;
     if rows * columns < 4 {
-        return Estimate::unknown("there are too few taxels");
+        return Err("there are too few taxels".into());
     }
     let n_runs = untouched.runs.nrows();
     let rows_of = |keep: &dyn Fn(usize) -> bool| {
@@ -100,33 +99,27 @@ pub(super) fn estimate(skin: &RecordedSkin, untouched: Option<&Untouched>) -> Es
         }
         sums.correlation(untouched)
     };
-    let Some(correlation) = jackknife(skin.n_taxels(), rows_of) else {
-        return Estimate::unknown("untouched readings have no noise that is seen");
-    };
+    let correlation = jackknife(skin.n_taxels(), rows_of);
+    let correlation = correlation.ok_or("untouched readings have no noise that is seen")?;
     let width = |correlation: f64| width_of(skin.shape, correlation);
-    match correlation {
-        Estimate::Found {
-            interval: [low, high],
-            ..
-        } if low <= 0.0 => Estimate::Found {
+    let [low, high] = correlation.interval;
+    Ok(match low <= 0.0 {
+        true => Measured {
             value: 0.0,
             interval: [0.0, width(high)],
         },
-        found => found.map(width),
-    }
+        false => correlation.map(width),
+    })
 }
 
 /// Returns 0 if neighbours have at most a negligible correlation ([`NONE`]) at the upper end of the interval. Otherwise returns the width if its interval is
 /// narrow; a wider estimate becomes not identifiable.
-pub(super) fn narrow(width: Estimate) -> Estimate {
+pub(super) fn narrow(width: Measured) -> Estimate {
     // The correlation of neighbours is exp(−1 / 4σ²) for a Gaussian of width σ.
     let as_good_as_none = (-0.25 / NONE.ln()).sqrt();
-    match width {
-        Estimate::Found {
-            value: 0.0,
-            interval: [_, high],
-        } if high <= as_good_as_none => width,
-        other => other.resolved(),
+    match width.value == 0.0 && width.interval[1] <= as_good_as_none {
+        true => Ok(width),
+        false => width.resolved(),
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::robust::{jackknife, median};
 use super::saturation::CLIPPED;
-use super::{Estimate, RecordedSkin};
+use super::{Estimate, NotIdentifiable, RecordedSkin};
 use ndarray::Array2;
 
 /// Minimum number of frames for an estimate of the stiffness.
@@ -22,17 +22,12 @@ pub(super) fn estimate(
     touched: &Array2<f64>,
     clipped_noise: Option<f64>,
 ) -> Estimate {
-    let Some(forces) = &skin.forces else {
-        return Estimate::unknown("there are no forces");
-    };
-    let Some(stroke) = skin.stroke else {
-        return Estimate::unknown("nothing says how deep the full scale is");
-    };
+    let forces = skin.forces.as_ref().ok_or("there are no forces")?;
+    let stroke = skin.stroke;
+    let stroke = stroke.ok_or("nothing says how deep the full scale is")?;
     let noise = clipped_noise.unwrap_or(0.0);
     if noise > MAX_CLIPPED_NOISE {
-        return Estimate::unknown(
-            "readings are clipped at the zero, and noise hides the light ones",
-        );
+        return Err("readings are clipped at the zero, and noise hides the light ones".into());
     }
     let counts = |reading: &f64| clipped_noise.is_none() || *reading > ABOVE_NOISE * noise;
     let frames = touched.outer_iter().zip(forces);
@@ -48,9 +43,8 @@ pub(super) fn estimate(
     let hard: Vec<&(f64, f64)> = sums.iter().filter(|(force, _)| *force >= usual).collect();
     if hard.len() < MIN_FRAMES {
         let n = sums.len();
-        return Estimate::unknown(format!(
-            "only {n} frames have a force and no taxel at its full scale"
-        ));
+        let why = format!("only {n} frames have a force and no taxel at its full scale");
+        return Err(NotIdentifiable(why));
     }
     let found = jackknife(hard.len(), |keep| {
         let kept = hard.iter().enumerate().filter(|(frame, _)| keep(*frame));
@@ -60,5 +54,5 @@ pub(super) fn estimate(
                 .collect::<Vec<_>>(),
         ))
     });
-    found.unwrap_or_else(|| Estimate::unknown("there are too few frames"))
+    Ok(found.ok_or("there are too few frames")?)
 }

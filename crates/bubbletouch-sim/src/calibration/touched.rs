@@ -1,5 +1,6 @@
 //! Frames with contact after subtraction of the taxels' zero offsets.
 
+use super::estimate::value;
 use super::faults::FoundFaults;
 use super::robust::{mean, median, mode, variance};
 use super::saturation::plateau;
@@ -87,11 +88,8 @@ impl Errors {
         }
         of_taxels.retain(|rest| rest.is_finite());
         let seen = [mean(squares.into_iter()), mean_square(of_taxels)];
-        let noise = noise.value().unwrap_or_else(|| mean(spreads.into_iter()));
-        let known = untouched.zip(match drift {
-            Estimate::Found { interval, .. } => Some(interval[1]),
-            Estimate::NotIdentifiable(_) => None,
-        });
+        let noise = value(noise).unwrap_or_else(|| mean(spreads.into_iter()));
+        let known = untouched.zip(drift.as_ref().ok().map(|drift| drift.interval[1]));
         let known = known.map_or([f64::INFINITY; 2], |(untouched, drift)| {
             untouched.square_errors(&skin.touched_times, (drift, noise))
         });
