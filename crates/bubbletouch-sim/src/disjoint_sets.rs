@@ -1,5 +1,7 @@
 //! Disjoint sets of numbers (union-find with path halving).
 
+use std::collections::BTreeMap;
+
 /// Sets of the numbers from 0, each of which is in one set. The root of a set is one of its numbers.
 #[derive(Clone, Debug)]
 pub struct DisjointSets(Vec<usize>);
@@ -28,6 +30,23 @@ impl DisjointSets {
     /// Joins the sets of two roots; the root `kept` remains.
     pub fn put_below(&mut self, kept: usize, other: usize) {
         self.0[other] = kept;
+    }
+
+    /// Returns the numbers of each set, ascending, and the index of the set of each number. The sets are in the order of their smallest numbers.
+    pub fn groups(mut self) -> (Vec<Vec<usize>>, Vec<usize>) {
+        let (mut groups, mut group_of_root) = (Vec::new(), BTreeMap::new());
+        let mut group_of = Vec::with_capacity(self.0.len());
+        for number in 0..self.0.len() {
+            let group = *group_of_root
+                .entry(self.root(number))
+                .or_insert(groups.len());
+            if group == groups.len() {
+                groups.push(Vec::new());
+            }
+            groups[group].push(number);
+            group_of.push(group);
+        }
+        (groups, group_of)
     }
 
     /// Returns the root of each number.

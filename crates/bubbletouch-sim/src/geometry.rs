@@ -156,10 +156,30 @@ pub struct Aabb {
 impl Aabb {
     /// Returns the smallest box around other boxes; `None` if there are no boxes.
     pub fn around(boxes: impl IntoIterator<Item = Self>) -> Option<Self> {
-        boxes.into_iter().reduce(|a, b| Self {
-            min: a.min.min(b.min),
-            max: a.max.max(b.max),
+        boxes.into_iter().reduce(|a, b| a.joined(&b))
+    }
+
+    /// Box without points, which changes no box that it is joined with.
+    pub const EMPTY: Self = Self {
+        min: DVec3::INFINITY,
+        max: DVec3::NEG_INFINITY,
+    };
+
+    /// Returns the smallest box around points, metres; [`EMPTY`](Self::EMPTY) if there are none.
+    pub fn around_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        let points = points.into_iter();
+        points.fold(Self::EMPTY, |around, point| Self {
+            min: around.min.min(point),
+            max: around.max.max(point),
         })
+    }
+
+    /// Returns the smallest box around this box and another one.
+    pub fn joined(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
     }
 
     /// Returns the edge lengths of the box, metres.

@@ -1,6 +1,5 @@
 //! Tree of bounding boxes over triangles, for nearest points and line intersections.
 
-use super::slab::{Slab, slabs};
 use super::{BoxTree, MeshFeature, Triangle, TriangleMesh};
 use crate::geometry::Aabb;
 use glam::{DMat3, DVec3};
@@ -12,10 +11,10 @@ pub struct Bvh {
     tree: BoxTree,
     /// Triangles in the order of the tree.
     triangles: Vec<Triangle>,
-    /// Planes of the triangles, in the order of the tree.
-    planes: Vec<Plane>,
-    /// Slab around the triangles of each node, that is, the space between two parallel planes.
-    slabs: Vec<Slab>,
+    /// Slab around each triangle, in the order of the tree.
+    triangle_slabs: Vec<Slab>,
+    /// Slab around the triangles of each node.
+    node_slabs: Vec<Slab>,
 }
 
 /// Nearest point of a mesh to a query point.
@@ -53,8 +52,8 @@ impl Bvh {
         let in_order = tree.order().iter().map(|&t| triangles[t as usize]);
         let triangles: Vec<Triangle> = in_order.collect();
         Some(Self {
-            planes: triangles.iter().map(Plane::new).collect(),
-            slabs: slabs(&tree, &triangles),
+            triangle_slabs: triangles.chunks(1).map(Slab::around).collect(),
+            node_slabs: slabs(&tree, &triangles),
             triangles,
             tree,
         })
@@ -79,7 +78,7 @@ impl Bvh {
     pub fn closest(&self, point: DVec3, within: f64) -> Option<Closest> {
         let mut found = None;
         let mut visit = |place: usize, limit| {
-            if self.planes[place].is_beyond(point, limit) {
+            if self.triangle_slabs[place].is_beyond(point, limit) {
                 return limit;
             }
             let (on, feature) = self.triangles[place].closest(point);
@@ -98,7 +97,7 @@ impl Bvh {
         self.tree.search_unless(
             within * within,
             |bounds| bounds.distance_squared(point),
-            |node, limit| self.slabs[node].is_beyond(point, limit),
+            |node, limit| self.node_slabs[node].is_beyond(point, limit),
             |places, limit| places.fold(limit, |limit, place| visit(place, limit)),
         );
         found
@@ -106,13 +105,26 @@ impl Bvh {
 
     /// Visits each triangle whose bounding box intersects `region`, in the order of the tree, with its index in the mesh.
     pub fn each_in_box(&self, region: &Aabb, mut visit: impl FnMut(usize, &Triangle)) {
+        self.any_in_box(region, |number, triangle| {
+            visit(number, triangle);
+            false
+        });
+    }
+
+    /// Returns whether `is_found` is true for a triangle whose bounding box intersects `region`. The arguments of `is_found` are the triangle's index in the
+    /// mesh and its corners.
+    pub(super) fn any_in_box(
+        &self,
+        region: &Aabb,
+        mut is_found: impl FnMut(usize, &Triangle) -> bool,
+    ) -> bool {
+        let mut found = false;
         let bound = |bounds: &Aabb| f64::from(u8::from(bounds.is_apart(region)));
         self.search(1.0, bound, |number, triangle, limit| {
-            if !triangle.bounds().is_apart(region) {
-                visit(number, triangle);
-            }
-            limit
+            found |= !found && !triangle.bounds().is_apart(region) && is_found(number, triangle);
+            if found { f64::NEG_INFINITY } else { limit }
         });
+        found
     }
 
     /// Visits each triangle of another mesh that can be within `margin` metres of this mesh. The other mesh is first rotated and translated (metres). A
@@ -128,7 +140,7 @@ impl Bvh {
         let mut waiting = vec![0];
         while let Some(node) = waiting.pop() {
             let bounds = other.tree.node_bounds(node).turned(turn, shift);
-            if !self.is_met(&bounds.widened(margin)) {
+            if !self.any_in_box(&bounds.widened(margin), |_, _| true) {
                 continue;
             }
             match other.tree.children(node) {
@@ -139,17 +151,6 @@ impl Bvh {
                     .for_each(|place| visit(other.number(place))),
             }
         }
-    }
-
-    /// Returns whether the bounding box of a triangle intersects `region`.
-    fn is_met(&self, region: &Aabb) -> bool {
-        let mut is_met = false;
-        let bound = |bounds: &Aabb| f64::from(u8::from(bounds.is_apart(region)));
-        self.search(1.0, bound, |_, triangle, limit| {
-            is_met |= !triangle.bounds().is_apart(region);
-            if is_met { f64::NEG_INFINITY } else { limit }
-        });
-        is_met
     }
 
     /// Returns the first triangle that the line `origin + along · direction` crosses, for values of `along` in a range.
@@ -198,8 +199,11 @@ impl Bvh {
         bound: impl Fn(&Aabb) -> f64,
         mut visit: impl FnMut(usize, &Triangle, f64) -> f64,
     ) {
-        self.search_places(limit, bound, |place, triangle, limit| {
-            visit(self.number(place), triangle, limit)
+        self.tree.search(limit, bound, |places, mut limit| {
+            for place in places {
+                limit = visit(self.number(place), &self.triangles[place], limit);
+            }
+            limit
         });
     }
 
@@ -212,52 +216,49 @@ impl Bvh {
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
-
-    /// Visits triangles by branch and bound, as `search` does, but passes positions in the order of the tree instead of indices in the mesh.
-    pub fn search_places(
-        &self,
-        limit: f64,
-        bound: impl Fn(&Aabb) -> f64,
-        mut visit: impl FnMut(usize, &Triangle, f64) -> f64,
-    ) {
-        self.tree.search(limit, bound, |places, mut limit| {
-            let triangles = &self.triangles[places.clone()];
-            for (place, triangle) in places.zip(triangles) {
-                limit = visit(place, triangle, limit);
-            }
-            limit
-        });
-    }
 }
 
-/// Plane of a triangle, from which a lower bound of the distance is computed. If all parts of a mesh are about equally far from a point (such as the middle of
-/// a ball), boxes exclude few triangles. Planes then exclude nearly all triangles.
-#[derive(Clone, Debug)]
-struct Plane {
-    /// Unit normal of the plane; zero if the triangle is too thin.
+/// Slab around triangles: the space between two parallel planes, the points x with `normal · x` in a range.
+///
+/// If a surface is nearly flat, a slab is much thinner than a box, especially for surfaces oblique to the axes. If all parts of a mesh are about equally far
+/// from a point (such as the middle of a ball), boxes exclude few triangles. Slabs then exclude nearly all triangles.
+#[derive(Clone, Copy, Debug)]
+struct Slab {
+    /// Mean unit normal of the triangles; zero if the triangles have no normal.
     normal: DVec3,
-    /// Distance of the plane from the origin along the normal, metres.
-    offset: f64,
+    low: f64,
+    high: f64,
 }
 
-impl Plane {
-    fn new(triangle: &Triangle) -> Self {
-        /// Smallest height of a triangle relative to its length; the planes of thinner triangles are rotated too much by rounding.
-        const THINNEST: f64 = 1e-4;
-        let is_thin = 2.0 * triangle.area() <= THINNEST * triangle.longest_edge_squared();
-        let normal = match triangle.normal() {
-            Some(normal) if !is_thin => normal,
-            _ => DVec3::ZERO,
+/// Returns the slab around the triangles of each node of a tree; `triangles` are in the order of the tree.
+fn slabs(tree: &BoxTree, triangles: &[Triangle]) -> Vec<Slab> {
+    let mut places: Vec<Range<usize>> = vec![0..0; tree.n_nodes()];
+    // Children come after their parents, and their triangles are adjacent.
+    for node in (0..tree.n_nodes()).rev() {
+        places[node] = match tree.children(node) {
+            Some([left, right]) => places[left].start..places[right].end,
+            None => tree.leaf(node),
         };
-        Self {
-            normal,
-            offset: normal.dot(triangle.0[0]),
-        }
+    }
+    let slab = |places| Slab::around(&triangles[places]);
+    places.into_iter().map(slab).collect()
+}
+
+impl Slab {
+    fn around(triangles: &[Triangle]) -> Self {
+        let area: DVec3 = triangles.iter().map(Triangle::double_area).sum();
+        let normal = area.normalize_or_zero();
+        let heights = triangles.iter().flat_map(|t| t.0).map(|p| normal.dot(p));
+        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| {
+            (low.min(z), high.max(z))
+        });
+        Self { normal, low, high }
     }
 
-    /// Returns whether the plane is certainly farther from a point than the square root of `limit` (a squared distance).
+    /// Returns whether the slab is certainly farther from a point than the square root of `limit` (a squared distance).
     fn is_beyond(&self, point: DVec3, limit: f64) -> bool {
-        let height = self.normal.dot(point) - self.offset;
-        height * height > limit * (1.0 + 1e-6)
+        let height = self.normal.dot(point);
+        let away = (self.low - height).max(height - self.high).max(0.0);
+        away * away > limit * (1.0 + 1e-6)
     }
 }

@@ -129,80 +129,63 @@ impl MeshFeatures {
             });
         }
         let (mut edges, mut sides, mut directions) = (Vec::new(), Vec::new(), Vec::new());
-        for group in welded.edges() {
-            let edge = edges.len() as u32;
-            let [from, to] = group[0].edge.map(|vertex| mesh.vertices()[vertex as usize]);
+        let mut is_on_ridge = vec![false; corners.len()];
+        let place = |corner: u32| corners[corner as usize];
+        let mut add_edge = |ends: [u32; 2], rise: f64| {
+            let [from, to] = ends.map(place);
             let direction = (to - from).normalize();
-            for (vertex, sign) in group[0].edge.into_iter().zip([1.0, -1.0]) {
-                directions.push((number[vertex as usize], sign * direction));
-            }
-            let mut own: Vec<(DVec3, Option<DVec3>)> = Vec::new();
-            for (place, side) in group.iter().enumerate() {
-                let face = &mut faces[side.triangle as usize];
-                face.edges[usize::from(side.side)] = edge;
-                face.owns_edge[usize::from(side.side)] = place == 0;
-                let opposite = face.corners[usize::from(side.side + 2) % 3];
-                let inward = (opposite - from).reject_from_normalized(direction);
-                if face.normal.is_some() {
-                    own.push((inward.normalize(), face.normal));
-                }
-            }
-            sides.extend(own.iter().map(|(inward, _)| (edge, *inward)));
-            let rise = match own[..] {
-                [(_, Some(normal)), (inward, _)] => normal.dot(inward),
-                _ => -1.0,
-            };
-            for side in group.iter().filter(|_| rise > FLAT) {
-                faces[side.triangle as usize].is_valley[usize::from(side.side)] = true;
-            }
-            edges.push(Edge {
+            directions.extend([(ends[0], direction), (ends[1], -direction)]);
+            let edge = Edge {
                 from,
                 direction,
                 length: from.distance(to),
                 is_ridge: rise < -FLAT,
                 is_flat: rise.abs() <= FLAT,
-            });
+            };
+            for end in ends {
+                is_on_ridge[end as usize] |= edge.is_ridge;
+            }
+            edges.push(edge);
+        };
+        let mut n_edges = 0;
+        for group in welded.edges() {
+            let ends = group[0].edge.map(|vertex| number[vertex as usize]);
+            let [from, to] = ends.map(place);
+            let direction = (to - from).normalize();
+            let mut own: Vec<(DVec3, DVec3)> = Vec::new();
+            for (index, side) in group.iter().enumerate() {
+                let face = &mut faces[side.triangle as usize];
+                face.edges[usize::from(side.side)] = n_edges;
+                face.owns_edge[usize::from(side.side)] = index == 0;
+                let opposite = face.corners[usize::from(side.side + 2) % 3];
+                let inward = (opposite - from).reject_from_normalized(direction);
+                own.extend(face.normal.map(|normal| (inward.normalize(), normal)));
+            }
+            sides.extend(own.iter().map(|(inward, _)| (n_edges, *inward)));
+            let rise = match own[..] {
+                [(_, normal), (inward, _)] => normal.dot(inward),
+                _ => -1.0,
+            };
+            for side in group.iter().filter(|_| rise > FLAT) {
+                faces[side.triangle as usize].is_valley[usize::from(side.side)] = true;
+            }
+            add_edge(ends, rise);
+            n_edges += 1;
         }
         // A triangle with two equal corners is a line.
-        for (face, vertices) in faces.iter_mut().zip(&welded.corners) {
-            if !has_equal(*vertices) {
+        for (face, &vertices) in faces.iter_mut().zip(&welded.corners) {
+            let [a, b, c] = vertices;
+            if !has_equal(vertices) || (a == b && b == c) {
                 continue;
             }
-            let [a, b, c] = *vertices;
-            let side = if a == b { 1 } else { 0 };
-            let (from, to) = (face.corners[side], face.corners[(side + 1) % 3]);
-            if (a, b) != (b, c) {
-                face.edges[side] = edges.len() as u32;
-                face.owns_edge[side] = true;
-                let direction = (to - from).normalize();
-                let ends = [
-                    face.corner_numbers[side],
-                    face.corner_numbers[(side + 1) % 3],
-                ];
-                directions.extend([(ends[0], direction), (ends[1], -direction)]);
-                edges.push(Edge {
-                    from,
-                    direction,
-                    length: from.distance(to),
-                    is_ridge: true,
-                    is_flat: false,
-                });
-            }
+            let side = usize::from(a == b);
+            face.edges[side] = n_edges;
+            face.owns_edge[side] = true;
+            let ends = [side, (side + 1) % 3].map(|k| face.corner_numbers[k]);
+            add_edge(ends, -1.0);
+            n_edges += 1;
         }
         let patches = smooth_patches(&faces, corners.len(), edges.len());
-        let mut is_on_ridge = vec![false; corners.len()];
-        for face in &faces {
-            for (k, edge) in face.edges.iter().enumerate() {
-                if edges
-                    .get(*edge as usize)
-                    .is_some_and(|edge: &Edge| edge.is_ridge)
-                {
-                    for end in [k, (k + 1) % 3] {
-                        is_on_ridge[face.corner_numbers[end] as usize] = true;
-                    }
-                }
-            }
-        }
         Self {
             patches,
             is_on_ridge,

@@ -1,6 +1,6 @@
 //! Contents of a mesh file, before conversion to a triangle mesh.
 
-use super::triangle_mesh::check_vertices;
+use super::triangle_mesh::{check_indices, check_vertices};
 use super::{LengthUnit, TriangleMesh};
 use crate::error::{Error, Result};
 use glam::DVec3;
@@ -32,15 +32,7 @@ impl MeshFile {
                 "at least three vertex indices, from 0",
             ));
         }
-        let n = vertices.len();
-        let outside = |corners: &Vec<u32>| corners.iter().any(|&corner| corner as usize >= n);
-        if let Some(index) = polygons.iter().position(outside) {
-            return Err(Error::input(
-                format!("{place}: face {}", index + 1),
-                format!("vertex indices {:?}", polygons[index]),
-                format!("0 to {}, the indices of the vertices", n - 1),
-            ));
-        }
+        check_indices(place, &polygons, vertices.len())?;
         Ok(Self { vertices, polygons })
     }
 

@@ -28,7 +28,6 @@
 //! Readers do not repair meshes. [`TriangleMesh::with_holes_closed`] closes holes, [`TriangleMesh::turned_outwards`] turns triangles.
 
 mod box_tree;
-mod box_tree_build;
 mod bvh;
 mod crossings;
 mod enclosed;
@@ -43,7 +42,6 @@ mod pseudonormals;
 mod report;
 mod separation;
 mod size_limits;
-mod slab;
 mod surface;
 mod triangle;
 mod triangle_mesh;

@@ -7,11 +7,12 @@
 //! its cavity.
 
 use super::crossings::winding;
+use super::enclosed::Enclosed;
+use super::welded::{is_balanced, is_flipped};
 use super::{Bvh, EdgeSide, Triangle, TriangleMesh, Welded};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
-use std::collections::BTreeMap;
 use std::fmt;
 
 /// Maximum number of triangles from which rays are sent to find the outside of an open part. If larger, the test is slower; if smaller, few rays test parts
@@ -108,9 +109,9 @@ struct Parts<'a> {
     mesh: &'a TriangleMesh,
     welded: &'a Welded,
     /// Indices of the triangles of each part, ascending.
-    triangles: Vec<Vec<u32>>,
+    triangles: Vec<Vec<usize>>,
     /// Index of the part of each triangle.
-    part_of: Vec<u32>,
+    part_of: Vec<usize>,
     /// Whether each triangle must be turned to face outwards.
     is_turned: Vec<bool>,
     /// Whether each part is closed: every edge has equally many triangles in both directions.
@@ -126,19 +127,7 @@ impl<'a> Parts<'a> {
                 joined.join(pair[0].triangle as usize, pair[1].triangle as usize);
             }
         }
-        let mut numbers = BTreeMap::new();
-        let mut part_of = Vec::with_capacity(n);
-        let mut triangles: Vec<Vec<u32>> = Vec::new();
-        for triangle in 0..n as u32 {
-            let part = *numbers
-                .entry(joined.root(triangle as usize))
-                .or_insert_with(|| {
-                    triangles.push(Vec::new());
-                    triangles.len() - 1
-                });
-            part_of.push(part as u32);
-            triangles[part].push(triangle);
-        }
+        let (triangles, part_of) = joined.groups();
         let mut parts = Self {
             mesh,
             welded,
@@ -161,10 +150,8 @@ impl<'a> Parts<'a> {
         // Triangles with a repeated corner have no edges of their own; they are parts that enclose nothing.
         let mut is_closed = vec![true; self.triangles.len()];
         for sides in self.welded.edges() {
-            let sign = |side: &EdgeSide| if self.is_forward(side) { 1 } else { -1 };
-            if sides.iter().map(sign).sum::<i32>() != 0 {
-                is_closed[self.part_of[sides[0].triangle as usize] as usize] = false;
-            }
+            let part = self.part_of[sides[0].triangle as usize];
+            is_closed[part] &= is_balanced(sides, |side| self.is_forward(side));
         }
         is_closed
     }
@@ -178,7 +165,7 @@ impl<'a> Parts<'a> {
         let mut neighbours: Vec<Vec<(u32, bool)>> = vec![Vec::new(); self.part_of.len()];
         for sides in self.welded.edges() {
             if let [a, b] = sides
-                && !self.is_closed[self.part_of[a.triangle as usize] as usize]
+                && !self.is_closed[self.part_of[a.triangle as usize]]
             {
                 let disagree = a.is_forward == b.is_forward;
                 neighbours[a.triangle as usize].push((b.triangle, disagree));
@@ -214,17 +201,15 @@ impl<'a> Parts<'a> {
         self.is_closed = self.closed();
         for (part, triangles) in self.triangles.iter().enumerate() {
             if !self.is_closed[part] {
-                for &triangle in triangles {
-                    self.is_turned[triangle as usize] = false;
-                }
+                triangles.iter().for_each(|&t| self.is_turned[t] = false);
             }
         }
     }
 
     /// Returns the corners of a triangle; in reversed order if the triangle is marked to be turned.
-    fn triangle(&self, triangle: u32) -> Triangle {
-        let [a, b, c] = self.mesh.triangle(triangle as usize).0;
-        match self.is_turned[triangle as usize] {
+    fn triangle(&self, triangle: usize) -> Triangle {
+        let [a, b, c] = self.mesh.triangle(triangle).0;
+        match self.is_turned[triangle] {
             true => Triangle([a, c, b]),
             false => Triangle([a, b, c]),
         }
@@ -232,16 +217,14 @@ impl<'a> Parts<'a> {
 
     /// Returns the signed volume of a closed part, m³; 0 if the part encloses nothing.
     fn volume(&self, part: usize) -> f64 {
-        let triangles = self.triangles[part].iter().map(|&t| self.triangle(t));
         let apex = self.triangle(self.triangles[part][0]).0[0];
-        let (mut volume, mut area) = (0.0, 0.0);
-        for triangle in triangles {
-            let [a, b, c] = triangle.0.map(|corner| corner - apex);
-            volume += a.dot(b.cross(c)) / 6.0;
+        let (mut enclosed, mut area) = (Enclosed::default(), 0.0);
+        for triangle in self.triangles[part].iter().map(|&t| self.triangle(t)) {
+            enclosed.add(triangle.0.map(|corner| corner - apex), 1.0);
             area += triangle.area();
         }
-        let is_solid = volume.abs() > MIN_VOLUME * area.powf(1.5);
-        if is_solid { volume } else { 0.0 }
+        let is_solid = enclosed.volume.abs() > MIN_VOLUME * area.powf(1.5);
+        if is_solid { enclosed.volume } else { 0.0 }
     }
 
     /// Turns closed parts so that they face outwards. Cavities, whose outside is enclosed by other parts, keep facing inwards.
@@ -256,12 +239,9 @@ impl<'a> Parts<'a> {
         solids.sort_by(|(_, a), (_, b)| b.abs().total_cmp(&a.abs()));
         let mut placed: Vec<Enclosure> = Vec::new();
         for (part, volume) in solids {
-            let triangles: Vec<Triangle> = self.triangles[part]
-                .iter()
-                .map(|&t| self.triangle(t))
-                .collect();
-            let around = Aabb::around(triangles.iter().map(Triangle::bounds));
-            let bounds = around.expect("a part has triangles");
+            let triangles = self.triangles[part].iter().map(|&t| self.triangle(t));
+            let triangles: Vec<Triangle> = triangles.collect();
+            let bounds = Aabb::around_points(triangles.iter().flat_map(|triangle| triangle.0));
             let mut outside = 0;
             // The smallest part that encloses this part comes last.
             let mut is_turned = false;
@@ -276,7 +256,7 @@ impl<'a> Parts<'a> {
             is_turned ^= outside + sign < 0;
             if is_turned {
                 for &triangle in &self.triangles[part] {
-                    self.is_turned[triangle as usize] ^= true;
+                    self.is_turned[triangle] ^= true;
                 }
             }
             placed.push(Enclosure {
@@ -295,11 +275,9 @@ impl<'a> Parts<'a> {
         }
         let bvh = Bvh::new(self.mesh);
         let size = bvh.bounds().size().length();
-        let disagrees =
-            |sides: &[EdgeSide]| sides.len() == 2 && sides[0].is_forward == sides[1].is_forward;
         let mut has_flipped = vec![false; self.triangles.len()];
-        for sides in self.welded.edges().filter(|sides| disagrees(sides)) {
-            has_flipped[self.part_of[sides[0].triangle as usize] as usize] = true;
+        for sides in self.welded.edges().filter(|sides| is_flipped(sides)) {
+            has_flipped[self.part_of[sides[0].triangle as usize]] = true;
         }
         let open = (0..self.triangles.len()).filter(|&part| !self.is_closed[part]);
         let total: usize = open.clone().map(|part| self.triangles[part].len()).sum();
@@ -308,7 +286,7 @@ impl<'a> Parts<'a> {
         let all = open.flat_map(|part| self.triangles[part].iter().map(move |&t| (part, t)));
         for (part, number) in all.step_by(stride) {
             is_flipped |= has_flipped[part];
-            let triangle = self.mesh.triangle(number as usize);
+            let triangle = self.mesh.triangle(number);
             let Some(normal) = triangle.normal() else {
                 continue;
             };

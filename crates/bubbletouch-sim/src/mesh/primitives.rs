@@ -112,24 +112,18 @@ impl TriangleMesh {
 /// Returns an error unless a capsule has a positive radius and a length of zero or more, metres.
 pub(crate) fn check_capsule(place: &str, radius: f64, length: f64) -> Result<()> {
     check_length(place, "radius", radius)?;
+    let allowed = "a finite number of metres, zero or more";
     match length.is_finite() && length >= 0.0 {
         true => Ok(()),
-        false => Err(Error::input(
-            format!("{place}: length"),
-            length,
-            "a finite number of metres, zero or more",
-        )),
+        false => Err(Error::input(format!("{place}: length"), length, allowed)),
     }
 }
 
 fn check_length(place: &str, name: &str, length: f64) -> Result<()> {
+    let allowed = "a positive finite number of metres";
     match length.is_finite() && length > 0.0 {
         true => Ok(()),
-        false => Err(Error::input(
-            format!("{place}: {name}"),
-            length,
-            "a positive finite number of metres",
-        )),
+        false => Err(Error::input(format!("{place}: {name}"), length, allowed)),
     }
 }
 

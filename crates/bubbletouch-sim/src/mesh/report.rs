@@ -1,9 +1,10 @@
 //! Report of the faults and measures of a mesh, which itself stays unchanged.
 
-use super::welded::has_equal;
+use super::welded::{has_equal, is_flipped};
 use super::{EdgeSide, Hole, TriangleMesh, Welded};
 use crate::disjoint_sets::DisjointSets;
 use crate::geometry::Aabb;
+use glam::DVec3;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -51,8 +52,6 @@ impl MeshReport {
         let mut used: Vec<u32> = welded.corners.iter().flatten().copied().collect();
         used.sort_unstable();
         used.dedup();
-        let is_flipped =
-            |sides: &&[EdgeSide]| sides.len() == 2 && sides[0].is_forward == sides[1].is_forward;
         Self {
             n_vertices: used.len(),
             n_triangles: mesh.n_triangles(),
@@ -63,7 +62,7 @@ impl MeshReport {
             n_duplicates: n_duplicates(&welded),
             n_crowded_edges: welded.edges().filter(|sides| sides.len() > 2).count(),
             n_pinched_vertices: n_pinched(&welded),
-            n_flipped_edges: welded.edges().filter(is_flipped).count(),
+            n_flipped_edges: welded.edges().filter(|sides| is_flipped(sides)).count(),
             holes: Hole::all(mesh, &welded)
                 .iter()
                 .map(|hole| hole.length)
@@ -90,39 +89,31 @@ impl MeshReport {
 
     /// Returns the faults of the mesh, one phrase each; empty if there are none.
     pub fn faults(&self) -> Vec<String> {
-        let count = |n: usize, one: &str, many: &str| {
-            (n > 0).then(|| format!("{n} {}", if n == 1 { one } else { many }))
+        let count = |n: usize, noun: &str, what: &str| {
+            let plural = match (n, noun) {
+                (1, _) => noun.to_owned(),
+                (_, "vertex") => "vertices".to_owned(),
+                _ => format!("{noun}s"),
+            };
+            (n > 0).then(|| format!("{n} {plural}{what}"))
         };
-        let holes = count(self.holes.len(), "hole", "holes").map(|holes| {
-            let longest = 1e3 * self.holes[0];
-            format!("{holes} (longest border {longest:.1} mm)")
-        });
+        let longest = 1e3 * self.holes.first().unwrap_or(&0.0);
+        let border = format!(" (longest border {longest:.1} mm)");
         let inwards = self.is_watertight() && self.n_flipped_edges == 0 && self.volume < 0.0;
+        let disagree = " whose faces disagree about the outside";
         let faults = [
-            holes,
+            count(self.holes.len(), "hole", &border),
             inwards.then(|| "faces that face inwards".to_owned()),
-            count(
-                self.n_flipped_edges,
-                "edge whose faces disagree about the outside",
-                "edges whose faces disagree about the outside",
-            ),
-            count(
-                self.n_crowded_edges,
-                "edge of more than two faces",
-                "edges of more than two faces",
-            ),
+            count(self.n_flipped_edges, "edge", disagree),
+            count(self.n_crowded_edges, "edge", " of more than two faces"),
             count(
                 self.n_pinched_vertices,
-                "vertex where separate parts touch",
-                "vertices where separate parts touch",
+                "vertex",
+                " where separate parts touch",
             ),
-            count(
-                self.n_collapsed,
-                "face with a corner twice",
-                "faces with a corner twice",
-            ),
-            count(self.n_slivers, "face without area", "faces without area"),
-            count(self.n_duplicates, "duplicate face", "duplicate faces"),
+            count(self.n_collapsed, "face", " with a corner twice"),
+            count(self.n_slivers, "face", " without area"),
+            count(self.n_duplicates, "duplicate face", ""),
         ];
         faults.into_iter().flatten().collect()
     }
@@ -130,20 +121,15 @@ impl MeshReport {
 
 impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = 1e3 * self.bounds.size();
-        let low = 1e3 * self.bounds.min;
-        let high = 1e3 * self.bounds.max;
-        writeln!(
-            f,
-            "size        {:.1} × {:.1} × {:.1} mm",
-            size.x, size.y, size.z
-        )?;
-        writeln!(f, "from        {:.1}, {:.1}, {:.1} mm", low.x, low.y, low.z)?;
-        writeln!(
-            f,
-            "to          {:.1}, {:.1}, {:.1} mm",
-            high.x, high.y, high.z
-        )?;
+        let mm = |lengths: DVec3, between: &str| {
+            let lengths = (1e3 * lengths)
+                .to_array()
+                .map(|length| format!("{length:.1}"));
+            format!("{} mm", lengths.join(between))
+        };
+        writeln!(f, "size        {}", mm(self.bounds.size(), " × "))?;
+        writeln!(f, "from        {}", mm(self.bounds.min, ", "))?;
+        writeln!(f, "to          {}", mm(self.bounds.max, ", "))?;
         writeln!(f, "triangles   {}", self.n_triangles)?;
         writeln!(f, "vertices    {}", self.n_vertices)?;
         writeln!(f, "components  {}", self.n_components)?;
@@ -153,16 +139,9 @@ impl fmt::Display for MeshReport {
         let yes = |yes: bool| if yes { "yes" } else { "no" };
         writeln!(f, "watertight  {}", yes(self.is_watertight()))?;
         writeln!(f, "solid       {}", yes(self.is_solid()))?;
-        let faults = self.faults();
-        write!(
-            f,
-            "faults      {}",
-            faults.first().map_or("none", String::as_str)
-        )?;
-        for fault in faults.iter().skip(1) {
-            write!(f, "\n            {fault}")?;
-        }
-        Ok(())
+        let faults = self.faults().join("\n            ");
+        let faults = if faults.is_empty() { "none" } else { &faults };
+        write!(f, "faults      {faults}")
     }
 }
 

@@ -81,18 +81,8 @@ impl Surface {
 
     /// Returns whether a face of the mesh may intersect this triangle; false if a plane separates the triangle from every face.
     pub fn may_cross(&self, triangle: &Triangle) -> bool {
-        let bounds = triangle.bounds();
-        let mut is_crossed = false;
-        let apart = |b: &Aabb| b.min.cmpgt(bounds.max).any() || bounds.min.cmpgt(b.max).any();
-        self.bvh.search(
-            1.0,
-            |b| f64::from(u8::from(apart(b))),
-            |_, face, limit| {
-                is_crossed |= !apart(&face.bounds()) && !face.is_apart(triangle);
-                if is_crossed { f64::NEG_INFINITY } else { limit }
-            },
-        );
-        is_crossed
+        let crosses = |_, face: &Triangle| !face.is_apart(triangle);
+        self.bvh.any_in_box(&triangle.bounds(), crosses)
     }
 
     /// Returns the signed distance to the nearest point of the mesh, metres, negative inside. The sign is determined by pseudonormals on a closed mesh,

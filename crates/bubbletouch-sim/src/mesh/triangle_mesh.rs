@@ -47,15 +47,7 @@ impl TriangleMesh {
         if triangles.is_empty() {
             return Err(Error::input(place, "no triangles", "at least one triangle"));
         }
-        let n = vertices.len();
-        let outside = |face: &[u32; 3]| face.iter().any(|&corner| corner as usize >= n);
-        if let Some(index) = triangles.iter().position(outside) {
-            return Err(Error::input(
-                format!("{place}: face {}", index + 1),
-                format!("vertex indices {:?}", triangles[index]),
-                format!("0 to {}, the indices of the vertices", n - 1),
-            ));
-        }
+        check_indices(place, &triangles, vertices.len())?;
         Ok(Self {
             vertices,
             triangles,
@@ -117,11 +109,24 @@ impl TriangleMesh {
 
 /// Returns the edge lengths of the bounding box of points, metres; zero if there are no points.
 pub(super) fn extent(points: &[DVec3]) -> DVec3 {
-    let boxes = points.iter().map(|&point| Aabb {
-        min: point,
-        max: point,
-    });
-    Aabb::around(boxes).map_or(DVec3::ZERO, |bounds| bounds.size())
+    let size = Aabb::around_points(points.iter().copied()).size();
+    size.max(DVec3::ZERO)
+}
+
+/// Returns an error if a face has an index that is not below the number of vertices `n`, at least one.
+pub(super) fn check_indices(place: &str, faces: &[impl AsRef<[u32]>], n: usize) -> Result<()> {
+    for (face, number) in faces.iter().map(AsRef::as_ref).zip(1..) {
+        if face.iter().any(|&corner| corner as usize >= n) {
+            let given = format!("vertex indices {face:?}");
+            let allowed = format!("0 to {}, the indices of the vertices", n - 1);
+            return Err(Error::input(
+                format!("{place}: face {number}"),
+                given,
+                allowed,
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Returns an error if there is no vertex or if a coordinate is not finite.

@@ -62,17 +62,25 @@ impl Welded {
     /// Returns the number of edges along which the numbers of triangles in the two directions differ. These edges occur at holes and between inconsistently
     /// oriented faces.
     pub fn n_unbalanced(&self) -> usize {
-        let sign = |side: &EdgeSide| if side.is_forward { 1 } else { -1 };
-        let is_unbalanced = |sides: &&[EdgeSide]| sides.iter().map(sign).sum::<i32>() != 0;
-        self.edges().filter(is_unbalanced).count()
+        let is_balanced = |sides: &[EdgeSide]| is_balanced(sides, |side| side.is_forward);
+        self.edges().filter(|sides| !is_balanced(sides)).count()
     }
 
     /// Returns whether every edge has exactly two sides in opposite directions, so that the mesh is closed and consistently oriented.
     pub fn is_closed(&self) -> bool {
-        let closed =
-            |sides: &[EdgeSide]| sides.len() == 2 && sides[0].is_forward != sides[1].is_forward;
-        !self.sides.is_empty() && self.edges().all(closed)
+        let is_closed = |sides: &[EdgeSide]| sides.len() == 2 && !is_flipped(sides);
+        !self.sides.is_empty() && self.edges().all(is_closed)
     }
+}
+
+/// Returns whether an edge has two sides in the same direction, so that their triangles disagree about the outside.
+pub(super) fn is_flipped(sides: &[EdgeSide]) -> bool {
+    sides.len() == 2 && sides[0].is_forward == sides[1].is_forward
+}
+
+/// Returns whether equally many triangles pass an edge in both directions; `is_forward` returns the direction of a side.
+pub(super) fn is_balanced(sides: &[EdgeSide], is_forward: impl Fn(&EdgeSide) -> bool) -> bool {
+    2 * sides.iter().filter(|side| is_forward(side)).count() == sides.len()
 }
 
 /// Returns whether two of a triangle's three corners are equal.

@@ -2,9 +2,11 @@
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
+use super::solid::Form;
 use super::surface_patch::{SurfacePatch, frame};
 use crate::geometry::Pose;
 use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
 
 /// Axis-aligned box about the origin.
 #[derive(Clone, Copy, Debug)]
@@ -15,17 +17,24 @@ pub(super) struct Block {
     pub rounding: f64,
 }
 
-impl Block {
-    pub fn distance(&self, point: DVec3) -> f64 {
+impl Form for Block {
+    fn distance(&self, point: DVec3) -> f64 {
         let beyond = point.abs() - (self.half - DVec3::splat(self.rounding));
         let outside = beyond.max(DVec3::ZERO).length();
         outside + beyond.max_element().min(0.0) - self.rounding
     }
 
-    /// Returns the support function of the box: the largest p·direction over its points p, metres.
-    pub fn support(&self, direction: DVec3) -> f64 {
+    fn support(&self, direction: DVec3) -> f64 {
         let core = self.half - DVec3::splat(self.rounding);
         core.dot(direction.abs()) + self.rounding * direction.length()
+    }
+
+    fn volume_and_center(&self) -> (f64, DVec3) {
+        let (r, core) = (self.rounding, 2.0 * (self.half - self.rounding));
+        let faces = core.x * core.y + core.y * core.z + core.z * core.x;
+        let edges = core.element_sum();
+        let volume = core.element_product() + 2.0 * r * faces + PI * r * r * edges;
+        (volume + 4.0 / 3.0 * PI * r.powi(3), DVec3::ZERO)
     }
 
     /// Packs the box with spheres: first the corners, then rows along each edge, then rows on each face. The spacing of the rows on a face increases towards
@@ -33,7 +42,7 @@ impl Block {
     ///
     /// A ball of radius r that touches a flat face covers, after its enlargement, a disc of radius sqrt(h(2r + h)). Here h is the sum of both tolerances.
     /// This disc contains a square cell of half side sqrt(h(r + h/2)).
-    pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
+    fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let edge = EdgeRow::new(self, fit);
         self.pack_corners(&edge, fit, spheres);
         for axis in 0..3 {
@@ -42,37 +51,8 @@ impl Block {
         }
     }
 
-    fn pack_corners(&self, edge: &EdgeRow, fit: Fit, spheres: &mut Vec<Sphere>) {
-        let inner = self.half - DVec3::splat(edge.radius);
-        // A round corner is the ball itself.
-        let corner = if edge.is_round { fit.unswollen() } else { fit };
-        for x in both_signs(inner.x) {
-            for y in both_signs(inner.y) {
-                for z in both_signs(inner.z) {
-                    spheres.push(corner.swollen(DVec3::new(x, y, z), edge.radius));
-                }
-            }
-        }
-    }
-
-    fn pack_edges(&self, axis: usize, edge: &EdgeRow, fit: Fit, spheres: &mut Vec<Sphere>) {
-        let inner = self.half - DVec3::splat(edge.radius);
-        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-        for along in cells(self.half[axis] - edge.corner, edge.half_spacing) {
-            for y in both_signs(inner[b]) {
-                for z in both_signs(inner[c]) {
-                    let mut center = DVec3::ZERO;
-                    center[axis] = along;
-                    center[b] = y;
-                    center[c] = z;
-                    spheres.push(fit.swollen(center, edge.radius));
-                }
-            }
-        }
-    }
-
-    /// Returns the surface patches of the box: six faces and, if it is rounded, twelve edges and eight corners.
-    pub fn patches(&self) -> Vec<SurfacePatch> {
+    /// Returns six faces and, if the box is rounded, twelve edges and eight corners.
+    fn patches(&self) -> Vec<SurfacePatch> {
         const SIGNS: [f64; 2] = [-1.0, 1.0];
         let core = self.half - DVec3::splat(self.rounding);
         let mut patches = Vec::new();
@@ -105,35 +85,36 @@ impl Block {
         }
         patches
     }
+}
 
-    pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
-        let n = (2.0 * self.half / spacing).ceil().max(DVec3::splat(4.0));
-        let at = |axis: usize, i: usize| self.half[axis] * (2.0 * i as f64 / n[axis] - 1.0);
-        for axis in 0..3 {
-            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-            for i in 0..=n[b] as usize {
-                for j in 0..=n[c] as usize {
-                    for side in [-1.0, 1.0] {
-                        let mut point = DVec3::ZERO;
-                        point[axis] = side * self.half[axis];
-                        point[b] = at(b, i);
-                        point[c] = at(c, j);
-                        points.push(self.onto_surface(point));
-                    }
+impl Block {
+    fn pack_corners(&self, edge: &EdgeRow, fit: Fit, spheres: &mut Vec<Sphere>) {
+        let inner = self.half - DVec3::splat(edge.radius);
+        // A round corner is the ball itself.
+        let corner = if edge.is_round { fit.unswollen() } else { fit };
+        for x in both_signs(inner.x) {
+            for y in both_signs(inner.y) {
+                for z in both_signs(inner.z) {
+                    spheres.push(corner.swollen(DVec3::new(x, y, z), edge.radius));
                 }
             }
         }
     }
 
-    /// Returns the point of the rounded box nearest to a point of the sharp box.
-    fn onto_surface(&self, point: DVec3) -> DVec3 {
-        let core = self.half - DVec3::splat(self.rounding);
-        let nearest = point.clamp(-core, core);
-        let out = point - nearest;
-        if out == DVec3::ZERO {
-            return point;
+    fn pack_edges(&self, axis: usize, edge: &EdgeRow, fit: Fit, spheres: &mut Vec<Sphere>) {
+        let inner = self.half - DVec3::splat(edge.radius);
+        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+        for along in cells(self.half[axis] - edge.corner, edge.half_spacing) {
+            for y in both_signs(inner[b]) {
+                for z in both_signs(inner[c]) {
+                    let mut center = DVec3::ZERO;
+                    center[axis] = along;
+                    center[b] = y;
+                    center[c] = z;
+                    spheres.push(fit.swollen(center, edge.radius));
+                }
+            }
         }
-        nearest + self.rounding * out.normalize()
     }
 }
 

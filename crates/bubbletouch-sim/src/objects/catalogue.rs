@@ -19,8 +19,8 @@
 //!
 //! After reading, each object is moved so that it rests on z = 0 with the middle of its bounding box on the z axis.
 
-use super::solid_toml::{WrittenPart, of_part};
-use super::{Hand, Object, Part, Solid, pack};
+use super::solid_toml::{WrittenPart, parts};
+use super::{Hand, Object, Solid, pack};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::text::toml_lines::line_of;
@@ -211,25 +211,18 @@ impl WrittenObject {
 
     fn entry(self, set: &str, place: &str, text: &str) -> Result<Entry> {
         let here = self.place(place, text);
-        let name = self.name.into_inner();
+        let name = self.name.get_ref();
         if name.trim().is_empty() {
             return Err(Error::input(here, "an empty name", "a name"));
         }
-        let parts = |written: Vec<WrittenPart>, kind: &str| -> Result<Vec<Part>> {
-            let numbered = written.into_iter().enumerate();
-            let part = |(index, part): (usize, WrittenPart)| {
-                part.clone().part().map_err(|error| {
-                    let which = format!("{kind} {} ({})", index + 1, part.name());
-                    let line = |key: &str| line_of(text, part.place(key).start);
-                    of_part(error, |key| {
-                        format!("{place}, line {}, object `{name}`, {which}", line(key))
-                    })
-                })
-            };
-            numbered.map(part).collect()
+        let parts = |written: &[WrittenPart], kind: &str| {
+            parts(written, |number, at| {
+                let line = line_of(text, at);
+                format!("{place}, line {line}, object `{name}`, {kind} {number}")
+            })
         };
-        let solid = Solid::new(parts(self.part, "part")?);
-        let cuts = parts(self.subtract, "subtract")?;
+        let solid = Solid::new(parts(&self.part, "part")?);
+        let cuts = parts(&self.subtract, "subtract")?;
         let solid = match cuts.is_empty() {
             true => solid,
             false => solid.and_then(|solid| solid.less(cuts)),
@@ -237,7 +230,7 @@ impl WrittenObject {
         let solid = solid.map_err(|error| error.under(format!("{here}: ")))?;
         Ok(Entry {
             set: set.to_string(),
-            name,
+            name: name.clone(),
             source: self.source,
             solid: solid.resting(),
         })

@@ -6,6 +6,7 @@
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
 use super::outline::Outline;
+use super::solid::Form;
 use super::solid_mass::turned;
 use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
@@ -16,6 +17,10 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct Lathe {
     outline: Outline,
 }
+
+/// Smallest gap that a packing may leave, relative to the size of the solid. Intervals on its edges have an accuracy of 1e-9 of an edge. The rim of a sharp edge
+/// reaches the limit of spheres long before. If larger, fine packings are rejected; if smaller, edges count as covered although no sphere covers them.
+const MIN_REACH: f64 = 1e-8;
 
 /// Ring of balls: balls of one radius, equally spaced on a circle about the axis.
 #[derive(Clone, Copy, Debug)]
@@ -32,35 +37,13 @@ struct Uncovered {
     intervals: Vec<Vec<[f64; 2]>>,
 }
 
-impl Lathe {
-    /// Creates a solid of revolution from a profile of (distance from the axis ≥ 0, height), metres. Sides on the axis do not belong to the surface.
-    pub fn new(profile: &[DVec2]) -> Self {
-        Self {
-            outline: Outline::new(profile, |a, b| a.x > 0.0 || b.x > 0.0),
-        }
-    }
-
-    /// Returns the volume, m³, and the integral of z over the volume, m⁴: the sum over the edges, which is positive where they go up.
-    pub fn volume_and_moment(&self) -> [f64; 2] {
-        let corners = self.outline.vertices();
-        let slices = corners.iter().enumerate().filter_map(|(k, &from)| {
-            let to = corners[(k + 1) % corners.len()];
-            let slope = (to.x - from.x) / (to.y - from.y);
-            let square = |z: f64| (from.x + slope * (z - from.y)).powi(2);
-            (from.y != to.y).then(|| turned(from.y, to.y, square))
-        });
-        slices.fold([0.0; 2], |sum, slice| {
-            [sum[0] + slice[0], sum[1] + slice[1]]
-        })
-    }
-
-    pub fn distance(&self, point: DVec3) -> f64 {
+impl Form for Lathe {
+    fn distance(&self, point: DVec3) -> f64 {
         self.outline
             .distance(DVec2::new(point.truncate().length(), point.z))
     }
 
-    /// Returns the support function of the solid: the largest p·direction over its points p, metres.
-    pub fn support(&self, direction: DVec3) -> f64 {
+    fn support(&self, direction: DVec3) -> f64 {
         let across = direction.truncate().length();
         let corners = self.outline.vertices().iter();
         corners
@@ -68,8 +51,23 @@ impl Lathe {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// Integrates over slices under the edges of the profile, which count positively where the edges go up.
+    fn volume_and_center(&self) -> (f64, DVec3) {
+        let corners = self.outline.vertices();
+        let slices = corners.iter().enumerate().filter_map(|(k, &from)| {
+            let to = corners[(k + 1) % corners.len()];
+            let slope = (to.x - from.x) / (to.y - from.y);
+            let square = |z: f64| (from.x + slope * (z - from.y)).powi(2);
+            (from.y != to.y).then(|| turned(from.y, to.y, square))
+        });
+        let [volume, moment] = slices.fold([0.0; 2], |sum, slice| {
+            [sum[0] + slice[0], sum[1] + slice[1]]
+        });
+        (volume, moment / volume * DVec3::Z)
+    }
+
     /// Packs the solid with spheres: adds rings of balls until every point of the profile is covered at all angles about the axis.
-    pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
+    fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let mut uncovered = Uncovered::new(&self.outline);
         while let Some(ring) = self.next_ring(&uncovered, fit) {
             let mut farthest = ring.radius;
@@ -88,6 +86,39 @@ impl Lathe {
                 return;
             }
         }
+    }
+
+    fn patches(&self) -> Vec<SurfacePatch> {
+        let edges = self.outline.edges.iter();
+        edges
+            .map(|edge| SurfacePatch::turned(edge.start, edge.point(edge.length), [0.0, TAU]))
+            .collect()
+    }
+
+    fn min_reach(&self) -> f64 {
+        MIN_REACH
+    }
+}
+
+impl Lathe {
+    /// Creates a solid of revolution from a profile of (distance from the axis ≥ 0, height), metres. Sides on the axis do not belong to the surface.
+    pub fn new(profile: &[DVec2]) -> Self {
+        Self {
+            outline: Outline::new(profile, |a, b| a.x > 0.0 || b.x > 0.0),
+        }
+    }
+
+    /// Creates a cone frustum about z, centred on the origin; one of the diameters may be 0.
+    pub fn frustum(bottom_diameter: f64, top_diameter: f64, height: f64) -> Self {
+        let (bottom, top, z) = (0.5 * bottom_diameter, 0.5 * top_diameter, 0.5 * height);
+        let mut corners = vec![
+            DVec2::new(0.0, -z),
+            DVec2::new(bottom, -z),
+            DVec2::new(top, z),
+            DVec2::new(0.0, z),
+        ];
+        corners.dedup();
+        Self::new(&corners)
     }
 
     /// Returns the best ring of balls among those that cover an end of the first uncovered interval. The best ring covers the largest length of edges per
@@ -193,27 +224,6 @@ impl Lathe {
             .flat_map(|(covered, intervals)| common(intervals, covered))
             .map(|[start, end]| end - start)
             .sum()
-    }
-
-    pub fn patches(&self) -> Vec<SurfacePatch> {
-        let edges = self.outline.edges.iter();
-        edges
-            .map(|edge| SurfacePatch::turned(edge.start, edge.point(edge.length), [0.0, TAU]))
-            .collect()
-    }
-
-    pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
-        for edge in &self.outline.edges {
-            let n = (edge.length / spacing).ceil().max(2.0);
-            for i in 0..=n as usize {
-                let at = edge.point(edge.length * i as f64 / n);
-                let m = (TAU * at.x / spacing).ceil().max(12.0);
-                points.extend((0..m as usize).map(|j| {
-                    let (sin, cos) = (TAU * j as f64 / m).sin_cos();
-                    DVec3::new(at.x * cos, at.x * sin, at.y)
-                }));
-            }
-        }
     }
 }
 

@@ -177,11 +177,7 @@ impl Builder<'_> {
             let middles = self.order[part.clone()]
                 .iter()
                 .map(|&place| self.middles[place as usize]);
-            let (low, high) = middles.fold(
-                (DVec3::INFINITY, DVec3::NEG_INFINITY),
-                |(low, high), middle| (low.min(middle), high.max(middle)),
-            );
-            let axis = (high - low).max_position();
+            let axis = Aabb::around_points(middles).size().max_position();
             let middles = &self.middles;
             self.order[part.clone()].select_nth_unstable_by(cut - part.start, |&a, &b| {
                 let along = |place: u32| middles[place as usize][axis];
@@ -199,11 +195,7 @@ impl Builder<'_> {
         let bounds = places.clone().map(|place| self.triangles[place].bounds());
         let bounds = Aabb::around(bounds).expect("a part has triangles");
         let normals = places.clone().map(|place| self.faces[place].normal);
-        let (low, high) = normals.fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(low, high), normal| (low.min(normal), high.max(normal)),
-        );
-        let axis = 0.5 * (low + high);
+        let axis = Aabb::around_points(normals).center();
         let spreads = places.map(|place| {
             let face = &self.faces[place];
             face.normal.distance(axis) + face.spread

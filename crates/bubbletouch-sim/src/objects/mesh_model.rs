@@ -139,27 +139,14 @@ impl MeshModel {
 
     /// Returns the bounding box of the object, metres.
     pub fn bounds(&self) -> Aabb {
-        self.enlarged(self.data.bvh.bounds())
-    }
-
-    /// Returns a box enlarged by the rounding on all sides.
-    fn enlarged(&self, bounds: Aabb) -> Aabb {
-        Aabb {
-            min: bounds.min - self.data.rounding,
-            max: bounds.max + self.data.rounding,
-        }
+        self.data.bvh.bounds().widened(self.data.rounding)
     }
 
     /// Returns the bounding box of the object after a rotation about its origin, metres.
     pub fn turned_bounds(&self, rotation: DQuat) -> Aabb {
         let rotation = DMat3::from_quat(rotation);
         let corners = self.corners().map(|corner| rotation * corner);
-        let points = corners.map(|point| Aabb {
-            min: point,
-            max: point,
-        });
-        let around = Aabb::around(points).expect("a mesh has at least one triangle");
-        self.enlarged(around)
+        Aabb::around_points(corners).widened(self.data.rounding)
     }
 
     /// Returns each vertex that belongs to a triangle, once.

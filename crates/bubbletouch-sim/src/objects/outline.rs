@@ -118,6 +118,12 @@ impl Outline {
         &self.vertices
     }
 
+    /// Returns the corners with the smallest and the largest coordinates of the rectangle around the polygon.
+    pub fn bounds(&self) -> [DVec2; 2] {
+        let around = |by: fn(DVec2, DVec2) -> DVec2| self.vertices.iter().copied().reduce(by);
+        [DVec2::min, DVec2::max].map(|by| around(by).unwrap_or_default())
+    }
+
     /// Returns the radius of the largest inscribed disc that touches the edge with the index `edge` at `foot`.
     pub fn tangent_radius(&self, edge: usize, foot: DVec2) -> f64 {
         let inward = self.edges[edge].inward;

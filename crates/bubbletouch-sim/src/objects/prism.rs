@@ -3,6 +3,7 @@
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
 use super::outline::Outline;
+use super::solid::Form;
 use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 
@@ -14,16 +15,21 @@ pub(super) struct Prism {
     half: f64,
 }
 
-impl Prism {
-    pub fn new(outline: &[DVec2], thickness: f64) -> Self {
-        Self {
-            outline: Outline::new(outline, |_, _| true),
-            half: 0.5 * thickness,
-        }
+impl Form for Prism {
+    fn distance(&self, point: DVec3) -> f64 {
+        let across = self.outline.distance(point.truncate());
+        let above = point.z.abs() - self.half;
+        let outside = DVec2::new(across, above).max(DVec2::ZERO).length();
+        outside + across.max(above).min(0.0)
     }
 
-    /// Returns the volume, m³, and the centroid, metres.
-    pub fn volume_and_center(&self) -> (f64, DVec3) {
+    fn support(&self, direction: DVec3) -> f64 {
+        let corners = self.outline.vertices().iter();
+        let across = corners.map(|v| v.dot(direction.truncate()));
+        across.fold(f64::NEG_INFINITY, f64::max) + self.half * direction.z.abs()
+    }
+
+    fn volume_and_center(&self) -> (f64, DVec3) {
         let corners = self.outline.vertices();
         let apex = corners[0];
         let (mut area, mut moment) = (0.0, DVec2::ZERO);
@@ -37,27 +43,13 @@ impl Prism {
         (2.0 * self.half * area.abs(), center.extend(0.0))
     }
 
-    pub fn distance(&self, point: DVec3) -> f64 {
-        let across = self.outline.distance(point.truncate());
-        let above = point.z.abs() - self.half;
-        let outside = DVec2::new(across, above).max(DVec2::ZERO).length();
-        outside + across.max(above).min(0.0)
-    }
-
-    /// Returns the support function of the prism: the largest p·direction over its points p, metres.
-    pub fn support(&self, direction: DVec3) -> f64 {
-        let corners = self.outline.vertices().iter();
-        let across = corners.map(|v| v.dot(direction.truncate()));
-        across.fold(f64::NEG_INFINITY, f64::max) + self.half * direction.z.abs()
-    }
-
     /// Packs the prism with spheres. The walls are divided into cells first, then the uncovered remainder of the two faces into cells of a square around the
     /// outline.
     ///
     /// The ball of a cell touches the surface in the middle of the cell. The cell is divided until the enlarged ball covers the farthest point p of the cell:
     /// |p − c| ≤ r + h. Here c is the ball's centre, r its radius, and h the sum of both tolerances. On a plane this condition is |p − foot|² ≤ (r + h)² −
     /// r².
-    pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
+    fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         for edge in 0..self.outline.edges.len() {
             let length = self.outline.edges[edge].length;
             // The first cells are nearly square, because walls are much longer than high.
@@ -70,15 +62,38 @@ impl Prism {
                 self.pack_wall(edge, cell, fit, spheres);
             }
         }
-        let corners = self.outline.vertices().iter();
-        let min = corners.clone().copied().reduce(DVec2::min);
-        let max = corners.copied().reduce(DVec2::max);
-        if let (Some(min), Some(max)) = (min, max) {
-            let cell = Cell {
-                middle: 0.5 * (min + max),
-                half: DVec2::splat(0.5 * (max - min).max_element()),
-            };
-            self.pack_face(cell, fit, spheres);
+        let [min, max] = self.outline.bounds();
+        let cell = Cell {
+            middle: 0.5 * (min + max),
+            half: DVec2::splat(0.5 * (max - min).max_element()),
+        };
+        self.pack_face(cell, fit, spheres);
+    }
+
+    /// Returns the patches of the prism's surface: each wall, and a rectangle around each face. The parts of a rectangle beyond the outline are not part of
+    /// the surface.
+    /// Returns a patch for each wall, and a rectangle around each face.
+    fn patches(&self) -> Vec<SurfacePatch> {
+        let walls = self.outline.edges.iter().map(|edge| {
+            let middle = edge.point(0.5 * edge.length).extend(0.0);
+            let axes = [edge.along.extend(0.0), DVec3::Z];
+            SurfacePatch::flat(middle, axes, DVec2::new(0.5 * edge.length, self.half))
+        });
+        let [min, max] = self.outline.bounds();
+        let middle = 0.5 * (min + max);
+        let face = |up: f64| {
+            let axes = [DVec3::X, up * DVec3::Y];
+            SurfacePatch::flat(middle.extend(up * self.half), axes, 0.5 * (max - min))
+        };
+        walls.chain([face(1.0), face(-1.0)]).collect()
+    }
+}
+
+impl Prism {
+    pub fn new(outline: &[DVec2], thickness: f64) -> Self {
+        Self {
+            outline: Outline::new(outline, |_, _| true),
+            half: 0.5 * thickness,
         }
     }
 
@@ -140,51 +155,6 @@ impl Prism {
             (center, inset.min(self.half))
         } else {
             (foot, 0.0)
-        }
-    }
-
-    /// Returns the patches of the prism's surface: each wall, and a rectangle around each face. The parts of a rectangle beyond the outline are not part of
-    /// the surface.
-    pub fn patches(&self) -> Vec<SurfacePatch> {
-        let walls = self.outline.edges.iter().map(|edge| {
-            let middle = edge.point(0.5 * edge.length).extend(0.0);
-            let axes = [edge.along.extend(0.0), DVec3::Z];
-            SurfacePatch::flat(middle, axes, DVec2::new(0.5 * edge.length, self.half))
-        });
-        let corners = self.outline.vertices().iter();
-        let min = corners.clone().copied().fold(DVec2::MAX, DVec2::min);
-        let max = corners.copied().fold(DVec2::MIN, DVec2::max);
-        let middle = 0.5 * (min + max);
-        let face = |up: f64| {
-            let axes = [DVec3::X, up * DVec3::Y];
-            SurfacePatch::flat(middle.extend(up * self.half), axes, 0.5 * (max - min))
-        };
-        walls.chain([face(1.0), face(-1.0)]).collect()
-    }
-
-    pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
-        let n_up = (2.0 * self.half / spacing).ceil().max(4.0);
-        for edge in &self.outline.edges {
-            let n = (edge.length / spacing).ceil().max(4.0);
-            for i in 0..=n as usize {
-                let at = edge.point(edge.length * i as f64 / n);
-                points.extend((0..=n_up as usize).map(|j| {
-                    let z = self.half * (2.0 * j as f64 / n_up - 1.0);
-                    at.extend(z)
-                }));
-            }
-        }
-        let corners = self.outline.vertices().iter();
-        let min = corners.clone().copied().fold(DVec2::MAX, DVec2::min);
-        let max = corners.copied().fold(DVec2::MIN, DVec2::max);
-        let n = ((max - min) / spacing).ceil().max(DVec2::splat(4.0));
-        for i in 0..=n.x as usize {
-            for j in 0..=n.y as usize {
-                let at = min + (max - min) * DVec2::new(i as f64, j as f64) / n;
-                if self.outline.distance(at) <= 0.0 {
-                    points.extend([at.extend(self.half), at.extend(-self.half)]);
-                }
-            }
         }
     }
 }

@@ -3,9 +3,12 @@
 use super::outline::polygon_fault;
 use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};
+use serde::{Deserialize, Deserializer};
+use std::fmt::Display;
 
 /// Shape in its own frame. All lengths are positive, in metres; shapes are centred on the origin unless stated otherwise.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "shape", rename_all = "snake_case")]
 pub enum Shape {
     /// Ball, given by its diameter.
     Ball {
@@ -15,8 +18,10 @@ pub enum Shape {
     /// Box with sharp or rounded edges.
     Box {
         /// Edge lengths along x, y, z.
+        #[serde(deserialize_with = "vector")]
         size: DVec3,
         /// Radius of edges and corners: 0 (sharp) to half the smallest edge length.
+        #[serde(default)]
         rounding: f64,
     },
     /// Cylinder about the z axis.
@@ -61,11 +66,13 @@ pub enum Shape {
     /// Solid of revolution of a polygon about z, such as a cup, a bowl or a bottle.
     Lathe {
         /// Corners (distance from the axis, height z) in either direction; the outline is closed automatically.
+        #[serde(deserialize_with = "vectors")]
         profile: Vec<DVec2>,
     },
     /// Prism of a polygon in the plane z = 0, centred on this plane, such as a blade or a jaw.
     Prism {
         /// Corners (x, y) in either direction; the outline is closed automatically.
+        #[serde(deserialize_with = "vectors")]
         outline: Vec<DVec2>,
         /// Thickness of the prism along z.
         thickness: f64,
@@ -78,102 +85,116 @@ pub enum Shape {
         height: f64,
     },
     /// Ball swept along a polyline with a diameter that changes linearly between points, such as a handle, a ring or a banana.
+    #[serde(rename = "strand")]
     SphereSweep {
         /// Points of the polyline; the sweep is closed if the last ball equals the first.
+        #[serde(deserialize_with = "vectors")]
         points: Vec<DVec3>,
         /// Diameter of the ball at each point.
         diameters: Vec<f64>,
     },
 }
 
-/// Names and units of dimensions in error messages.
+/// Reads a vector from a list of numbers.
+fn vector<'de, D: Deserializer<'de>>(source: D) -> std::result::Result<DVec3, D::Error> {
+    <[f64; 3]>::deserialize(source).map(DVec3::from)
+}
+
+/// Reads vectors, given by lists of N numbers.
+fn vectors<'de, const N: usize, V, D>(source: D) -> std::result::Result<Vec<V>, D::Error>
+where
+    [f64; N]: Deserialize<'de> + Into<V>,
+    D: Deserializer<'de>,
+{
+    let lists = Vec::<[f64; N]>::deserialize(source)?;
+    Ok(lists.into_iter().map(Into::into).collect())
+}
+
+/// Names and units of lengths in error messages.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Wording {
-    /// Messages with field names and lengths in metres, such as `height: -0.002 m`.
-    Metres,
-    /// Messages with keys of object files and lengths in millimetres, such as `height_mm: -2`.
-    MillimetreKeys,
+pub(super) struct Wording {
+    /// End of the name of a length.
+    suffix: &'static str,
+    /// Text after a number.
+    unit: &'static str,
 }
 
 impl Wording {
-    fn name(self, length: &str) -> String {
-        match self {
-            Self::Metres => length.to_owned(),
-            Self::MillimetreKeys => format!("{length}_mm"),
-        }
+    /// Messages with field names and lengths in metres, such as `height: -0.002 m`.
+    const METRES: Self = Self {
+        suffix: "",
+        unit: " m",
+    };
+    /// Messages with keys of object files and lengths in millimetres, such as `height_mm: -2`.
+    pub const MILLIMETRE_KEYS: Self = Self {
+        suffix: "_mm",
+        unit: "",
+    };
+
+    fn refuse<T>(self, name: &str, given: impl Display, allowed: impl Display) -> Result<T> {
+        Err(Error::input(
+            format!("{name}{}", self.suffix),
+            given,
+            allowed,
+        ))
     }
 
-    /// Formats a length, given in metres, for an error message.
-    fn length(self, metres: f64) -> String {
-        match self {
-            Self::Metres => format!("{metres} m"),
-            // The value as written, without the rounding errors of the conversion to metres and back.
-            Self::MillimetreKeys => format!("{}", (metres * 1e12).round() / 1e9),
-        }
-    }
-
-    fn positive(self, name: &str, metres: f64) -> Result<()> {
-        if metres.is_finite() && metres > 0.0 {
-            return Ok(());
-        }
-        let allowed = "a finite positive length";
-        Err(Error::input(self.name(name), self.length(metres), allowed))
-    }
-
-    /// Returns an error unless low ≤ metres ≤ high for the dimension `name`; `high` may be infinite.
-    fn between(self, name: &str, metres: f64, low: f64, high: f64) -> Result<()> {
-        if metres.is_finite() && (low..=high).contains(&metres) {
-            return Ok(());
-        }
-        let low = self.length(low);
-        let allowed = if high.is_infinite() {
-            format!("{low} or more")
-        } else {
-            format!("{low} to {}", self.length(high))
-        };
-        Err(Error::input(self.name(name), self.length(metres), allowed))
-    }
-
-    fn polygon(self, name: &str, corners: &[DVec2]) -> Result<()> {
-        let fault = match corners.iter().position(|corner| !corner.is_finite()) {
-            Some(at) => Some(format!("corner {}, which is not finite", at + 1)),
-            None => polygon_fault(corners),
-        };
-        match fault {
-            Some(given) => Err(Error::input(
-                self.name(name),
-                given,
-                "at least three corners of a polygon that does not cross itself",
-            )),
+    /// Returns an error unless all lengths, given with their names, are positive.
+    fn positive<const N: usize>(self, lengths: [(&str, f64); N]) -> Result<()> {
+        let is_wrong = |&(_, length): &(&str, f64)| !(length.is_finite() && length > 0.0);
+        match lengths.into_iter().find(is_wrong) {
+            Some((name, length)) => {
+                let given = format_args!("{length}{}", self.unit);
+                self.refuse(name, given, "a finite positive length")
+            }
             None => Ok(()),
         }
     }
 
-    fn check_capsule_chain(self, points: &[DVec3], diameters: &[f64]) -> Result<()> {
-        if points.is_empty() || points.len() != diameters.len() {
-            return Err(Error::input(
-                self.name("diameters"),
-                format!("{} points and {} diameters", points.len(), diameters.len()),
-                "one diameter for each of at least one points",
-            ));
+    /// Returns an error unless low ≤ length ≤ high for the length `name`; `high` may be infinite.
+    fn between(self, name: &str, length: f64, low: f64, high: f64) -> Result<()> {
+        if length.is_finite() && (low..=high).contains(&length) {
+            return Ok(());
+        }
+        let unit = self.unit;
+        let allowed = match high.is_infinite() {
+            true => format!("{low}{unit} or more"),
+            false => format!("{low}{unit} to {high}{unit}"),
+        };
+        self.refuse(name, format_args!("{length}{unit}"), allowed)
+    }
+
+    fn polygon(self, name: &str, corners: &[DVec2]) -> Result<()> {
+        let infinite = corners.iter().position(|corner| !corner.is_finite());
+        let infinite = infinite.map(|at| format!("corner {}, which is not finite", at + 1));
+        match infinite.or_else(|| polygon_fault(corners)) {
+            Some(given) => {
+                let allowed = "at least three corners of a polygon that does not cross itself";
+                self.refuse(name, given, allowed)
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn sphere_sweep(self, points: &[DVec3], diameters: &[f64]) -> Result<()> {
+        let (n, n_diameters) = (points.len(), diameters.len());
+        if n == 0 || n != n_diameters {
+            let given = format_args!("{n} points and {n_diameters} diameters");
+            let allowed = "one diameter for each of at least one points";
+            return self.refuse("diameters", given, allowed);
         }
         for &diameter in diameters {
-            self.positive("diameters", diameter)?;
+            self.positive([("diameters", diameter)])?;
         }
         if let Some(at) = points.iter().position(|point| !point.is_finite()) {
-            let given = format!("point {}, which is not finite", at + 1);
-            return Err(Error::input(
-                self.name("points"),
-                given,
-                "finite coordinates",
-            ));
+            let given = format_args!("point {}, which is not finite", at + 1);
+            return self.refuse("points", given, "finite coordinates");
         }
         match points.windows(2).position(|pair| pair[0] == pair[1]) {
-            Some(at) => Err(Error::input(
-                self.name("points"),
-                format!("point {} as the one before", at + 2),
-                "neighbouring points that differ",
-            )),
+            Some(at) => {
+                let given = format_args!("point {} as the one before", at + 2);
+                self.refuse("points", given, "neighbouring points that differ")
+            }
             None => Ok(()),
         }
     }
@@ -185,92 +206,86 @@ impl Shape {
     /// # Errors
     /// If a dimension is out of range; the error names the first one.
     pub fn check(&self) -> Result<()> {
-        self.check_worded(Wording::Metres)
+        self.check_worded(Wording::METRES)
     }
 
-    /// Returns an error if a dimension of the shape is out of range. The location of the error is the name of the dimension.
+    /// Returns an error if a dimension of the shape, in the unit of the wording, is out of range. The location of the error is the name of the dimension.
     pub(super) fn check_worded(&self, wording: Wording) -> Result<()> {
-        let positive = |name, metres| wording.positive(name, metres);
-        let at_least = |name, metres, low| wording.between(name, metres, low, f64::INFINITY);
-        match self {
-            Shape::Ball { diameter } => positive("diameter", *diameter),
+        let at_least = |name, length, low| wording.between(name, length, low, f64::INFINITY);
+        match *self {
+            Shape::Ball { diameter } => wording.positive([("diameter", diameter)]),
             Shape::Box { size, rounding } => {
-                for length in size.to_array() {
-                    positive("size", length)?;
-                }
-                wording.between("rounding", *rounding, 0.0, 0.5 * size.min_element())
+                wording.positive(size.to_array().map(|side| ("size", side)))?;
+                wording.between("rounding", rounding, 0.0, 0.5 * size.min_element())
             }
             Shape::Cylinder { diameter, height } => {
-                positive("diameter", *diameter)?;
-                positive("height", *height)
+                wording.positive([("diameter", diameter), ("height", height)])
             }
             Shape::Capsule { diameter, length } => {
-                positive("diameter", *diameter)?;
-                at_least("length", *length, *diameter)
+                wording.positive([("diameter", diameter)])?;
+                at_least("length", length, diameter)
             }
             Shape::ConeFrustum {
-                bottom_diameter,
-                top_diameter,
+                bottom_diameter: bottom,
+                top_diameter: top,
                 height,
             } => {
-                at_least("bottom_diameter", *bottom_diameter, 0.0)?;
-                at_least("top_diameter", *top_diameter, 0.0)?;
-                if *bottom_diameter == 0.0 {
-                    positive("top_diameter", *top_diameter)?;
+                at_least("bottom_diameter", bottom, 0.0)?;
+                at_least("top_diameter", top, 0.0)?;
+                if bottom == 0.0 {
+                    wording.positive([("top_diameter", top)])?;
                 }
-                positive("height", *height)
+                wording.positive([("height", height)])
             }
             Shape::Torus {
-                ring_diameter,
-                tube_diameter,
+                ring_diameter: ring,
+                tube_diameter: tube,
             } => {
-                positive("tube_diameter", *tube_diameter)?;
-                at_least("ring_diameter", *ring_diameter, *tube_diameter)
+                wording.positive([("tube_diameter", tube)])?;
+                at_least("ring_diameter", ring, tube)
             }
             Shape::Tube {
-                outer_diameter,
-                inner_diameter,
+                outer_diameter: outer,
+                inner_diameter: inner,
                 height,
             } => {
-                positive("inner_diameter", *inner_diameter)?;
-                positive("outer_diameter", *outer_diameter)?;
-                if inner_diameter >= outer_diameter {
-                    return Err(Error::input(
-                        wording.name("inner_diameter"),
-                        wording.length(*inner_diameter),
-                        format!(
-                            "less than the outer diameter of {}",
-                            wording.length(*outer_diameter)
-                        ),
-                    ));
+                wording.positive([("inner_diameter", inner), ("outer_diameter", outer)])?;
+                if inner >= outer {
+                    let unit = wording.unit;
+                    let allowed = format_args!("less than the outer diameter of {outer}{unit}");
+                    return wording.refuse(
+                        "inner_diameter",
+                        format_args!("{inner}{unit}"),
+                        allowed,
+                    );
                 }
-                positive("height", *height)
+                wording.positive([("height", height)])
             }
-            Shape::Lathe { profile } => {
+            Shape::Lathe { ref profile } => {
                 wording.polygon("profile", profile)?;
                 match profile.iter().position(|corner| corner.x < 0.0) {
-                    Some(at) => Err(Error::input(
-                        wording.name("profile"),
-                        format!("corner {} left of the axis", at + 1),
-                        "distances from the axis of zero or more",
-                    )),
+                    Some(at) => {
+                        let given = format_args!("corner {} left of the axis", at + 1);
+                        wording.refuse("profile", given, "distances from the axis of zero or more")
+                    }
                     None => Ok(()),
                 }
             }
-            Shape::Prism { outline, thickness } => {
+            Shape::Prism {
+                ref outline,
+                thickness,
+            } => {
                 wording.polygon("outline", outline)?;
-                positive("thickness", *thickness)
+                wording.positive([("thickness", thickness)])
             }
             Shape::HexagonalPrism {
                 across_flats,
                 height,
-            } => {
-                positive("across_flats", *across_flats)?;
-                positive("height", *height)
-            }
-            Shape::SphereSweep { points, diameters } => {
-                wording.check_capsule_chain(points, diameters)
-            }
+            } => wording.positive([("across_flats", across_flats), ("height", height)]),
+            Shape::SphereSweep {
+                ref points,
+                ref diameters,
+            } => wording.sphere_sweep(points, diameters),
         }
     }
 }

@@ -11,12 +11,14 @@ use super::{Shape, Sphere};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use glam::{DVec2, DVec3};
+use std::fmt::Debug;
+use std::sync::Arc;
 
 /// Part of a solid: a shape at a pose in the frame of the object.
 #[derive(Clone, Debug)]
 pub struct Part {
     shape: Shape,
-    kernel: Kernel,
+    form: Arc<dyn Form>,
     /// Pose of the part in the frame of the object.
     pose: Pose,
 }
@@ -35,20 +37,28 @@ pub struct Solid {
 /// subtracted shape ends in a part's surface. If smaller, rounding leaves such membranes; if larger, walls beside subtracted shapes become thinner.
 const SEAM: f64 = 4e-6;
 
-/// Basic form that represents a shape; five basic forms represent all shapes.
-#[derive(Clone, Debug)]
-pub(super) enum Kernel {
-    Block(Block),
-    Lathe(Lathe),
-    Prism(Prism),
-    Torus(Torus),
-    SphereSweep(SphereSweep),
-}
+/// Basic form that represents a shape, in the frame of the shape; five basic forms represent all shapes.
+pub(super) trait Form: Debug + Send + Sync {
+    /// Returns the signed distance from a point to the surface, metres, negative inside. Inside, a lower bound of the depth may be returned.
+    fn distance(&self, point: DVec3) -> f64;
 
-/// Smallest gap that a packing of a solid of revolution may leave, relative to its size. Intervals on its edges have an accuracy of 1e-9 of an edge. The rim
-/// of a sharp edge reaches the limit of spheres long before. If larger, fine packings are rejected; if smaller, edges count as covered although no sphere
-/// covers them.
-const MIN_REACH: f64 = 1e-8;
+    /// Returns the support function of the form: the largest p·direction over its points p, metres.
+    fn support(&self, direction: DVec3) -> f64;
+
+    /// Returns the volume of the form, m³, and its centroid, metres.
+    fn volume_and_center(&self) -> (f64, DVec3);
+
+    /// Adds spheres whose union approximates the form within the tolerances `fit`.
+    fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>);
+
+    /// Returns patches that cover the whole surface. Parts of patches may lie inside or outside the form.
+    fn patches(&self) -> Vec<SurfacePatch>;
+
+    /// Returns the smallest gap that a packing may leave, relative to the size of the form; with smaller gaps, rounding errors decide.
+    fn min_reach(&self) -> f64 {
+        0.0
+    }
+}
 
 impl Part {
     /// Creates a part from a shape and its pose.
@@ -64,10 +74,9 @@ impl Part {
                 "finite numbers",
             ));
         }
-        let kernel = kernel(&shape);
         Ok(Self {
+            form: form(&shape),
             shape,
-            kernel,
             pose,
         })
     }
@@ -77,20 +86,10 @@ impl Part {
         &self.shape
     }
 
-    /// Returns the basic form of the part.
-    pub(super) fn kernel(&self) -> &Kernel {
-        &self.kernel
-    }
-
-    /// Returns the pose of the part in the frame of the object.
-    pub(super) fn pose(&self) -> &Pose {
-        &self.pose
-    }
-
     /// Returns the part with another shape at the same pose.
     pub(super) fn reshaped(&self, shape: Shape) -> Self {
         Self {
-            kernel: kernel(&shape),
+            form: form(&shape),
             shape,
             pose: self.pose,
         }
@@ -98,46 +97,33 @@ impl Part {
 
     /// Returns the signed distance from a point in the object's frame to the part's surface, metres, negative inside.
     pub fn distance(&self, point: DVec3) -> f64 {
-        let point = self.pose.inverse().transform_point(point);
-        match &self.kernel {
-            Kernel::Block(block) => block.distance(point),
-            Kernel::Lathe(lathe) => lathe.distance(point),
-            Kernel::Prism(prism) => prism.distance(point),
-            Kernel::Torus(torus) => torus.distance(point),
-            Kernel::SphereSweep(sweep) => sweep.distance(point),
-        }
+        self.form
+            .distance(self.pose.inverse().transform_point(point))
     }
 
     /// Returns the support function of the part in the object's frame: the largest p·direction over its points p, metres.
     fn support(&self, direction: DVec3) -> f64 {
         let inside = self.pose.rotation.conjugate() * direction;
-        let support = match &self.kernel {
-            Kernel::Block(block) => block.support(inside),
-            Kernel::Lathe(lathe) => lathe.support(inside),
-            Kernel::Prism(prism) => prism.support(inside),
-            Kernel::Torus(torus) => torus.support(inside),
-            Kernel::SphereSweep(sweep) => sweep.support(inside),
-        };
-        support + self.pose.translation.dot(direction)
+        self.form.support(inside) + self.pose.translation.dot(direction)
+    }
+
+    /// Returns the volume of the part, m³, and its centroid in the object's frame, metres.
+    pub(super) fn volume_and_center(&self) -> (f64, DVec3) {
+        let (volume, center) = self.form.volume_and_center();
+        (volume, self.pose.transform_point(center))
     }
 
     /// Returns whether rounding errors are small compared with the gaps that a packing with the tolerances `fit` may leave.
     pub(super) fn resolves(&self, fit: Fit) -> bool {
         let along = |axis: DVec3| self.support(axis) + self.support(-axis);
         let size = DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z)).length();
-        !matches!(self.kernel, Kernel::Lathe(_)) || fit.reach() >= MIN_REACH * size
+        fit.reach() >= self.form.min_reach() * size
     }
 
     /// Returns spheres whose union approximates the part within the tolerances `fit`.
     pub(super) fn pack(&self, fit: Fit) -> Vec<Sphere> {
         let mut spheres = Vec::new();
-        match &self.kernel {
-            Kernel::Block(block) => block.pack(fit, &mut spheres),
-            Kernel::Lathe(lathe) => lathe.pack(fit, &mut spheres),
-            Kernel::Prism(prism) => prism.pack(fit, &mut spheres),
-            Kernel::Torus(torus) => torus.pack(fit, &mut spheres),
-            Kernel::SphereSweep(sweep) => sweep.pack(fit, &mut spheres),
-        }
+        self.form.pack(fit, &mut spheres);
         for sphere in &mut spheres {
             sphere.center = self.pose.transform_point(sphere.center);
         }
@@ -146,31 +132,14 @@ impl Part {
 
     /// Returns patches that cover the whole surface of the part, in the object's frame.
     pub(super) fn patches(&self) -> Vec<SurfacePatch> {
-        let patches = match &self.kernel {
-            Kernel::Block(block) => block.patches(),
-            Kernel::Lathe(lathe) => lathe.patches(),
-            Kernel::Prism(prism) => prism.patches(),
-            Kernel::Torus(torus) => torus.patches(),
-            Kernel::SphereSweep(sweep) => sweep.patches(),
-        };
-        let moved = patches.into_iter().map(|patch| patch.moved(&self.pose));
-        moved.collect()
+        let patches = self.form.patches().into_iter();
+        patches.map(|patch| patch.moved(&self.pose)).collect()
     }
 
-    /// Returns points on the part's surface, including its corners and edges, at most about `spacing` (metres) apart.
-    fn surface_points(&self, spacing: f64) -> Vec<DVec3> {
-        let mut points = Vec::new();
-        match &self.kernel {
-            Kernel::Block(block) => block.surface_points(spacing, &mut points),
-            Kernel::Lathe(lathe) => lathe.surface_points(spacing, &mut points),
-            Kernel::Prism(prism) => prism.surface_points(spacing, &mut points),
-            Kernel::Torus(torus) => torus.surface_points(spacing, &mut points),
-            Kernel::SphereSweep(sweep) => sweep.surface_points(spacing, &mut points),
-        }
-        for point in &mut points {
-            *point = self.pose.transform_point(*point);
-        }
-        points
+    /// Returns points on the patches of the part's surface, including its corners and edges, at most about `spacing` (metres) apart.
+    fn patch_points(&self, spacing: f64) -> Vec<DVec3> {
+        let patches = self.patches().into_iter();
+        patches.flat_map(|patch| patch.points(spacing)).collect()
     }
 }
 
@@ -276,15 +245,15 @@ impl Solid {
 
     /// Returns points on the surface of the solid, at most about `spacing` (metres) apart.
     pub fn surface_points(&self, spacing: f64) -> Vec<DVec3> {
-        // A point of a part's surface inside another part, or inside its own sphere sweep, is not on the surface.
         let rounding = 1e-9 * self.bounds().size().length();
-        let points = self.parts.iter().flat_map(|p| p.surface_points(spacing));
-        let of_parts = points
-            .filter(|&p| nearest(&self.parts, p) >= -rounding && nearest(&self.cuts, p) > rounding);
-        let points = self.cuts.iter().flat_map(|p| p.surface_points(spacing));
-        let of_cuts = points.filter(|&p| {
-            nearest(&self.cuts, p) >= -rounding && nearest(&self.parts, p) < -rounding
-        });
+        // Parts of a patch that lie inside or outside the union are not on its surface.
+        let is_on = |parts: &[Part], p: DVec3| nearest(parts, p).abs() <= rounding;
+        let points = self.parts.iter().flat_map(|p| p.patch_points(spacing));
+        let of_parts =
+            points.filter(|&p| is_on(&self.parts, p) && nearest(&self.cuts, p) > rounding);
+        let points = self.cuts.iter().flat_map(|p| p.patch_points(spacing));
+        let of_cuts =
+            points.filter(|&p| is_on(&self.cuts, p) && nearest(&self.parts, p) < -rounding);
         of_parts.chain(of_cuts).collect()
     }
 }
@@ -295,30 +264,32 @@ fn nearest(parts: &[Part], point: DVec3) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
-fn kernel(shape: &Shape) -> Kernel {
+fn form(shape: &Shape) -> Arc<dyn Form> {
     match *shape {
-        Shape::Ball { diameter } => capsule_chain(&[DVec3::ZERO], &[diameter]),
-        Shape::Box { size, rounding } => Kernel::Block(Block {
+        Shape::Ball { diameter } => Arc::new(SphereSweep::new(&[DVec3::ZERO], &[diameter])),
+        Shape::Box { size, rounding } => Arc::new(Block {
             half: 0.5 * size,
             rounding,
         }),
-        Shape::Cylinder { diameter, height } => frustum(diameter, diameter, height),
+        Shape::Cylinder { diameter, height } => {
+            Arc::new(Lathe::frustum(diameter, diameter, height))
+        }
         Shape::Capsule { diameter, length } => {
             let end = DVec3::Z * 0.5 * (length - diameter);
-            if end == DVec3::ZERO {
-                return capsule_chain(&[end], &[diameter]);
-            }
-            capsule_chain(&[-end, end], &[diameter, diameter])
+            Arc::new(match end == DVec3::ZERO {
+                true => SphereSweep::new(&[end], &[diameter]),
+                false => SphereSweep::new(&[-end, end], &[diameter, diameter]),
+            })
         }
         Shape::ConeFrustum {
             bottom_diameter,
             top_diameter,
             height,
-        } => frustum(bottom_diameter, top_diameter, height),
+        } => Arc::new(Lathe::frustum(bottom_diameter, top_diameter, height)),
         Shape::Torus {
             ring_diameter,
             tube_diameter,
-        } => Kernel::Torus(Torus {
+        } => Arc::new(Torus {
             ring: 0.5 * ring_diameter,
             tube: 0.5 * tube_diameter,
         }),
@@ -329,9 +300,9 @@ fn kernel(shape: &Shape) -> Kernel {
         } => {
             let (outer, inner, top) = (0.5 * outer_diameter, 0.5 * inner_diameter, 0.5 * height);
             let corners = [[inner, -top], [outer, -top], [outer, top], [inner, top]];
-            Kernel::Lathe(Lathe::new(&corners.map(DVec2::from)))
+            Arc::new(Lathe::new(&corners.map(DVec2::from)))
         }
-        Shape::Lathe { ref profile } => Kernel::Lathe(Lathe::new(profile)),
+        Shape::Lathe { ref profile } => Arc::new(Lathe::new(profile)),
         Shape::HexagonalPrism {
             across_flats,
             height,
@@ -339,38 +310,15 @@ fn kernel(shape: &Shape) -> Kernel {
             let corner = across_flats / 3f64.sqrt();
             let corners = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
                 .map(|k| corner * DVec2::from_angle(k * std::f64::consts::FRAC_PI_3));
-            Kernel::Prism(Prism::new(&corners, height))
+            Arc::new(Prism::new(&corners, height))
         }
         Shape::Prism {
             ref outline,
             thickness,
-        } => Kernel::Prism(Prism::new(outline, thickness)),
+        } => Arc::new(Prism::new(outline, thickness)),
         Shape::SphereSweep {
             ref points,
             ref diameters,
-        } => capsule_chain(points, diameters),
+        } => Arc::new(SphereSweep::new(points, diameters)),
     }
-}
-
-fn frustum(bottom_diameter: f64, top_diameter: f64, height: f64) -> Kernel {
-    let (bottom, top, z) = (0.5 * bottom_diameter, 0.5 * top_diameter, 0.5 * height);
-    let mut corners = vec![DVec2::new(0.0, -z)];
-    if bottom > 0.0 {
-        corners.push(DVec2::new(bottom, -z));
-    }
-    if top > 0.0 {
-        corners.push(DVec2::new(top, z));
-    }
-    corners.push(DVec2::new(0.0, z));
-    Kernel::Lathe(Lathe::new(&corners))
-}
-
-fn capsule_chain(points: &[DVec3], diameters: &[f64]) -> Kernel {
-    let balls = points.iter().zip(diameters).map(|(&center, &diameter)| {
-        let radius = 0.5 * diameter;
-        Sphere { center, radius }
-    });
-    Kernel::SphereSweep(SphereSweep {
-        balls: balls.collect(),
-    })
 }

@@ -4,7 +4,6 @@
 //! likewise. The first integrals have closed forms. The last integrand is 0 except where shapes overlap or are subtracted. This region is divided into
 //! cubes until the integrand is constant, or until the cubes are small. In a small cube, surfaces count as planes.
 
-use super::solid::Kernel;
 use super::{Part, Shape, Solid};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -199,30 +198,6 @@ impl Part {
             }
             _ => vec![self.clone()],
         }
-    }
-
-    /// Returns the volume of the part, m³, and its centroid in the object's frame, metres.
-    fn volume_and_center(&self) -> (f64, DVec3) {
-        let (volume, center) = match self.kernel() {
-            Kernel::Block(block) => {
-                let (r, core) = (block.rounding, 2.0 * (block.half - block.rounding));
-                let faces = core.x * core.y + core.y * core.z + core.z * core.x;
-                let edges = core.element_sum();
-                let volume = core.element_product() + 2.0 * r * faces + PI * r * r * edges;
-                (volume + 4.0 / 3.0 * PI * r.powi(3), DVec3::ZERO)
-            }
-            Kernel::Lathe(lathe) => {
-                let [volume, moment] = lathe.volume_and_moment();
-                (volume, moment / volume * DVec3::Z)
-            }
-            Kernel::Prism(prism) => prism.volume_and_center(),
-            Kernel::Torus(torus) => (
-                2.0 * PI * PI * torus.ring * torus.tube * torus.tube,
-                DVec3::ZERO,
-            ),
-            Kernel::SphereSweep(sweep) => sweep.volume_and_center(),
-        };
-        (volume, self.pose().transform_point(center))
     }
 }
 

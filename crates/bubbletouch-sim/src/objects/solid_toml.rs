@@ -4,56 +4,50 @@ use super::shape::Wording;
 use super::{Part, Shape, Solid};
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy};
-use glam::{DVec2, DVec3};
+use crate::text::spelling::{known, nearest_names};
+use glam::DVec3;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::ops::Range;
-use toml::Spanned;
+use toml::{Spanned, Table, Value};
 
-/// Part `[[object.part]]` or subtracted shape `[[object.subtract]]` of an object file: the name of a shape, its position, and its lengths.
+/// Shapes of object files, with the keys of their lengths.
+///
+/// The key of a length is the name of the field of [`Shape`] and `_mm`. The corners of a profile are (diameter, height), as in a technical drawing.
+const SHAPES: [(&str, &[&str]); 11] = [
+    ("ball", &["diameter_mm"]),
+    ("box", &["size_mm", "rounding_mm"]),
+    ("cylinder", &["diameter_mm", "height_mm"]),
+    ("capsule", &["diameter_mm", "length_mm"]),
+    (
+        "cone_frustum",
+        &["bottom_diameter_mm", "top_diameter_mm", "height_mm"],
+    ),
+    ("torus", &["ring_diameter_mm", "tube_diameter_mm"]),
+    (
+        "tube",
+        &["outer_diameter_mm", "inner_diameter_mm", "height_mm"],
+    ),
+    ("lathe", &["profile_mm"]),
+    ("prism", &["outline_mm", "thickness_mm"]),
+    ("hexagonal_prism", &["across_flats_mm", "height_mm"]),
+    ("strand", &["points_mm", "diameters_mm"]),
+];
+
+/// Keys of every part: its shape, the position of the shape's origin in the object's frame, and its rotation. The rotation is applied before the position: about
+/// the object's fixed x axis, then y, then z (URDF's roll, pitch, yaw).
+const COMMON: [&str; 3] = ["shape", "position_mm", "rotation_deg"];
+
+/// Key of a length that may be missing.
+const OPTIONAL: &str = "rounding_mm";
+
+/// Length of one millimetre, metres.
+const MM: f64 = 1e-3;
+
+/// Part `[[object.part]]` or subtracted shape `[[object.subtract]]` of an object file: the values of its keys.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct WrittenPart {
-    shape: Spanned<ShapeName>,
-    /// Position of the shape's origin in the object's frame, mm.
-    position_mm: Option<Spanned<[f64; 3]>>,
-    /// Rotation in degrees, applied before the position: about the object's fixed x axis, then y, then z (URDF's roll, pitch, yaw).
-    rotation_deg: Option<Spanned<[f64; 3]>>,
-    size_mm: Option<Spanned<[f64; 3]>>,
-    diameter_mm: Option<Spanned<f64>>,
-    height_mm: Option<Spanned<f64>>,
-    length_mm: Option<Spanned<f64>>,
-    bottom_diameter_mm: Option<Spanned<f64>>,
-    top_diameter_mm: Option<Spanned<f64>>,
-    ring_diameter_mm: Option<Spanned<f64>>,
-    tube_diameter_mm: Option<Spanned<f64>>,
-    outer_diameter_mm: Option<Spanned<f64>>,
-    inner_diameter_mm: Option<Spanned<f64>>,
-    across_flats_mm: Option<Spanned<f64>>,
-    thickness_mm: Option<Spanned<f64>>,
-    rounding_mm: Option<Spanned<f64>>,
-    /// Corners (diameter, height) of the profile of a turned part, as in a technical drawing, mm.
-    profile_mm: Option<Spanned<Vec<[f64; 2]>>>,
-    outline_mm: Option<Spanned<Vec<[f64; 2]>>>,
-    points_mm: Option<Spanned<Vec<[f64; 3]>>>,
-    diameters_mm: Option<Spanned<Vec<f64>>>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum ShapeName {
-    Ball,
-    Box,
-    Cylinder,
-    Capsule,
-    ConeFrustum,
-    Torus,
-    Tube,
-    Lathe,
-    Prism,
-    HexagonalPrism,
-    #[serde(rename = "strand")]
-    SphereSweep,
-}
+#[serde(transparent)]
+pub(super) struct WrittenPart(BTreeMap<String, Spanned<Value>>);
 
 impl Solid {
     /// Reads a solid from the text of `[[part]]` tables, which have the keys of a [catalogue](super::Catalogue) file. The parts keep their written positions.
@@ -68,191 +62,129 @@ impl Solid {
         let allowed = "parts with a shape, and lengths in mm and degrees";
         let written: Written = toml::from_str(text)
             .map_err(|error| Error::input(place, error.message().replace('\n', ", "), allowed))?;
-        let numbered = written.part.into_iter().enumerate();
-        let parts = numbered.map(|(index, part)| {
-            let which = format!("{place}, part {} ({})", index + 1, part.name());
-            part.part()
-                .map_err(|error| of_part(error, |_| which.clone()))
-        });
-        let solid = Self::new(parts.collect::<Result<_>>()?);
+        let parts = parts(&written.part, |number, _| format!("{place}, part {number}"));
+        let solid = Self::new(parts?);
         solid.map_err(|error| error.under(format!("{place}: ")))
     }
 }
 
-/// Converts an error about a part to an error with the position of the part's key in the file.
-pub(super) fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
-    match error {
-        Error::Input {
-            place: key,
-            given,
-            allowed,
-        } => {
-            let given = match given.parse::<f64>() {
-                Ok(_) => format!("{key} = {given}"),
-                Err(_) => format!("{key}: {given}"),
-            };
-            Error::input(place(&key), given, allowed)
-        }
-        other => other,
-    }
+/// Converts written parts and checks them. `place` returns the location of an error, given the number of the part, which counts from 1, and the position of the
+/// wrong value in the file.
+pub(super) fn parts(
+    written: &[WrittenPart],
+    place: impl Fn(usize, usize) -> String,
+) -> Result<Vec<Part>> {
+    let numbered = written.iter().zip(1..);
+    let part = |(part, number): (&WrittenPart, usize)| {
+        part.part().map_err(|error| match error {
+            Error::Input {
+                place: key,
+                given,
+                allowed,
+            } => {
+                let shape = part.text("shape").map(|name| format!(" ({name})"));
+                let place = place(number, part.range(&key).start);
+                let equals = if given.parse::<f64>().is_ok() {
+                    " ="
+                } else {
+                    ":"
+                };
+                Error::input(
+                    format!("{place}{}", shape.unwrap_or_default()),
+                    format!("{key}{equals} {given}"),
+                    allowed,
+                )
+            }
+            other => other,
+        })
+    };
+    numbered.map(part).collect()
 }
 
 impl WrittenPart {
     /// Converts the part from millimetres to metres and checks it. The location of an error is a key.
-    pub fn part(mut self) -> Result<Part> {
-        let moved = |value: &mut Option<Spanned<[f64; 3]>>, key: &str| {
-            let value = value.take().map_or([0.0; 3], Spanned::into_inner);
-            if value.iter().all(|number| number.is_finite()) {
-                return Ok(value);
+    fn part(&self) -> Result<Part> {
+        let name = self.text("shape");
+        let name = name.ok_or_else(|| Error::input("shape", "missing", "the name of a shape"))?;
+        let (_, keys) = SHAPES[known("shape", name, SHAPES.map(|(name, _)| name))?];
+        let is_extra = |key: &&String| !COMMON.iter().chain(keys).any(|known| known == key);
+        if let Some(key) = self.0.keys().find(is_extra) {
+            let given = format!("given for a {name}");
+            let allowed = nearest_names(key, keys.iter().copied());
+            return Err(Error::input(key, given, allowed));
+        }
+        let is_missing = |key: &&&str| **key != OPTIONAL && !self.0.contains_key(**key);
+        if let Some(key) = keys.iter().find(is_missing) {
+            let allowed = "a value for each length of the shape";
+            return Err(Error::input(key, "missing", allowed));
+        }
+        let [position, rotation] = [COMMON[1], COMMON[2]].map(|key| match self.0.get(key) {
+            Some(value) => {
+                let vector = <[f64; 3]>::deserialize(value.get_ref().clone())
+                    .ok()
+                    .map(DVec3::from);
+                let vector = vector.filter(|vector| vector.is_finite());
+                vector.ok_or_else(|| Error::input(key, value.get_ref(), "three finite numbers"))
             }
-            Err(Error::input(
-                key,
-                format!("{value:?}"),
-                "three finite numbers",
-            ))
+            None => Ok(DVec3::ZERO),
+        });
+        let pose = Pose::new(
+            rotation_from_rpy(rotation?.map(f64::to_radians)),
+            position? * MM,
+        );
+        self.shape(1.0)?.check_worded(Wording::MILLIMETRE_KEYS)?;
+        Part::new(self.shape(MM)?, pose)
+    }
+
+    /// Returns the shape with its lengths multiplied by `unit`.
+    fn shape(&self, unit: f64) -> Result<Shape> {
+        let field = |(key, value): (&String, &Spanned<Value>)| {
+            let name = key.strip_suffix("_mm").unwrap_or(key);
+            (name.to_owned(), scaled(value.get_ref(), unit))
         };
-        let position = moved(&mut self.position_mm, "position_mm")?;
-        let rotation = moved(&mut self.rotation_deg, "rotation_deg")?;
-        let shape = self.take_shape()?;
-        if let Some((key, _)) = self.keys().into_iter().find(|(_, place)| place.is_some()) {
-            return Err(Error::input(
-                key,
-                format!("given for a {}", self.name()),
-                "only the lengths that the shape has",
-            ));
+        let table: Table = self.0.iter().map(field).collect();
+        let shape = Shape::deserialize(Value::Table(table));
+        let refused = |error: toml::de::Error| {
+            let is_text = |(key, value): &(&String, &Spanned<Value>)| {
+                key.ends_with("_mm") && !is_numbers(value.get_ref())
+            };
+            let key = self.0.iter().find(is_text).map_or("shape", |(key, _)| key);
+            let given = error.message().replace('\n', ", ");
+            Error::input(key, given, "numbers and lists of numbers in mm")
+        };
+        let mut shape = shape.map_err(refused)?;
+        if let Shape::Lathe { profile } = &mut shape {
+            profile.iter_mut().for_each(|corner| corner.x *= 0.5);
         }
-        shape.check_worded(Wording::MillimetreKeys)?;
-        let rotation = rotation_from_rpy(rotation.map(f64::to_radians).into());
-        Part::new(shape, Pose::new(rotation, metres3(position)))
+        Ok(shape)
     }
 
-    /// Returns the byte range of the value of `key` in the file, or the range of the whole shape if the key is missing.
-    pub fn place(&self, key: &str) -> Range<usize> {
-        let keys = self.keys().into_iter();
-        let mut named = keys.filter_map(|(name, place)| (name == key).then_some(place));
-        named.next().flatten().unwrap_or(self.shape.span())
+    /// Returns the text of a key, if its value is a text.
+    fn text(&self, key: &str) -> Option<&str> {
+        self.0.get(key)?.get_ref().as_str()
     }
 
-    /// Returns the name of the shape, as written in the file.
-    pub fn name(&self) -> &'static str {
-        match self.shape.get_ref() {
-            ShapeName::Ball => "ball",
-            ShapeName::Box => "box",
-            ShapeName::Cylinder => "cylinder",
-            ShapeName::Capsule => "capsule",
-            ShapeName::ConeFrustum => "cone_frustum",
-            ShapeName::Torus => "torus",
-            ShapeName::Tube => "tube",
-            ShapeName::Lathe => "lathe",
-            ShapeName::Prism => "prism",
-            ShapeName::HexagonalPrism => "hexagonal_prism",
-            ShapeName::SphereSweep => "strand",
-        }
-    }
-
-    fn take_shape(&mut self) -> Result<Shape> {
-        Ok(match self.shape.get_ref() {
-            ShapeName::Ball => Shape::Ball {
-                diameter: metres(&mut self.diameter_mm, "diameter_mm")?,
-            },
-            ShapeName::Box => Shape::Box {
-                size: metres3(taken(&mut self.size_mm, "size_mm")?),
-                rounding: self.rounding_mm.take().map_or(0.0, Spanned::into_inner) * MM,
-            },
-            ShapeName::Cylinder => Shape::Cylinder {
-                diameter: metres(&mut self.diameter_mm, "diameter_mm")?,
-                height: metres(&mut self.height_mm, "height_mm")?,
-            },
-            ShapeName::Capsule => Shape::Capsule {
-                diameter: metres(&mut self.diameter_mm, "diameter_mm")?,
-                length: metres(&mut self.length_mm, "length_mm")?,
-            },
-            ShapeName::ConeFrustum => Shape::ConeFrustum {
-                bottom_diameter: metres(&mut self.bottom_diameter_mm, "bottom_diameter_mm")?,
-                top_diameter: metres(&mut self.top_diameter_mm, "top_diameter_mm")?,
-                height: metres(&mut self.height_mm, "height_mm")?,
-            },
-            ShapeName::Torus => Shape::Torus {
-                ring_diameter: metres(&mut self.ring_diameter_mm, "ring_diameter_mm")?,
-                tube_diameter: metres(&mut self.tube_diameter_mm, "tube_diameter_mm")?,
-            },
-            ShapeName::Tube => Shape::Tube {
-                outer_diameter: metres(&mut self.outer_diameter_mm, "outer_diameter_mm")?,
-                inner_diameter: metres(&mut self.inner_diameter_mm, "inner_diameter_mm")?,
-                height: metres(&mut self.height_mm, "height_mm")?,
-            },
-            ShapeName::Lathe => {
-                let profile = taken(&mut self.profile_mm, "profile_mm")?.into_iter();
-                let corner = |[diameter, z]: [f64; 2]| DVec2::new(0.5 * diameter, z) * MM;
-                Shape::Lathe {
-                    profile: profile.map(corner).collect(),
-                }
-            }
-            ShapeName::Prism => {
-                let outline = taken(&mut self.outline_mm, "outline_mm")?.into_iter();
-                Shape::Prism {
-                    outline: outline.map(|corner| DVec2::from(corner) * MM).collect(),
-                    thickness: metres(&mut self.thickness_mm, "thickness_mm")?,
-                }
-            }
-            ShapeName::HexagonalPrism => Shape::HexagonalPrism {
-                across_flats: metres(&mut self.across_flats_mm, "across_flats_mm")?,
-                height: metres(&mut self.height_mm, "height_mm")?,
-            },
-            ShapeName::SphereSweep => {
-                let points = taken(&mut self.points_mm, "points_mm")?.into_iter();
-                let diameters = taken(&mut self.diameters_mm, "diameters_mm")?.into_iter();
-                Shape::SphereSweep {
-                    points: points.map(metres3).collect(),
-                    diameters: diameters.map(|d| d * MM).collect(),
-                }
-            }
-        })
-    }
-
-    /// Returns every key that the table of a shape may have, with the position of its value in the file.
-    fn keys(&self) -> Vec<(&'static str, Option<Range<usize>>)> {
-        fn place<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
-            value.as_ref().map(Spanned::span)
-        }
-        vec![
-            ("position_mm", place(&self.position_mm)),
-            ("rotation_deg", place(&self.rotation_deg)),
-            ("size_mm", place(&self.size_mm)),
-            ("diameter_mm", place(&self.diameter_mm)),
-            ("height_mm", place(&self.height_mm)),
-            ("length_mm", place(&self.length_mm)),
-            ("bottom_diameter_mm", place(&self.bottom_diameter_mm)),
-            ("top_diameter_mm", place(&self.top_diameter_mm)),
-            ("ring_diameter_mm", place(&self.ring_diameter_mm)),
-            ("tube_diameter_mm", place(&self.tube_diameter_mm)),
-            ("outer_diameter_mm", place(&self.outer_diameter_mm)),
-            ("inner_diameter_mm", place(&self.inner_diameter_mm)),
-            ("across_flats_mm", place(&self.across_flats_mm)),
-            ("thickness_mm", place(&self.thickness_mm)),
-            ("rounding_mm", place(&self.rounding_mm)),
-            ("profile_mm", place(&self.profile_mm)),
-            ("outline_mm", place(&self.outline_mm)),
-            ("points_mm", place(&self.points_mm)),
-            ("diameters_mm", place(&self.diameters_mm)),
-        ]
+    /// Returns the byte range of the value of `key` in the file, or the range of the name of the shape if the key is missing.
+    fn range(&self, key: &str) -> Range<usize> {
+        let value = self.0.get(key).or_else(|| self.0.get("shape"));
+        value.map_or(0..0, Spanned::span)
     }
 }
 
-/// Length of one millimetre, metres.
-const MM: f64 = 1e-3;
-
-fn metres(value: &mut Option<Spanned<f64>>, key: &str) -> Result<f64> {
-    Ok(taken(value, key)? * MM)
+/// Returns a value in which all numbers are multiplied by `unit`.
+fn scaled(value: &Value, unit: f64) -> Value {
+    match value {
+        Value::Integer(number) => Value::Float(*number as f64 * unit),
+        Value::Float(number) => Value::Float(number * unit),
+        Value::Array(list) => Value::Array(list.iter().map(|value| scaled(value, unit)).collect()),
+        other => other.clone(),
+    }
 }
 
-fn metres3(millimetres: [f64; 3]) -> DVec3 {
-    DVec3::from(millimetres) * MM
-}
-
-fn taken<T>(value: &mut Option<Spanned<T>>, key: &str) -> Result<T> {
-    value
-        .take()
-        .map(Spanned::into_inner)
-        .ok_or_else(|| Error::input(key, "missing", "a value for each length of the shape"))
+/// Returns whether a value is a number, or lists of numbers.
+fn is_numbers(value: &Value) -> bool {
+    match value {
+        Value::Array(list) => list.iter().all(is_numbers),
+        other => other.is_float() || other.is_integer(),
+    }
 }

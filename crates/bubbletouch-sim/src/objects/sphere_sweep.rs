@@ -2,17 +2,18 @@
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
+use super::solid::Form;
 use super::solid_mass::turned;
 use super::surface_patch::{SurfacePatch, frame};
 use crate::geometry::Pose;
 use glam::{DVec2, DVec3};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Sphere swept along a polyline: the union of the convex hulls of consecutive balls.
 #[derive(Clone, Debug)]
 pub(super) struct SphereSweep {
     /// Balls at the points of the polyline, at least one.
-    pub balls: Vec<Sphere>,
+    balls: Vec<Sphere>,
 }
 
 /// Convex hull of two balls, neither of which contains the other.
@@ -107,15 +108,9 @@ impl Hull {
     }
 }
 
-impl SphereSweep {
-    fn hulls(&self) -> impl Iterator<Item = Hull> {
-        self.balls
-            .windows(2)
-            .filter_map(|pair| Hull::new(pair[0], pair[1]))
-    }
-
+impl Form for SphereSweep {
     /// Returns the signed distance from a point to the sweep, metres; exact outside, and a lower bound of the depth inside.
-    pub fn distance(&self, point: DVec3) -> f64 {
+    fn distance(&self, point: DVec3) -> f64 {
         let to_balls = self
             .balls
             .iter()
@@ -124,8 +119,17 @@ impl SphereSweep {
         to_balls.chain(to_hulls).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the volume, m³, and the centroid, metres, of a sweep of one or two balls.
-    pub fn volume_and_center(&self) -> (f64, DVec3) {
+    fn support(&self, direction: DVec3) -> f64 {
+        let length = direction.length();
+        let supports = self
+            .balls
+            .iter()
+            .map(|b| b.center.dot(direction) + b.radius * length);
+        supports.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Returns the volume and the centroid of a sweep of one or two balls.
+    fn volume_and_center(&self) -> (f64, DVec3) {
         let ball = |ball: &Sphere| (4.0 / 3.0 * PI * ball.radius.powi(3), ball.center);
         let larger = self
             .balls
@@ -137,18 +141,8 @@ impl SphereSweep {
         )
     }
 
-    /// Returns the support function of the sweep: the largest p·direction over its points p, metres.
-    pub fn support(&self, direction: DVec3) -> f64 {
-        let length = direction.length();
-        let supports = self
-            .balls
-            .iter()
-            .map(|b| b.center.dot(direction) + b.radius * length);
-        supports.fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    /// Packs the sweep with spheres: the balls at the points of the polyline, and a row of enlarged balls along each hull.
-    pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
+    /// Packs the sweep: the balls at the points of the polyline, and a row of enlarged balls along each hull.
+    fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let closed = self.balls.len() > 1 && self.balls.first() == self.balls.last();
         let ends = &self.balls[usize::from(closed)..];
         spheres.extend_from_slice(ends);
@@ -157,8 +151,7 @@ impl SphereSweep {
         }
     }
 
-    /// Returns patches that cover the surface of each ball and the side of each hull.
-    pub fn patches(&self) -> Vec<SurfacePatch> {
+    fn patches(&self) -> Vec<SurfacePatch> {
         let balls = self.balls.iter();
         let balls = balls.map(|ball| SurfacePatch::ball(ball.center, ball.radius));
         let sides = self.hulls().map(|hull| {
@@ -172,43 +165,37 @@ impl SphereSweep {
             } else {
                 (y, x)
             };
-            let angles = [0.0, std::f64::consts::TAU];
-            SurfacePatch::turned(touched(0.0), touched(hull.length), angles)
+            SurfacePatch::turned(touched(0.0), touched(hull.length), [0.0, TAU])
                 .moved(&Pose::new(frame(x, y), hull.first.center))
         });
         balls.chain(sides).collect()
     }
+}
 
-    pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
-        for ball in &self.balls {
-            sphere_points(ball, spacing, points);
+impl SphereSweep {
+    /// Creates a sweep from the points of the polyline, metres, and the diameter of the ball at each point.
+    pub fn new(points: &[DVec3], diameters: &[f64]) -> Self {
+        let balls = points.iter().zip(diameters).map(|(&center, &diameter)| {
+            let radius = 0.5 * diameter;
+            Sphere { center, radius }
+        });
+        Self {
+            balls: balls.collect(),
         }
-        for hull in self.hulls() {
-            let n = (hull.length / spacing).ceil().max(4.0);
-            let (side, other) = hull.along.any_orthonormal_pair();
-            for i in 0..=n as usize {
-                let ball = hull.ball(hull.length * i as f64 / n);
-                let m = (std::f64::consts::TAU * ball.radius / spacing)
-                    .ceil()
-                    .max(8.0);
-                for j in 0..m as usize {
-                    let (sin, cos) = (std::f64::consts::TAU * j as f64 / m).sin_cos();
-                    let normal =
-                        hull.cosine() * (cos * side + sin * other) - hull.slope * hull.along;
-                    points.push(ball.center + ball.radius * normal);
-                }
-            }
-        }
+    }
+
+    fn hulls(&self) -> impl Iterator<Item = Hull> {
+        self.balls
+            .windows(2)
+            .filter_map(|pair| Hull::new(pair[0], pair[1]))
     }
 }
 
 /// Adds points on a sphere along a Fibonacci spiral, about `spacing` apart, metres.
 pub(super) fn sphere_points(sphere: &Sphere, spacing: f64, points: &mut Vec<DVec3>) {
     let ratio = sphere.radius / spacing;
-    let n = (4.0 * std::f64::consts::PI * ratio * ratio)
-        .ceil()
-        .max(24.0);
-    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let n = (4.0 * PI * ratio * ratio).ceil().max(24.0);
+    let golden = PI * (3.0 - 5f64.sqrt());
     points.extend((0..n as usize).map(|i| {
         let z = 1.0 - (2.0 * i as f64 + 1.0) / n;
         let (sin, cos) = (golden * i as f64).sin_cos();

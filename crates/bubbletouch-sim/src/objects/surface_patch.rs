@@ -158,14 +158,25 @@ impl SurfacePatch {
         cells
     }
 
+    /// Returns points on the patch, including its border, at most about `spacing` (metres) apart.
+    pub fn points(&self, spacing: f64) -> Vec<DVec3> {
+        let mut points = Vec::new();
+        for cell in self.cells() {
+            let n = (cell.sides() / spacing).ceil().max(DVec2::splat(2.0));
+            for (i, j) in (0..=n.x as usize).flat_map(|i| (0..=n.y as usize).map(move |j| (i, j))) {
+                let share = DVec2::new(i as f64, j as f64) / n;
+                points.push(self.at(cell.low + share * (cell.high - cell.low)).0);
+            }
+        }
+        points
+    }
+
     /// Returns the two halves of a cell, cut across its longer side.
     pub fn halves(&self, cell: &PatchCell) -> [PatchCell; 2] {
-        let [a, b, c, d] = cell.corners;
-        let along_x = a.distance(b).max(c.distance(d));
-        let along_y = a.distance(c).max(b.distance(d));
+        let sides = cell.sides();
         let middle = 0.5 * (cell.low + cell.high);
         let (mut left, mut right) = (cell.high, cell.low);
-        let axis = usize::from(along_y > along_x);
+        let axis = usize::from(sides.y > sides.x);
         left[axis] = middle[axis];
         right[axis] = middle[axis];
         [self.cell(cell.low, left), self.cell(right, cell.high)]
@@ -209,6 +220,15 @@ impl PatchCell {
     pub fn farthest(&self, from: DVec3) -> f64 {
         let distances = self.corners.map(|corner| corner.distance(from));
         distances.into_iter().fold(0.0, f64::max) + self.bulge
+    }
+
+    /// Returns the lengths of the cell along the two parameters, metres: the larger distance between corners on opposite sides.
+    fn sides(&self) -> DVec2 {
+        let [a, b, c, d] = self.corners;
+        DVec2::new(
+            a.distance(b).max(c.distance(d)),
+            a.distance(c).max(b.distance(d)),
+        )
     }
 
     /// Returns the parameters of the cell's middle and corners.

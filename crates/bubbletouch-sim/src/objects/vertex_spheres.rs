@@ -2,7 +2,8 @@
 
 use super::{Sphere, SphereUnion};
 use crate::error::{Error, Result};
-use crate::geometry::distinct_places;
+use crate::geometry::{Aabb, distinct_places};
+use crate::mesh::BoxTree;
 use glam::DVec3;
 
 /// Returns a sphere around each vertex. The radius of all spheres is twice the mean distance from a vertex to its nearest neighbour \[BT\].
@@ -28,105 +29,26 @@ pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
 }
 
 /// Returns, for each point, the distance to the nearest other point, metres. There must be at least two points, all distinct.
-///
-/// The points lie in the cells of a uniform grid. Rings of cells around a point's own cell are searched until no remaining
-/// cell can contain a nearer point.
 pub(crate) fn nearest_distances(points: &[DVec3]) -> Vec<f64> {
-    let grid = PointGrid::new(points);
-    (0..points.len()).map(|i| grid.nearest(i)).collect()
-}
-
-struct PointGrid<'a> {
-    points: &'a [DVec3],
-    low: DVec3,
-    cell: f64,
-    n: [usize; 3],
-    /// Index of the first point of each cell; the points of cell k are `order[starts[k]..starts[k + 1]]`.
-    starts: Vec<usize>,
-    order: Vec<usize>,
-}
-
-impl<'a> PointGrid<'a> {
-    fn new(points: &'a [DVec3]) -> Self {
-        let low = points.iter().copied().fold(DVec3::MAX, DVec3::min);
-        let high = points.iter().copied().fold(DVec3::MIN, DVec3::max);
-        let size = high - low;
-        // About one point per cell on a surface, whose area is about longest². More than 128 cells per axis would cost
-        // more memory than the saved time justifies.
-        let longest = size.max_element();
-        let cell = longest / (points.len() as f64).sqrt().clamp(1.0, 128.0);
-        let n = (size / cell).to_array().map(|s| s as usize + 1);
-        let mut grid = Self {
-            points,
-            low,
-            cell,
-            n,
-            starts: vec![0; n[0] * n[1] * n[2] + 1],
-            order: vec![0; points.len()],
-        };
-        let cells: Vec<usize> = points.iter().map(|&p| grid.index(grid.place(p))).collect();
-        for &cell in &cells {
-            grid.starts[cell + 1] += 1;
-        }
-        for k in 1..grid.starts.len() {
-            grid.starts[k] += grid.starts[k - 1];
-        }
-        let mut next = grid.starts.clone();
-        for (point, &cell) in cells.iter().enumerate() {
-            grid.order[next[cell]] = point;
-            next[cell] += 1;
-        }
-        grid
-    }
-
-    fn place(&self, point: DVec3) -> [usize; 3] {
-        let at = ((point - self.low) / self.cell).to_array();
-        [0, 1, 2].map(|axis| (at[axis] as usize).min(self.n[axis] - 1))
-    }
-
-    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
-        (x * self.n[1] + y) * self.n[2] + z
-    }
-
-    fn nearest(&self, point: usize) -> f64 {
-        let home = self.place(self.points[point]);
-        let mut best = f64::INFINITY;
-        let n_rings = self.n.into_iter().max().unwrap_or(1);
-        for ring in 0..n_rings {
-            // All points in ring k are at least k − 1 cells away, because the point can lie at the border of its own cell.
-            if best <= (ring as f64 - 1.0) * self.cell {
-                break;
+    let boxes = points.iter().map(|&point| Aabb {
+        min: point,
+        max: point,
+    });
+    let tree = BoxTree::new(boxes.collect()).expect("there are points");
+    let nearest = |number: usize| {
+        let point = points[number];
+        let mut nearest = f64::INFINITY;
+        let bound = |bounds: &Aabb| bounds.distance_squared(point).sqrt();
+        tree.search(f64::INFINITY, bound, |places, _| {
+            let others = tree.order()[places].iter().map(|&other| other as usize);
+            for other in others.filter(|&other| other != number) {
+                nearest = nearest.min((points[other] - point).length());
             }
-            self.each_in_ring(home, ring, |other| {
-                if other != point {
-                    let apart = (self.points[other] - self.points[point]).length();
-                    best = best.min(apart);
-                }
-            });
-        }
-        best
-    }
-
-    /// Visits the points of all cells whose largest offset from the cell `home`, over the three axes, is `ring`.
-    fn each_in_ring(&self, home: [usize; 3], ring: usize, mut visit: impl FnMut(usize)) {
-        let range = |axis: usize| {
-            home[axis].saturating_sub(ring)..=(home[axis] + ring).min(self.n[axis] - 1)
-        };
-        for x in range(0) {
-            for y in range(1) {
-                let inner = x.abs_diff(home[0]) < ring && y.abs_diff(home[1]) < ring;
-                for z in range(2) {
-                    if inner && z.abs_diff(home[2]) < ring {
-                        continue;
-                    }
-                    let cell = self.index([x, y, z]);
-                    for &other in &self.order[self.starts[cell]..self.starts[cell + 1]] {
-                        visit(other);
-                    }
-                }
-            }
-        }
-    }
+            nearest
+        });
+        nearest
+    };
+    (0..points.len()).map(nearest).collect()
 }
 
 #[cfg(test)]

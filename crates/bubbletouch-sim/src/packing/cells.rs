@@ -1,5 +1,6 @@
 //! Partition of space into cells with few points each, for independent processing.
 
+use crate::geometry::Aabb;
 use glam::DVec3;
 
 /// Partition of space by a tree of axis-aligned planes (k-d tree).
@@ -45,9 +46,8 @@ impl Cells {
     }
 
     fn cut(&mut self, node: usize, points: &mut [DVec3], most: usize, share: f64) {
-        let low = points.iter().fold(DVec3::INFINITY, |a, &b| a.min(b));
-        let high = points.iter().fold(DVec3::NEG_INFINITY, |a, &b| a.max(b));
-        let size = high - low;
+        let bounds = Aabb::around_points(points.iter().copied());
+        let (low, high, size) = (bounds.min, bounds.max, bounds.size());
         if points.len() <= most || size.max_element() <= 0.0 {
             self.nodes[node] = Node::Cell(self.n_cells);
             self.n_cells += 1;

@@ -1,9 +1,13 @@
 //! Meshes from Collada files (`.dae`), version 1.4 or 1.5. Positions, polygons and the tree of nodes are read; materials, normals, texture and animations are
 //! ignored. Skins are read in their bind pose.
 
-use super::joined_parts::{JoinedParts, triangles_of_fan, triangles_of_strip};
+use super::joined_parts::{
+    JoinedParts, check_depth, triangles_of_fan, triangles_of_list, triangles_of_strip,
+};
+use super::text_lines::all_bytes;
 use crate::error::{Error, Result};
 use crate::mesh::MeshFile;
+use crate::text::encoding::utf8_or_latin1;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::HashMap;
@@ -11,24 +15,14 @@ use std::collections::hash_map::Entry;
 use std::io::BufRead;
 use std::str::FromStr;
 
-/// Largest depth of the tree of nodes. A deeper tree indicates nodes that contain each other.
-const MAX_DEPTH: usize = 100;
-
 /// Reads the mesh in a Collada file, in the unit of the file. Also returns the length of this unit in metres (1 if the file does not contain it). All
 /// geometries of the scene form one mesh.
 ///
 /// # Errors
 /// If the file is not Collada, has no faces, or contains wrong counts, indices that do not exist or numbers that are not finite. The error begins with `place`
 /// and the line.
-pub fn read_collada(place: &str, mut source: impl BufRead) -> Result<(MeshFile, f64)> {
-    let mut bytes = Vec::new();
-    source
-        .read_to_end(&mut bytes)
-        .map_err(|e| Error::io(place, "read", e))?;
-    let text = match std::str::from_utf8(&bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
-    };
+pub fn read_collada(place: &str, source: impl BufRead) -> Result<(MeshFile, f64)> {
+    let text = utf8_or_latin1(&all_bytes(place, source)?);
     let text = text.trim_start_matches('\u{feff}');
     let options = ParsingOptions {
         allow_dtd: true,
@@ -50,8 +44,8 @@ pub fn read_collada(place: &str, mut source: impl BufRead) -> Result<(MeshFile, 
             .filter_map(|node| Some((node.attribute("id")?, node)))
             .collect(),
     };
-    if root.tag_name().name() != "COLLADA" {
-        let given = format!("<{}> as the root", root.tag_name().name());
+    if tag(root) != "COLLADA" {
+        let given = format!("<{}> as the root", tag(root));
         return Err(file.refuse(root, given, "a <COLLADA>"));
     }
     let mut reading = Reading {
@@ -78,16 +72,29 @@ struct Collada<'a> {
 }
 
 impl<'a> Collada<'a> {
-    fn refuse(&self, node: Node, given: impl ToString, allowed: impl ToString) -> Error {
+    /// Returns the location of an element, with its line.
+    fn place_of(&self, node: Node) -> String {
         let line = node.document().text_pos_at(node.range().start).row;
-        Error::input(format!("{}, line {line}", self.place), given, allowed)
+        format!("{}, line {line}", self.place)
+    }
+
+    fn refuse(&self, node: Node, given: impl ToString, allowed: impl ToString) -> Error {
+        Error::input(self.place_of(node), given, allowed)
+    }
+
+    /// Returns a part of an element, or an error if the element is without it.
+    fn required<T>(&self, node: Node, part: Option<T>, what: &str) -> Result<T> {
+        part.ok_or_else(|| {
+            let given = format!("<{}> without {what}", tag(node));
+            self.refuse(node, given, "one")
+        })
     }
 
     /// Returns the length of the file's unit, metres.
     fn unit(&self, root: Node) -> Result<f64> {
         let unit = child(root, "asset").and_then(|asset| child(asset, "unit"));
-        let Some((unit, text)) = unit.and_then(|unit| Some((unit, unit.attribute("meter")?)))
-        else {
+        let text = unit.and_then(|unit| unit.attribute("meter"));
+        let (Some(unit), Some(text)) = (unit, text) else {
             return Ok(1.0);
         };
         let metres = f64::from_str(text.trim()).ok();
@@ -117,10 +124,7 @@ impl<'a> Collada<'a> {
             near.or(self.by_id.get(id).copied())
         });
         found.ok_or_else(|| {
-            let given = format!(
-                "<{}> with `{attribute}` \"{address}\"",
-                node.tag_name().name()
-            );
+            let given = format!("<{}> with `{attribute}` \"{address}\"", tag(node));
             self.refuse(node, given, "# and the id of an element of the file")
         })
     }
@@ -139,11 +143,7 @@ impl<'a> Collada<'a> {
         let words = text.split_ascii_whitespace().enumerate();
         let numbers = words.map(|(index, word)| {
             parse(word).ok_or_else(|| {
-                let given = format!(
-                    "<{}>, number {}: \"{word}\"",
-                    node.tag_name().name(),
-                    index + 1
-                );
+                let given = format!("<{}>, number {}: \"{word}\"", tag(node), index + 1);
                 self.refuse(node, given, allowed)
             })
         });
@@ -168,7 +168,7 @@ impl<'a> Collada<'a> {
         let numbers = self.numbers(node)?;
         let n = numbers.len();
         <[f64; N]>::try_from(numbers).map_err(|_| {
-            let given = format!("<{}> with {n} numbers", node.tag_name().name());
+            let given = format!("<{}> with {n} numbers", tag(node));
             self.refuse(node, given, format!("{N} numbers"))
         })
     }
@@ -181,7 +181,7 @@ impl<'a> Collada<'a> {
             (Some(count), _, _) | (None, None, Some(count)) => Ok(count),
             _ => {
                 let text = text.unwrap_or("nothing");
-                let given = format!("<{}> with `{attribute}` {text}", node.tag_name().name());
+                let given = format!("<{}> with `{attribute}` {text}", tag(node));
                 Err(self.refuse(node, given, "a whole number from 0"))
             }
         }
@@ -193,10 +193,7 @@ impl<'a> Collada<'a> {
         if count == n {
             return Ok(());
         }
-        let given = format!(
-            "<{}> with `count` {count}, but {n} {what}",
-            node.tag_name().name()
-        );
+        let given = format!("<{}> with `count` {count}, but {n} {what}", tag(node));
         Err(self.refuse(node, given, "the same number, or no `count`"))
     }
 
@@ -204,18 +201,15 @@ impl<'a> Collada<'a> {
     fn points(&self, source: Node<'a, 'a>) -> Result<Vec<DVec3>> {
         let accessor =
             child(source, "technique_common").and_then(|common| child(common, "accessor"));
-        let Some(accessor) = accessor else {
-            return Err(self.refuse(source, "<source> without <accessor>", "one"));
-        };
+        let accessor = self.required(source, accessor, "<accessor>")?;
         let array = self.target(accessor, "source")?;
         let numbers = self.numbers(array)?;
         self.check_count(array, numbers.len(), "numbers")?;
         let count = self.count(accessor, "count", None)?;
         let stride = self.count(accessor, "stride", Some(1))?;
         let offset = self.count(accessor, "offset", Some(0))?;
-        let last = count
-            .checked_mul(stride)
-            .and_then(|n| n.checked_add(offset));
+        let last = count.checked_mul(stride);
+        let last = last.and_then(|n| n.checked_add(offset));
         if stride < 3 || last.is_none_or(|last| last > numbers.len()) {
             let given = format!(
                 "{count} points with `stride` {stride}, but {} numbers",
@@ -224,12 +218,9 @@ impl<'a> Collada<'a> {
             return Err(self.refuse(accessor, given, "three or more numbers for each point"));
         }
         // A parameter without a name is skipped.
-        let parameters = accessor.children().filter(|node| is(*node, "param"));
-        let named = parameters
-            .enumerate()
-            .filter(|(_, parameter)| parameter.has_attribute("name"))
-            .map(|(index, _)| index);
-        let mut places: Vec<usize> = named.filter(|index| *index < stride).collect();
+        let parameters = children(accessor, "param").enumerate().take(stride);
+        let named = parameters.filter(|(_, parameter)| parameter.has_attribute("name"));
+        let mut places: Vec<usize> = named.map(|(index, _)| index).collect();
         if places.len() < 3 {
             places = vec![0, 1, 2];
         }
@@ -241,12 +232,12 @@ impl<'a> Collada<'a> {
 
     /// Returns the polygons of `<triangles>`, `<polylist>` and similar elements, and the source of their positions; `None` for other elements, such as lines.
     fn polygons(&self, primitive: Node<'a, 'a>) -> Result<Option<(Vec<Vec<u32>>, Node<'a, 'a>)>> {
-        let tag = primitive.tag_name().name();
-        if !["triangles", "polylist", "polygons", "trifans", "tristrips"].contains(&tag) {
+        let kind = tag(primitive);
+        if !["triangles", "polylist", "polygons", "trifans", "tristrips"].contains(&kind) {
             return Ok(None);
         }
         let (mut stride, mut vertex) = (1, None);
-        for input in primitive.children().filter(|node| is(*node, "input")) {
+        for input in children(primitive, "input") {
             let offset = self.count(input, "offset", Some(0))?;
             if offset > 100 {
                 return Err(self.refuse(input, format!("`offset` {offset}"), "at most 100"));
@@ -256,31 +247,18 @@ impl<'a> Collada<'a> {
                 vertex = Some((offset, self.target(input, "source")?));
             }
         }
-        let Some((offset, vertices)) = vertex else {
-            let given = format!("<{tag}> without an <input semantic=\"VERTEX\">");
-            return Err(self.refuse(primitive, given, "one"));
-        };
-        let inputs = vertices.children().filter(|node| is(*node, "input"));
-        let mut positions = inputs.filter(|input| input.attribute("semantic") == Some("POSITION"));
-        let source = match positions.next() {
-            Some(position) => self.target(position, "source")?,
-            None => {
-                return Err(self.refuse(
-                    vertices,
-                    "<vertices> without positions",
-                    "an <input semantic=\"POSITION\">",
-                ));
-            }
-        };
-        if let Some(hole) = primitive.children().find(|node| is(*node, "ph")) {
-            return Err(self.refuse(
-                hole,
-                "a polygon with holes",
-                "polygons without holes, or triangles",
-            ));
+        let what = "an <input semantic=\"VERTEX\">";
+        let (offset, vertices) = self.required(primitive, vertex, what)?;
+        let position = children(vertices, "input")
+            .find(|input| input.attribute("semantic") == Some("POSITION"));
+        let position = self.required(vertices, position, "an <input semantic=\"POSITION\">")?;
+        let source = self.target(position, "source")?;
+        if let Some(hole) = child(primitive, "ph") {
+            let allowed = "polygons without holes, or triangles";
+            return Err(self.refuse(hole, "a polygon with holes", allowed));
         }
         let mut lists = Vec::new();
-        for list in primitive.children().filter(|node| is(*node, "p")) {
+        for list in children(primitive, "p") {
             let indices = self.indices(list)?;
             if indices.len() % stride != 0 {
                 let given = format!("{} indices for {stride} inputs", indices.len());
@@ -289,36 +267,22 @@ impl<'a> Collada<'a> {
             let corners = indices.chunks_exact(stride).map(|corner| corner[offset]);
             lists.push(corners.collect::<Vec<u32>>());
         }
-        let polygons = match tag {
-            "triangles" => {
-                let corners = lists.concat();
-                if corners.len() % 3 != 0 {
-                    let given = format!("{} corners of triangles", corners.len());
-                    return Err(self.refuse(primitive, given, "three for each triangle"));
-                }
-                corners.chunks_exact(3).map(<[u32]>::to_vec).collect()
-            }
+        let polygons = match kind {
+            "triangles" => triangles_of_list(&self.place_of(primitive), &lists.concat())?,
             "polylist" => self.listed(primitive, &lists.concat())?,
             "polygons" => lists,
-            "trifans" => lists.iter().flat_map(|fan| triangles_of_fan(fan)).collect(),
-            _ => lists
-                .iter()
-                .flat_map(|strip| triangles_of_strip(strip))
-                .collect(),
+            // The count of fans and strips is not the number of their triangles.
+            "trifans" => return Ok(Some((concat(&lists, triangles_of_fan), source))),
+            _ => return Ok(Some((concat(&lists, triangles_of_strip), source))),
         };
-        match tag {
-            "trifans" | "tristrips" => {}
-            _ => self.check_count(primitive, polygons.len(), "faces")?,
-        }
+        self.check_count(primitive, polygons.len(), "faces")?;
         Ok(Some((polygons, source)))
     }
 
     /// Returns the polygons of a `<polylist>`, whose `<vcount>` contains their numbers of corners.
     fn listed(&self, primitive: Node, corners: &[u32]) -> Result<Vec<Vec<u32>>> {
-        let counts = match child(primitive, "vcount") {
-            Some(counts) => self.indices(counts)?,
-            None => Vec::new(),
-        };
+        let counts = child(primitive, "vcount").map(|counts| self.indices(counts));
+        let counts = counts.transpose()?.unwrap_or_default();
         let n: usize = counts.iter().map(|count| *count as usize).sum();
         if n != corners.len() {
             let given = format!("<vcount> of {n} corners, but <p> with {}", corners.len());
@@ -337,18 +301,15 @@ impl<'a> Collada<'a> {
     fn transform(&self, node: Node) -> Result<DAffine3> {
         let mut all = DAffine3::IDENTITY;
         for element in node.children().filter(Node::is_element) {
-            all *= match element.tag_name().name() {
+            all *= match tag(element) {
                 "matrix" | "bind_shape_matrix" => self.matrix(element)?,
                 "translate" => DAffine3::from_translation(DVec3::from(self.exactly(element)?)),
                 "scale" => DAffine3::from_scale(DVec3::from(self.exactly(element)?)),
                 "rotate" => {
                     let [x, y, z, degrees] = self.exactly(element)?;
                     let axis = DVec3::new(x, y, z).try_normalize().ok_or_else(|| {
-                        self.refuse(
-                            element,
-                            "<rotate> about an axis of length zero",
-                            "a direction",
-                        )
+                        let given = "<rotate> about an axis of length zero";
+                        self.refuse(element, given, "a direction")
                     })?;
                     DAffine3::from_quat(DQuat::from_axis_angle(axis, degrees.to_radians()))
                 }
@@ -389,13 +350,10 @@ impl<'a> Reading<'a, '_> {
     /// Adds the geometries of a node and of the nodes in it.
     fn add_node(&mut self, node: Node<'a, 'a>, above: &DAffine3, depth: usize) -> Result<()> {
         let file = self.file;
-        if depth > MAX_DEPTH {
-            let given = format!("nodes inside each other, {MAX_DEPTH} deep");
-            return Err(file.refuse(node, given, "a tree of nodes"));
-        }
+        check_depth(&file.place_of(node), depth)?;
         let transform = *above * file.transform(node)?;
         for element in node.children().filter(Node::is_element) {
-            match element.tag_name().name() {
+            match tag(element) {
                 "node" => self.add_node(element, &transform, depth + 1)?,
                 "instance_node" => {
                     self.add_node(file.target(element, "url")?, &transform, depth + 1)?;
@@ -405,11 +363,8 @@ impl<'a> Reading<'a, '_> {
                 }
                 "instance_controller" => {
                     let controller = file.target(element, "url")?;
-                    let mut parts = controller.children().filter(Node::is_element);
-                    let Some(part) = parts.find(|part| is(*part, "skin") || is(*part, "morph"))
-                    else {
-                        return Err(file.refuse(controller, "<controller> without <skin>", "one"));
-                    };
+                    let part = child(controller, "skin").or_else(|| child(controller, "morph"));
+                    let part = file.required(controller, part, "<skin>")?;
                     let bound = transform * file.transform(part)?;
                     self.add_geometry(file.target(part, "source")?, &bound)?;
                 }
@@ -433,21 +388,30 @@ impl<'a> Reading<'a, '_> {
                 Entry::Occupied(known) => known.into_mut(),
                 Entry::Vacant(place) => place.insert(file.points(source)?),
             };
-            let line = primitive
-                .document()
-                .text_pos_at(primitive.range().start)
-                .row;
-            let place = format!("{}, line {line}", file.place);
-            self.parts.add(&place, transform, positions, &polygons)?;
+            let place = file.place_of(primitive);
+            self.parts.add(&place, transform, positions, polygons)?;
         }
         Ok(())
     }
 }
 
-fn is(node: Node, tag: &str) -> bool {
-    node.is_element() && node.tag_name().name() == tag
+/// Returns the triangles of all lists.
+fn concat(lists: &[Vec<u32>], triangles: fn(&[u32]) -> Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+    lists.iter().flat_map(|list| triangles(list)).collect()
 }
 
-fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>> {
-    node.children().find(|node| is(*node, tag))
+fn tag<'a>(node: Node<'a, '_>) -> &'a str {
+    node.tag_name().name()
+}
+
+fn is(node: Node, name: &str) -> bool {
+    node.is_element() && tag(node) == name
+}
+
+fn children<'a>(node: Node<'a, 'a>, name: &str) -> impl Iterator<Item = Node<'a, 'a>> {
+    node.children().filter(move |node| is(*node, name))
+}
+
+fn child<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
+    children(node, name).next()
 }

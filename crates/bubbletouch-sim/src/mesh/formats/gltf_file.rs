@@ -21,6 +21,44 @@ const ENCODINGS: [&str; 4] = [
     "EXT_mesh_gpu_instancing",
 ];
 
+/// Type of the numbers in an accessor, little-endian.
+struct Component {
+    kind: u32,
+    /// Number of bytes.
+    size: usize,
+    /// Number that stands for 1 if numbers are normalised.
+    largest: f64,
+    decode: fn(&[u8]) -> f64,
+}
+
+const COMPONENTS: [Component; 6] = [
+    Component::new(5120, 1, 127.0, |b| f64::from(b[0] as i8)),
+    Component::new(5121, 1, 255.0, |b| f64::from(b[0])),
+    Component::new(5122, 2, 32_767.0, |b| {
+        f64::from(i16::from_le_bytes([b[0], b[1]]))
+    }),
+    Component::new(5123, 2, 65_535.0, |b| {
+        f64::from(u16::from_le_bytes([b[0], b[1]]))
+    }),
+    Component::new(5125, 4, 1.0, |b| {
+        f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+    }),
+    Component::new(5126, 4, 1.0, |b| {
+        f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+    }),
+];
+
+impl Component {
+    const fn new(kind: u32, size: usize, largest: f64, decode: fn(&[u8]) -> f64) -> Self {
+        Self {
+            kind,
+            size,
+            largest,
+            decode,
+        }
+    }
+}
+
 /// Parts of the JSON description of a glTF file from which meshes are read.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -193,9 +231,7 @@ impl<'p> GltfFile<'p> {
     }
 
     fn accessor(&self, index: usize) -> Result<&Accessor> {
-        let all = &self.description.accessors;
-        all.get(index)
-            .ok_or_else(|| self.missing("accessor", index, all.len()))
+        self.item("accessor", &self.description.accessors, index)
     }
 
     fn refuse(&self, accessor: usize, given: impl ToString, allowed: impl ToString) -> Error {
@@ -206,13 +242,18 @@ impl<'p> GltfFile<'p> {
         )
     }
 
-    /// Returns the error for an index that does not exist.
-    pub fn missing(&self, what: &str, index: usize, n: usize) -> Error {
-        let allowed = match n {
-            0 => format!("a file with a {what}"),
-            n => format!("0 to {}", n - 1),
-        };
-        Error::input(self.place, format!("{what} {index}"), allowed)
+    /// Returns an item of a list of the file.
+    ///
+    /// # Errors
+    /// If the index does not exist.
+    pub fn item<'l, T>(&self, what: &str, list: &'l [T], index: usize) -> Result<&'l T> {
+        list.get(index).ok_or_else(|| {
+            let allowed = match list.len() {
+                0 => format!("a file with a {what}"),
+                n => format!("0 to {}", n - 1),
+            };
+            Error::input(self.place, format!("{what} {index}"), allowed)
+        })
     }
 
     /// Returns the numbers of an accessor with `n` components per element.
@@ -224,28 +265,23 @@ impl<'p> GltfFile<'p> {
         if accessor.sparse.is_some() {
             return Err(self.refuse(index, "`sparse` values", "values in a buffer"));
         }
-        let (size, largest) = match accessor.component_type {
-            5120 => (1, 127.0),
-            5121 => (1, 255.0),
-            5122 => (2, 32_767.0),
-            5123 => (2, 65_535.0),
-            5125 | 5126 => (4, 1.0),
-            other => {
-                let given = format!("`componentType` {other}");
-                return Err(self.refuse(index, given, "5120 to 5123, 5125 or 5126"));
-            }
+        let mut known = COMPONENTS.iter();
+        let known = known.find(|component| component.kind == accessor.component_type);
+        let Some(&Component {
+            size,
+            largest,
+            decode,
+            ..
+        }) = known
+        else {
+            let given = format!("`componentType` {}", accessor.component_type);
+            return Err(self.refuse(index, given, "5120 to 5123, 5125 or 5126"));
         };
-        let Some(view_index) = accessor.buffer_view else {
+        let Some(view) = accessor.buffer_view else {
             return Err(self.refuse(index, "no `bufferView`", "values in a buffer"));
         };
-        let views = &self.description.buffer_views;
-        let view = views
-            .get(view_index)
-            .ok_or_else(|| self.missing("buffer view", view_index, views.len()))?;
-        let buffer = self
-            .buffers
-            .get(view.buffer)
-            .ok_or_else(|| self.missing("buffer", view.buffer, self.buffers.len()))?;
+        let view = self.item("buffer view", &self.description.buffer_views, view)?;
+        let buffer = self.item("buffer", &self.buffers, view.buffer)?;
         let view_end = view.byte_offset.checked_add(view.byte_length);
         let bytes = view_end.and_then(|end| buffer.get(view.byte_offset..end));
         let stride = view.byte_stride.unwrap_or(size * n);
@@ -266,7 +302,7 @@ impl<'p> GltfFile<'p> {
         for element in 0..accessor.count {
             for component in 0..n {
                 let start = element * stride + component * size;
-                let value = component_of(&bytes[start..start + size], accessor.component_type);
+                let value = decode(&bytes[start..start + size]);
                 if !value.is_finite() {
                     let given = format!("element {element}: {value}");
                     return Err(self.refuse(index, given, "finite numbers"));
@@ -362,17 +398,4 @@ fn content_of(place: &str, place_of_buffer: &str, address: &str) -> Result<Vec<u
         let given = format!("{}, which cannot be read ({error})", path.display());
         Error::input(place_of_buffer, given, "a file beside the glTF file")
     })
-}
-
-/// Returns a little-endian number; `kind` is the component type of glTF, and the slice has its size.
-fn component_of(bytes: &[u8], kind: u32) -> f64 {
-    match (kind, bytes) {
-        (5120, &[a]) => f64::from(a as i8),
-        (5121, &[a]) => f64::from(a),
-        (5122, &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
-        (5123, &[a, b]) => f64::from(u16::from_le_bytes([a, b])),
-        (5125, &[a, b, c, d]) => f64::from(u32::from_le_bytes([a, b, c, d])),
-        (_, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
-        _ => f64::NAN,
-    }
 }

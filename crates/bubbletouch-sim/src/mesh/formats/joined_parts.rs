@@ -6,7 +6,9 @@ use glam::{DAffine3, DVec3};
 
 /// Largest number of polygons of a file. With a larger value, a small file whose nodes refer to each other repeatedly can fill the memory.
 const MAX_POLYGONS: usize = 50_000_000;
-/// Index that marks vertices that no polygon uses.
+/// Largest depth of the tree of nodes. A deeper tree indicates nodes that contain each other.
+const MAX_DEPTH: usize = 100;
+/// Index that marks positions that no polygon uses.
 const UNUSED: u32 = u32::MAX;
 
 /// Vertices and polygons of the parts of a file that have been added so far.
@@ -27,43 +29,39 @@ impl JoinedParts {
         place: &str,
         transform: &DAffine3,
         positions: &[DVec3],
-        polygons: &[Vec<u32>],
+        mut polygons: Vec<Vec<u32>>,
     ) -> Result<()> {
         if self.polygons.len() + polygons.len() > MAX_POLYGONS {
-            let given = "too many polygons";
-            return Err(Error::input(
-                place,
-                given,
-                format!("at most {MAX_POLYGONS}"),
-            ));
+            let allowed = format!("at most {MAX_POLYGONS}");
+            return Err(Error::input(place, "too many polygons", allowed));
         }
-        let is_mirrored = transform.matrix3.determinant() < 0.0;
-        let mut new_index = vec![UNUSED; positions.len()];
-        for (number, corners) in polygons.iter().enumerate() {
-            let mut polygon = Vec::with_capacity(corners.len());
-            for &corner in corners {
-                let Some(index) = new_index.get_mut(corner as usize) else {
-                    return Err(Error::input(
-                        format!("{place}: face {}", number + 1),
-                        format!("vertex index {corner}"),
-                        match positions.len() {
-                            0 => "a part with vertices".to_owned(),
-                            n => format!("0 to {}, the indices of the vertices", n - 1),
-                        },
-                    ));
+        for (polygon, number) in polygons.iter().zip(1..) {
+            let n = positions.len();
+            if let Some(corner) = polygon.iter().find(|&&corner| corner as usize >= n) {
+                let allowed = match n {
+                    0 => "a part with vertices".to_owned(),
+                    n => format!("0 to {}, the indices of the vertices", n - 1),
                 };
-                if *index == UNUSED {
-                    *index = self.vertices.len() as u32;
-                    self.vertices
-                        .push(transform.transform_point3(positions[corner as usize]));
-                }
-                polygon.push(*index);
+                let place = format!("{place}: face {number}");
+                return Err(Error::input(
+                    place,
+                    format!("vertex index {corner}"),
+                    allowed,
+                ));
             }
+        }
+        let first = self.vertices.len() as u32;
+        let used = used_positions(positions, &mut polygons).into_iter();
+        self.vertices
+            .extend(used.map(|position| transform.transform_point3(position)));
+        let is_mirrored = transform.matrix3.determinant() < 0.0;
+        for polygon in &mut polygons {
+            polygon.iter_mut().for_each(|corner| *corner += first);
             if is_mirrored {
                 polygon.reverse();
             }
-            self.polygons.push(polygon);
         }
+        self.polygons.append(&mut polygons);
         Ok(())
     }
 
@@ -73,14 +71,47 @@ impl JoinedParts {
     /// If there are no polygons, a polygon has fewer than three corners, or a coordinate is not finite.
     pub fn into_file(self, place: &str) -> Result<MeshFile> {
         if self.polygons.is_empty() {
-            return Err(Error::input(
-                place,
-                "no faces",
-                "a file with triangles or polygons",
-            ));
+            let allowed = "a file with triangles or polygons";
+            return Err(Error::input(place, "no faces", allowed));
         }
         MeshFile::new(place, self.vertices, self.polygons)
     }
+}
+
+/// Returns the positions that polygons use, in the order of their first use, and replaces the indices in the polygons. All indices must exist.
+pub(super) fn used_positions(positions: &[DVec3], polygons: &mut [Vec<u32>]) -> Vec<DVec3> {
+    let mut new_indices = vec![UNUSED; positions.len()];
+    let mut used = Vec::new();
+    for corner in polygons.iter_mut().flatten() {
+        let index = &mut new_indices[*corner as usize];
+        if *index == UNUSED {
+            *index = used.len() as u32;
+            used.push(positions[*corner as usize]);
+        }
+        *corner = *index;
+    }
+    used
+}
+
+/// Returns an error if a node is so deep in the tree of nodes that nodes contain each other.
+pub(super) fn check_depth(place: &str, depth: usize) -> Result<()> {
+    if depth <= MAX_DEPTH {
+        return Ok(());
+    }
+    let given = format!("nodes inside each other, {MAX_DEPTH} deep");
+    Err(Error::input(place, given, "a tree of nodes"))
+}
+
+/// Returns the triangles of a list with three corners each.
+///
+/// # Errors
+/// If the number of corners is no multiple of three; the error begins with `place`.
+pub(super) fn triangles_of_list(place: &str, corners: &[u32]) -> Result<Vec<Vec<u32>>> {
+    if !corners.len().is_multiple_of(3) {
+        let given = format!("{} corners of triangles", corners.len());
+        return Err(Error::input(place, given, "three for each triangle"));
+    }
+    Ok(corners.chunks_exact(3).map(<[u32]>::to_vec).collect())
 }
 
 /// Returns the triangles of a strip; every second one is turned.

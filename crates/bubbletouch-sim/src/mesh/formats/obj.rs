@@ -1,13 +1,11 @@
 //! Meshes from Wavefront OBJ files. Positions and faces are read; groups, materials, normals and texture are ignored.
 
+use super::joined_parts::used_positions;
 use super::text_lines::{coordinates, each_line};
 use crate::error::{Error, Result};
 use crate::mesh::MeshFile;
 use glam::DVec3;
 use std::io::BufRead;
-
-/// Index that marks vertices that no face uses.
-const UNUSED: u32 = u32::MAX;
 
 /// Reads the mesh in an OBJ file; all objects and groups of the file form one mesh.
 ///
@@ -44,30 +42,22 @@ pub fn read_obj(place: &str, source: impl BufRead) -> Result<MeshFile> {
         let allowed = "an OBJ file with lines `v 0 0 1` and `f 1 2 3`";
         return Err(Error::input(place, "no faces", allowed));
     }
-    let mut places = vec![UNUSED; vertices.len()];
-    let mut used = Vec::new();
+    let n = vertices.len();
     let mut polygons = Vec::with_capacity(faces.len());
     for (number, corners) in faces {
-        let mut polygon = Vec::with_capacity(corners.len());
-        for corner in corners {
-            let Some(place_in_use) = places.get_mut(corner - 1) else {
-                let given = format!("vertex index {corner}");
-                let allowed = format!("1 to {}, the number of vertices", vertices.len());
-                return Err(Error::input(
-                    format!("{place}, line {number}"),
-                    given,
-                    allowed,
-                ));
-            };
-            if *place_in_use == UNUSED {
-                *place_in_use = used.len() as u32;
-                used.push(vertices[corner - 1]);
-            }
-            polygon.push(*place_in_use);
+        if let Some(corner) = corners.iter().find(|&&corner| corner > n) {
+            let place = format!("{place}, line {number}");
+            let allowed = format!("1 to {n}, the number of vertices");
+            return Err(Error::input(
+                place,
+                format!("vertex index {corner}"),
+                allowed,
+            ));
         }
-        polygons.push(polygon);
+        polygons.push(corners.iter().map(|corner| *corner as u32 - 1).collect());
     }
-    MeshFile::new(place, used, polygons)
+    let vertices = used_positions(&vertices, &mut polygons);
+    MeshFile::new(place, vertices, polygons)
 }
 
 /// Returns the vertex index in the word of a face corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1. Negative indices count back from the last of the

@@ -20,37 +20,26 @@ use std::io::{BufRead, ErrorKind};
 pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     check_magic(place, &mut source)?;
     let mut reader = Reader::new(source);
-    let header = Parser::<Vertex>::new()
+    let header = Parser::<Item>::new()
         .read_header(&mut reader)
         .map_err(|e| malformed(place, &e))?;
     check_header(place, header.elements.values())?;
-    let mut vertices = Vec::new();
-    let mut faces = Vec::new();
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for element in header.elements.values() {
+        let items = Parser::<Item>::new()
+            .read_payload_for_element(&mut reader, element, &header)
+            .map_err(|e| malformed(place, &e))?;
         match element.name.as_str() {
-            "vertex" => {
-                vertices = Parser::<Vertex>::new()
-                    .read_payload_for_element(&mut reader, element, &header)
-                    .map_err(|e| malformed(place, &e))?;
-            }
-            "face" => {
-                faces = Parser::<Face>::new()
-                    .read_payload_for_element(&mut reader, element, &header)
-                    .map_err(|e| malformed(place, &e))?;
-            }
-            _ => {
-                Parser::<Skipped>::new()
-                    .read_payload_for_element(&mut reader, element, &header)
-                    .map_err(|e| malformed(place, &e))?;
-            }
+            "vertex" => vertices = items.into_iter().map(|item| item.point).collect(),
+            "face" => faces = items,
+            _ => {}
         }
     }
-    let vertices = vertices.into_iter().map(|v| v.0).collect();
     MeshFile::new(place, vertices, polygons(place, &faces)?)
 }
 
 /// Converts the vertex indices of the faces from signed numbers. Invalid indices are rejected here or when the surface is created.
-fn polygons(place: &str, faces: &[Face]) -> Result<Vec<Vec<u32>>> {
+fn polygons(place: &str, faces: &[Item]) -> Result<Vec<Vec<u32>>> {
     let index = |face: usize, corner: i64| {
         u32::try_from(corner).map_err(|_| {
             Error::input(
@@ -60,9 +49,9 @@ fn polygons(place: &str, faces: &[Face]) -> Result<Vec<Vec<u32>>> {
             )
         })
     };
-    let polygon = |(face, Face(corners)): (usize, &Face)| {
-        let indices = corners.iter().map(|&corner| index(face, corner));
-        indices.collect()
+    let polygon = |(face, item): (usize, &Item)| {
+        let corners = item.corners.iter();
+        corners.map(|&corner| index(face, corner)).collect()
     };
     faces.iter().enumerate().map(polygon).collect()
 }
@@ -90,93 +79,87 @@ fn check_magic(place: &str, source: &mut impl BufRead) -> Result<()> {
 
 /// Returns an error for unsupported elements before the reader reads data or allocates memory.
 fn check_header<'a>(place: &str, elements: impl Iterator<Item = &'a ElementDef>) -> Result<()> {
+    let refuse = |given: &str, allowed: &str| Err(Error::input(place, given, allowed));
     let mut has_vertices = false;
     for element in elements {
         // Otherwise the size of the file would not limit the number of elements without content.
         if element.properties.is_empty() && element.count > 0 {
-            return Err(Error::input(
-                place,
-                format!("element `{}` without properties", element.name),
-                "at least one property an element",
-            ));
+            let given = format!("element `{}` without properties", element.name);
+            return refuse(&given, "at least one property an element");
         }
         match element.name.as_str() {
             "vertex" => {
                 has_vertices = true;
-                check_vertex(place, element)?;
+                let is_number = |name: &&str| {
+                    let property = element.properties.get(*name);
+                    property.is_some_and(|p| matches!(p.data_type, PropertyType::Scalar(_)))
+                };
+                if let Some(name) = ["x", "y", "z"].iter().find(|name| !is_number(name)) {
+                    let given = format!("vertices without a number `{name}`");
+                    return refuse(&given, "vertices with x, y, z");
+                }
             }
-            "face" => check_face(place, element)?,
+            "face" if element.count > 0 && !has_indices(element) => {
+                let given = "faces without a list of whole numbers `vertex_indices`";
+                return refuse(given, "faces that list their vertices");
+            }
             _ => {}
         }
     }
-    if has_vertices {
-        return Ok(());
+    match has_vertices {
+        true => Ok(()),
+        false => refuse("no element `vertex`", "vertices with x, y, z"),
     }
-    Err(Error::input(
-        place,
-        "no element `vertex`",
-        "vertices with x, y, z",
-    ))
 }
 
-fn check_vertex(place: &str, element: &ElementDef) -> Result<()> {
-    for name in ["x", "y", "z"] {
-        let property = element.properties.get(name).map(|p| &p.data_type);
-        if !matches!(property, Some(PropertyType::Scalar(_))) {
-            return Err(Error::input(
-                place,
-                format!("vertices without a number `{name}`"),
-                "vertices with x, y, z",
-            ));
-        }
-    }
-    Ok(())
-}
-
-fn check_face(place: &str, element: &ElementDef) -> Result<()> {
-    let names = ["vertex_indices", "vertex_index"];
-    let lists = names.map(|name| element.properties.get(name).map(|p| &p.data_type));
+/// Returns whether an element has a list of vertex indices.
+fn has_indices(element: &ElementDef) -> bool {
     let is_index = |t: &ScalarType| !matches!(t, ScalarType::Float | ScalarType::Double);
-    let usable = lists.iter().flatten().any(
-        |t| matches!(t, PropertyType::List(count, index) if is_index(count) && is_index(index)),
-    );
-    if usable || element.count == 0 {
-        return Ok(());
-    }
-    Err(Error::input(
-        place,
-        "faces without a list of whole numbers `vertex_indices`",
-        "faces that list their vertices",
-    ))
+    ["vertex_indices", "vertex_index"].iter().any(|name| {
+        matches!(
+            element.properties.get(*name).map(|p| &p.data_type),
+            Some(PropertyType::List(count, index)) if is_index(count) && is_index(index)
+        )
+    })
 }
 
 fn malformed(place: &str, error: &ParseError) -> Error {
     // The crate's messages contain the input over several lines; the first line contains the reason.
     let text = error.to_string();
     let first = text.lines().next().unwrap_or_default().trim();
-    match error.kind() {
-        ErrorKind::UnexpectedEof => Error::input(
-            place,
-            format!("cut off: {first}"),
-            "as many elements as the header says",
-        ),
-        _ => Error::input(
-            place,
-            format!("not readable as PLY: {first}"),
+    let (given, allowed) = match error.kind() {
+        ErrorKind::UnexpectedEof => ("cut off", "as many elements as the header says"),
+        _ => (
+            "not readable as PLY",
             "finite numbers as the header describes them",
         ),
-    }
+    };
+    Error::input(place, format!("{given}: {first}"), allowed)
 }
 
-struct Vertex(DVec3);
+/// Item of an element: its position, and the vertex indices of its polygon. Other properties are skipped.
+struct Item {
+    point: DVec3,
+    corners: Vec<i64>,
+}
 
-impl PropertyAccess for Vertex {
+impl PropertyAccess for Item {
     fn new() -> Self {
-        Self(DVec3::NAN)
+        Self {
+            point: DVec3::NAN,
+            corners: Vec::new(),
+        }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let value = match property {
+        let axis = match name {
+            "x" => 0,
+            "y" => 1,
+            "z" => 2,
+            "vertex_indices" | "vertex_index" => return self.set_corners(property),
+            _ => return PropertyAccessResult::Ignored,
+        };
+        self.point[axis] = match property {
             Property::Char(v) => f64::from(v),
             Property::UChar(v) => f64::from(v),
             Property::Short(v) => f64::from(v),
@@ -187,28 +170,13 @@ impl PropertyAccess for Vertex {
             Property::Double(v) => v,
             _ => return PropertyAccessResult::Ignored,
         };
-        match name {
-            "x" => self.0.x = value,
-            "y" => self.0.y = value,
-            "z" => self.0.z = value,
-            _ => return PropertyAccessResult::Ignored,
-        }
         PropertyAccessResult::Set
     }
 }
 
-struct Face(Vec<i64>);
-
-impl PropertyAccess for Face {
-    fn new() -> Self {
-        Self(Vec::new())
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if !matches!(name, "vertex_indices" | "vertex_index") {
-            return PropertyAccessResult::Ignored;
-        }
-        self.0 = match property {
+impl Item {
+    fn set_corners(&mut self, property: Property) -> PropertyAccessResult {
+        self.corners = match property {
             Property::ListChar(v) => v.into_iter().map(i64::from).collect(),
             Property::ListUChar(v) => v.into_iter().map(i64::from).collect(),
             Property::ListShort(v) => v.into_iter().map(i64::from).collect(),
@@ -218,14 +186,5 @@ impl PropertyAccess for Face {
             _ => return PropertyAccessResult::UnsupportedType,
         };
         PropertyAccessResult::Set
-    }
-}
-
-/// Element of a PLY file that the reader skips.
-struct Skipped;
-
-impl PropertyAccess for Skipped {
-    fn new() -> Self {
-        Self
     }
 }

@@ -1,6 +1,6 @@
 //! Meshes from STL files, ASCII or binary. Corners with identical coordinates become one vertex; normals are ignored.
 
-use super::text_lines::{BYTE_ORDER_MARK, coordinates, each_line};
+use super::text_lines::{BYTE_ORDER_MARK, all_bytes, coordinates, each_line};
 use crate::error::{Error, Result};
 use crate::geometry::place_bits;
 use crate::mesh::MeshFile;
@@ -17,11 +17,8 @@ const TRIANGLE: usize = 50;
 ///
 /// # Errors
 /// If the file is truncated or is not an STL file. The error begins with `place`.
-pub fn read_stl(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
-    let mut content = Vec::new();
-    source
-        .read_to_end(&mut content)
-        .map_err(|e| Error::io(place, "read", e))?;
+pub fn read_stl(place: &str, source: impl BufRead) -> Result<MeshFile> {
+    let content = all_bytes(place, source)?;
     // The length decides, because some programs begin a binary header with the first word of an ASCII file.
     if is_binary(&content) {
         return merged(place, &binary_corners(&content));
@@ -58,69 +55,63 @@ fn binary_corners(content: &[u8]) -> Vec<DVec3> {
     let corners = triangles.flat_map(|triangle| triangle[12..48].chunks_exact(12));
     let number =
         |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
-    corners
-        .map(|corner| {
-            DVec3::new(
-                number(&corner[..4]),
-                number(&corner[4..8]),
-                number(&corner[8..]),
-            )
-        })
-        .collect()
+    let point = |corner: &[u8]| [0, 4, 8].map(|at| number(&corner[at..]));
+    corners.map(|corner| point(corner).into()).collect()
+}
+
+/// State of the reader of an ASCII file.
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    /// Between two solids.
+    Outside,
+    /// In a solid, between two facets.
+    Solid,
+    /// In a facet, after this number of corners.
+    Facet(usize),
 }
 
 /// Returns the corners of the facets in an ASCII STL file with any number of solids, three per facet. Keywords may be in upper case.
 fn ascii_corners(place: &str, content: &[u8]) -> Result<Vec<DVec3>> {
     let mut corners = Vec::new();
-    // State of the reader: whether a solid and a facet are open, and the number of corners of the current facet.
-    let (mut in_solid, mut in_facet, mut n_corners) = (false, false, 0);
+    let mut state = State::Outside;
     each_line(place, content, |number, line| {
         let mut words = line.split_whitespace();
         let Some(word) = words.next() else {
             return Ok(());
         };
-        let at = || format!("{place}, line {number}");
-        let allowed = match word.to_ascii_lowercase().as_str() {
-            "solid" if !in_facet => {
-                in_solid = true;
-                return Ok(());
+        let at = format!("{place}, line {number}");
+        state = match (word.to_ascii_lowercase().as_str(), state) {
+            ("solid", State::Outside | State::Solid) => State::Solid,
+            ("endsolid", State::Solid) => State::Outside,
+            ("facet", State::Solid) => State::Facet(0),
+            ("vertex", State::Facet(n)) if n < 3 => {
+                corners.push(coordinates(at, words)?);
+                State::Facet(n + 1)
             }
-            "endsolid" if in_solid && !in_facet => {
-                in_solid = false;
-                return Ok(());
+            ("endfacet", State::Facet(3)) => State::Solid,
+            ("outer" | "endloop", State::Facet(_)) => state,
+            (word_in_lower_case, _) => {
+                let allowed = match (word_in_lower_case, state) {
+                    ("vertex" | "endfacet", State::Facet(_)) => {
+                        "exactly three vertices in each facet"
+                    }
+                    _ => "`solid`, facets of three vertices, and `endsolid`, in this order",
+                };
+                let given = format!("not readable as STL: `{word}` here");
+                return Err(Error::input(at, given, allowed));
             }
-            "facet" if in_solid && !in_facet => {
-                (in_facet, n_corners) = (true, 0);
-                return Ok(());
-            }
-            "vertex" if in_facet && n_corners < 3 => {
-                corners.push(coordinates(at(), words)?);
-                n_corners += 1;
-                return Ok(());
-            }
-            "endfacet" if in_facet && n_corners == 3 => {
-                in_facet = false;
-                return Ok(());
-            }
-            "outer" | "endloop" if in_facet => return Ok(()),
-            "vertex" | "endfacet" if in_facet => "exactly three vertices in each facet",
-            _ => "`solid`, facets of three vertices, and `endsolid`, in this order",
         };
-        Err(Error::input(
-            at(),
-            format!("not readable as STL: `{word}` here"),
-            allowed,
-        ))
+        Ok(())
     })?;
-    if in_solid || in_facet {
-        let allowed = "facets and `endsolid` at the end";
-        return Err(Error::input(
-            place,
-            "cut off: a solid without its end",
-            allowed,
-        ));
+    if state == State::Outside {
+        return Ok(corners);
     }
-    Ok(corners)
+    let given = "cut off: a solid without its end";
+    Err(Error::input(
+        place,
+        given,
+        "facets and `endsolid` at the end",
+    ))
 }
 
 /// Returns the mesh whose triangles have three consecutive `corners` each. Corners with identical coordinates become one vertex, in the order of first

@@ -6,6 +6,17 @@ use std::io::BufRead;
 /// Byte order mark of UTF-8.
 pub(super) const BYTE_ORDER_MARK: [u8; 3] = [0xEF, 0xBB, 0xBF];
 
+/// Returns all bytes of a file.
+///
+/// # Errors
+/// If `source` cannot be read; the error contains `place`.
+pub(super) fn all_bytes(place: &str, mut source: impl BufRead) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let read = source.read_to_end(&mut bytes);
+    read.map_err(|error| Error::io(place, "read", error))?;
+    Ok(bytes)
+}
+
 /// Calls `visit` with the line number (from 1) and the text of each non-empty line of a text file.
 ///
 /// A backslash at the end of a line means that the line continues on the next line. Invalid UTF-8 (names and comments in other encodings) is replaced by
@@ -15,13 +26,10 @@ pub(super) const BYTE_ORDER_MARK: [u8; 3] = [0xEF, 0xBB, 0xBF];
 /// If `source` cannot be read, or `visit` returns an error.
 pub(super) fn each_line(
     place: &str,
-    mut source: impl BufRead,
+    source: impl BufRead,
     mut visit: impl FnMut(usize, &str) -> Result<()>,
 ) -> Result<()> {
-    let mut bytes = Vec::new();
-    source
-        .read_to_end(&mut bytes)
-        .map_err(|e| Error::io(place, "read", e))?;
+    let bytes = all_bytes(place, source)?;
     let text = bytes.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(&bytes);
     let (mut number, mut first, mut line) = (0, 1, String::new());
     let mut is_after_return = false;
@@ -59,19 +67,18 @@ pub(super) fn coordinates<'a>(
     place: impl std::fmt::Display,
     mut words: impl Iterator<Item = &'a str>,
 ) -> Result<glam::DVec3> {
-    let mut point = [0.0; 3];
-    for (n_read, coordinate) in point.iter_mut().enumerate() {
+    let mut point = glam::DVec3::ZERO;
+    for n_read in 0..3 {
         let Some(word) = words.next() else {
             let given = format!("{n_read} coordinates");
             return Err(Error::input(place, given, "x, y and z"));
         };
-        *coordinate = match word.parse::<f64>() {
-            Ok(number) if number.is_finite() => number,
-            _ => {
-                let given = format!("coordinate `{word}`");
-                return Err(Error::input(place, given, "a finite number"));
-            }
+        let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+        let Some(number) = number else {
+            let given = format!("coordinate `{word}`");
+            return Err(Error::input(place, given, "a finite number"));
         };
+        point[n_read] = number;
     }
-    Ok(glam::DVec3::from_array(point))
+    Ok(point)
 }

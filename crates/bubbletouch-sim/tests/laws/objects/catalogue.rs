@@ -316,15 +316,15 @@ fn a_wrong_catalogue_names_file_line_and_object() {
         ),
         (
             good.replace("height_mm", "hieght_mm"),
-            "own.toml, line 7, object \"mug\": unknown field `hieght_mm`",
+            "own.toml, line 7, object `mug`, part 1 (cylinder): hieght_mm: given for a cylinder; perhaps `height_mm`",
         ),
         (
             good.replace("80", "\"wide\""),
-            "own.toml, line 6, object \"mug\": invalid type: string",
+            "own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm: invalid type: string",
         ),
         (
             good.replace("cylinder", "cilinder"),
-            "own.toml, line 5, object \"mug\": unknown variant `cilinder`",
+            "own.toml, line 5, object `mug`, part 1 (cilinder): shape: `cilinder`; perhaps `cylinder`",
         ),
         (
             good.replace("source = \"us\"\n", ""),
@@ -355,7 +355,7 @@ fn a_wrong_catalogue_names_file_line_and_object() {
             "own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = 0; a finite positive",
         ),
         (
-            good.replace("height_mm", "length_mm"),
+            good.replace("height_mm = 90\n", ""),
             "own.toml, line 5, object `mug`, part 1 (cylinder): height_mm: missing",
         ),
         (
