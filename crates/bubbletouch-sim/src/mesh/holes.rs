@@ -124,15 +124,14 @@ impl TriangleMesh {
 impl fmt::Display for ClosedHoles {
     /// Formats the result as a phrase, such as `closed 2 holes, at most 0.93 mm wide`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.widths[..] {
-            [] => write!(f, "closed no hole"),
-            [width] => write!(f, "closed 1 hole, {:.2} mm wide", 1e3 * width),
-            [widest, ..] => write!(
-                f,
-                "closed {} holes, at most {:.2} mm wide",
-                self.widths.len(),
-                1e3 * widest
-            ),
+        let widest = self
+            .widths
+            .first()
+            .map(|widest| format!("{:.2} mm wide", 1e3 * widest));
+        match (self.widths.len(), widest.unwrap_or_default()) {
+            (0, _) => write!(f, "closed no hole"),
+            (1, width) => write!(f, "closed 1 hole, {width}"),
+            (n, widest) => write!(f, "closed {n} holes, at most {widest}"),
         }
     }
 }

@@ -26,10 +26,12 @@ impl MeshFile {
     ) -> Result<Self> {
         check_vertices(place, &vertices)?;
         if let Some(index) = polygons.iter().position(|corners| corners.len() < 3) {
+            let given = format!("{} corners", polygons[index].len());
+            let allowed = "at least three vertex indices, from 0";
             return Err(Error::input(
                 format!("{place}: face {}", index + 1),
-                format!("{} corners", polygons[index].len()),
-                "at least three vertex indices, from 0",
+                given,
+                allowed,
             ));
         }
         check_indices(place, &polygons, vertices.len())?;
@@ -61,11 +63,9 @@ impl MeshFile {
     /// If there are no polygons, or if a fan would overlap itself because its polygon is not convex or not planar.
     pub fn into_mesh(self, place: &str) -> Result<TriangleMesh> {
         if let Some(index) = self.polygons.iter().position(|p| self.folds(p)) {
-            return Err(Error::input(
-                format!("{place}: face {}", index + 1),
-                format!("{} corners that are not convex", self.polygons[index].len()),
-                "convex faces, or triangles",
-            ));
+            let given = format!("{} corners that are not convex", self.polygons[index].len());
+            let place = format!("{place}: face {}", index + 1);
+            return Err(Error::input(place, given, "convex faces, or triangles"));
         }
         let fan = |corners: &Vec<u32>| {
             let first = corners[0];

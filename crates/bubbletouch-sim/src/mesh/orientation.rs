@@ -72,10 +72,15 @@ impl fmt::Display for Orientation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Outwards => write!(f, "faces outwards"),
-            Self::Turned { n_triangles, n_all } => write!(
-                f,
-                "{n_triangles} of {n_all} triangles faced inwards and were turned outwards"
-            ),
+            Self::Turned {
+                n_triangles: n,
+                n_all,
+            } => {
+                write!(
+                    f,
+                    "{n} of {n_all} triangles faced inwards and were turned outwards"
+                )
+            }
             Self::NotConverged(given) => write!(f, "{given}"),
         }
     }

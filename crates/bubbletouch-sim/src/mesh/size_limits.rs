@@ -67,26 +67,22 @@ impl SizeLimits {
         let option = self.option;
         let advice = match likely.iter().find(is_likely) {
             Some(unit) => {
-                let name = unit.name();
-                let would_be = in_words(length * unit.metres());
-                format!(
-                    "in {name} it would be {would_be}: give unit = \"{name}\" ({option} {name})"
-                )
+                let (name, size) = (unit.name(), in_words(length * unit.metres()));
+                format!("in {name} it would be {size}: give unit = \"{name}\" ({option} {name})")
             }
             None => format!("give unit = \"m\" ({option} m) if it is as large as that"),
         };
         let [smallest, largest] = [self.smallest, self.largest].map(in_words);
-        Err(Error::input(
-            place,
-            format!("{} wide, if its unit is the metre", in_words(length)),
-            format!("{smallest} to {largest} where no unit is given; {advice}"),
-        ))
+        let given = format!("{} wide, if its unit is the metre", in_words(length));
+        let allowed = format!("{smallest} to {largest} where no unit is given; {advice}");
+        Err(Error::input(place, given, allowed))
     }
 }
 
 /// Formats a length with three digits, such as `17 m` or `17 mm`.
 fn in_words(metres: f64) -> String {
-    let (value, unit) = if metres >= 1.0 {
+    let is_long = metres >= 1.0;
+    let (value, unit) = if is_long {
         (metres, "m")
     } else {
         (metres * 1e3, "mm")

@@ -82,13 +82,10 @@ impl TriangleMesh {
 
     /// Returns the mesh with the marked triangles turned: their second and third corners are exchanged.
     pub(super) fn with_turned(mut self, is_turned: &[bool]) -> Self {
-        for (triangle, _) in self
-            .triangles
-            .iter_mut()
-            .zip(is_turned)
-            .filter(|(_, turned)| **turned)
-        {
-            triangle.swap(1, 2);
+        for (triangle, is_turned) in self.triangles.iter_mut().zip(is_turned) {
+            if *is_turned {
+                triangle.swap(1, 2);
+            }
         }
         self
     }
@@ -135,11 +132,8 @@ pub(super) fn check_vertices(place: &str, vertices: &[DVec3]) -> Result<()> {
         return Err(Error::input(place, "no vertices", "at least one vertex"));
     }
     if let Some(index) = vertices.iter().position(|v| !v.is_finite()) {
-        return Err(Error::input(
-            format!("{place}: vertex {}", index + 1),
-            vertices[index],
-            "finite coordinates",
-        ));
+        let place = format!("{place}: vertex {}", index + 1);
+        return Err(Error::input(place, vertices[index], "finite coordinates"));
     }
     Ok(())
 }

@@ -107,11 +107,7 @@ impl Block {
         for along in cells(self.half[axis] - edge.corner, edge.half_spacing) {
             for y in both_signs(inner[b]) {
                 for z in both_signs(inner[c]) {
-                    let mut center = DVec3::ZERO;
-                    center[axis] = along;
-                    center[b] = y;
-                    center[c] = z;
-                    spheres.push(fit.swollen(center, edge.radius));
+                    spheres.push(fit.swollen(from_axis(axis, [along, y, z]), edge.radius));
                 }
             }
         }
@@ -246,11 +242,7 @@ impl Face {
 
     fn push(&self, [x, y]: [f64; 2], radius: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
         for height in both_signs(self.depth - radius) {
-            let mut center = DVec3::ZERO;
-            center[self.axis] = height;
-            center[(self.axis + 1) % 3] = x;
-            center[(self.axis + 2) % 3] = y;
-            spheres.push(fit.swollen(center, radius));
+            spheres.push(fit.swollen(from_axis(self.axis, [height, x, y]), radius));
         }
     }
 }
@@ -263,6 +255,12 @@ fn cells(half: f64, largest_half: f64) -> Vec<f64> {
         .take(MAX_SPHERES + 1)
         .map(|i| half * ((2.0 * i as f64 + 1.0) / n - 1.0))
         .collect()
+}
+
+/// Returns the point with the given coordinates along an axis and the two axes that follow cyclically.
+fn from_axis(axis: usize, [a, b, c]: [f64; 3]) -> DVec3 {
+    let coordinates = [[a, b, c], [c, a, b], [b, c, a]];
+    DVec3::from_array(coordinates[axis])
 }
 
 /// Returns `x` and `−x`, or a single zero if `x` is zero.

@@ -102,11 +102,9 @@ impl Catalogue {
         let mut entries = Vec::new();
         for object in file.object {
             if !names.insert(object.name.get_ref().clone()) {
-                return Err(Error::input(
-                    object.place(place, text),
-                    "a name that an earlier object has",
-                    "a name of its own",
-                ));
+                let given = "a name that an earlier object has";
+                let place = object.place(place, text);
+                return Err(Error::input(place, given, "a name of its own"));
             }
             entries.push(object.entry(set, place, text)?);
         }
@@ -132,11 +130,8 @@ impl Catalogue {
     pub fn set(&self, set: &str) -> Result<Vec<&Entry>> {
         let entries: Vec<&Entry> = self.entries.iter().filter(|e| e.set == set).collect();
         if entries.is_empty() {
-            return Err(Error::input(
-                "object set",
-                format!("`{set}`"),
-                format!("one of {}", self.sets().join(", ")),
-            ));
+            let allowed = format!("one of {}", self.sets().join(", "));
+            return Err(Error::input("object set", format!("`{set}`"), allowed));
         }
         Ok(entries)
     }
@@ -149,16 +144,11 @@ impl Catalogue {
         if let Some(entry) = self.entries.iter().find(|e| e.name == name) {
             return Ok(entry);
         }
-        let close: Vec<&str> = self
-            .entries
-            .iter()
-            .map(|e| e.name.as_str())
-            .filter(|n| resemble(n, name))
-            .collect();
-        let allowed = if close.is_empty() {
-            "a name that `bubbletouch objects` lists".to_string()
-        } else {
-            format!("perhaps {}", close.join(", "))
+        let names = self.entries.iter().map(|e| e.name.as_str());
+        let close: Vec<&str> = names.filter(|n| resemble(n, name)).collect();
+        let allowed = match close.is_empty() {
+            true => "a name that `bubbletouch objects` lists".to_string(),
+            false => format!("perhaps {}", close.join(", ")),
         };
         Err(Error::input("object", format!("`{name}`"), allowed))
     }
@@ -239,22 +229,16 @@ impl WrittenObject {
 
 /// Converts an error of the TOML reader to an error that contains the line and the object.
 fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
-    let place = match error.span() {
-        Some(Range { start, .. }) => {
-            let line = line_of(text, start);
-            match object_around(text, start) {
-                Some(name) => format!("{place}, line {line}, object {name}"),
-                None => format!("{place}, line {line}"),
-            }
+    let mut place = place.to_string();
+    if let Some(Range { start, .. }) = error.span() {
+        place += &format!(", line {}", line_of(text, start));
+        if let Some(name) = object_around(text, start) {
+            place += &format!(", object {name}");
         }
-        None => place.to_string(),
-    };
+    }
     let given = error.message().replace('\n', ", ");
-    Error::input(
-        place,
-        given,
-        "[[object]] tables with name, source and parts in mm and degrees",
-    )
+    let allowed = "[[object]] tables with name, source and parts in mm and degrees";
+    Error::input(place, given, allowed)
 }
 
 /// Returns the name, in quotes, of the `[[object]]` that contains the given byte of the text.

@@ -82,18 +82,14 @@ impl Covering<'_> {
             if self.is_no_surface(&cell, places[0]) || self.is_covered(&cell) {
                 continue;
             }
-            let balls = places.iter().filter_map(|&place| self.ball_at(place));
-            let mut covers = balls.filter(|ball| self.covers(ball, &cell));
-            if let Some(mut ball) = covers.next() {
-                drop(covers);
-                ball.farthest = cell.farthest(ball.center);
-                self.balls.push(ball);
-            } else if cell.farthest(places[0].0) < self.growth {
-                drop(covers);
-                self.doubtful.push(cell);
-            } else {
-                drop(covers);
-                cells.extend(patch.halves(&cell));
+            let mut balls = places.iter().filter_map(|&place| self.ball_at(place));
+            match balls.find(|ball| self.covers(ball, &cell)) {
+                Some(ball) => self.balls.push(InnerBall {
+                    farthest: cell.farthest(ball.center),
+                    ..ball
+                }),
+                None if cell.farthest(places[0].0) < self.growth => self.doubtful.push(cell),
+                None => cells.extend(patch.halves(&cell)),
             }
         }
         Some(())

@@ -201,26 +201,21 @@ impl Hand {
     fn check(&self) -> Result<()> {
         within("hand length", self.length, 0.05..=0.5, "m")?;
         within("thumb opposition", self.opposition, 0.0..=1.2, "rad")?;
-        let names = [
+        let fingers = [
             "index finger",
             "middle finger",
             "ring finger",
             "little finger",
         ];
-        for (name, finger) in names.into_iter().zip(&self.fingers) {
-            finger.check(name)?;
+        let names = fingers.into_iter().chain(["thumb"]);
+        for (name, pose) in names.zip(self.fingers.iter().chain([&self.thumb])) {
+            let place = |joint: &str| format!("{name}, {joint}");
+            within(&place("spread"), pose.spread, -0.5..=0.5, "rad")?;
+            within(&place("knuckle"), pose.knuckle, -0.5..=1.7, "rad")?;
+            within(&place("middle joint"), pose.middle, -0.1..=2.0, "rad")?;
+            within(&place("last joint"), pose.end, -0.1..=1.5, "rad")?;
         }
-        self.thumb.check("thumb")
-    }
-}
-
-impl FingerPose {
-    fn check(&self, finger: &str) -> Result<()> {
-        let place = |joint: &str| format!("{finger}, {joint}");
-        within(&place("spread"), self.spread, -0.5..=0.5, "rad")?;
-        within(&place("knuckle"), self.knuckle, -0.5..=1.7, "rad")?;
-        within(&place("middle joint"), self.middle, -0.1..=2.0, "rad")?;
-        within(&place("last joint"), self.end, -0.1..=1.5, "rad")
+        Ok(())
     }
 }
 
@@ -257,11 +252,8 @@ fn within(place: &str, value: f64, range: std::ops::RangeInclusive<f64>, unit: &
     if range.contains(&value) {
         return Ok(());
     }
-    Err(Error::input(
-        place,
-        format!("{value} {unit}"),
-        format!("{} to {} {unit}", range.start(), range.end()),
-    ))
+    let allowed = format!("{} to {} {unit}", range.start(), range.end());
+    Err(Error::input(place, format!("{value} {unit}"), allowed))
 }
 
 #[cfg(test)]
@@ -279,11 +271,8 @@ mod tests {
         assert!((bounds.max.y - 0.189).abs() < 1e-3, "{bounds:?}");
         assert!(bounds.min.z.abs() < 1e-9, "{bounds:?}");
         for digit in digits() {
-            for (joint, diameter) in digit
-                .joints(&FingerPose::default(), 0.0)
-                .iter()
-                .zip(digit.diameters)
-            {
+            let joints = digit.joints(&FingerPose::default(), 0.0);
+            for (joint, diameter) in joints.iter().zip(digit.diameters) {
                 assert!((joint.z - 0.5 * diameter).abs() < 1e-9, "{joint}");
             }
         }
@@ -316,19 +305,16 @@ mod tests {
 
     #[test]
     fn a_joint_that_no_hand_has_is_refused() {
+        let said = |hand: Hand| hand.solid().unwrap_err().to_string();
         let mut hand = Hand::flat();
         hand.fingers[2].middle = 2.5;
-        assert_eq!(
-            hand.solid().unwrap_err().to_string(),
-            "ring finger, middle joint: 2.5 rad; -0.1 to 2 rad"
-        );
-        let mut hand = Hand::flat();
-        hand.length = f64::NAN;
-        assert!(
-            hand.solid()
-                .unwrap_err()
-                .to_string()
-                .starts_with("hand length")
-        );
+        let expected = "ring finger, middle joint: 2.5 rad; -0.1 to 2 rad";
+        assert_eq!(said(hand), expected);
+        let length = f64::NAN;
+        let hand = Hand {
+            length,
+            ..Hand::flat()
+        };
+        assert!(said(hand).starts_with("hand length"));
     }
 }

@@ -41,7 +41,7 @@ pub(crate) struct MeshBlocks {
 }
 
 /// Node with up to sixteen children.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct BlockNode {
     /// Centres and half sizes of the bounding boxes of the children's triangles, metres.
@@ -57,7 +57,7 @@ pub(crate) struct BlockNode {
 }
 
 /// Up to sixteen triangles.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct Block {
     /// Corners of the triangles, metres.
@@ -94,8 +94,6 @@ pub(crate) const INNER_SIDES: u32 = 6;
 /// Sine of the angle between two triangles from which their common edge counts as convex or concave. If smaller, the rounding of the evaluation may decide; if
 /// larger, more pairs are evaluated needlessly.
 const BENT: f64 = 1e-2;
-
-const UNUSED: Lane = [0.0; LANES];
 
 impl MeshBlocks {
     /// Builds the blocks of triangles with their contact data, in equal order; at least one triangle.
@@ -137,14 +135,7 @@ impl Builder<'_> {
     /// Adds the node of the triangles `order[range]` and everything below it; returns its index.
     fn node(&mut self, range: Range<usize>) -> u32 {
         let number = self.built.nodes.len();
-        let mut node = BlockNode {
-            center: [UNUSED; 3],
-            half: [UNUSED; 3],
-            axis: [UNUSED; 3],
-            spread: UNUSED,
-            children: [0; LANES],
-            used: 0,
-        };
+        let mut node = BlockNode::default();
         self.built.nodes.push(node.clone());
         for (lane, part) in self.parts(range).into_iter().enumerate() {
             self.summarise(&mut node, lane, part.clone());
@@ -174,9 +165,8 @@ impl Builder<'_> {
                 break;
             }
             let cut = part.start + part.len().div_ceil(2).next_multiple_of(full);
-            let middles = self.order[part.clone()]
-                .iter()
-                .map(|&place| self.middles[place as usize]);
+            let places = self.order[part.clone()].iter();
+            let middles = places.map(|&place| self.middles[place as usize]);
             let axis = Aabb::around_points(middles).size().max_position();
             let middles = &self.middles;
             self.order[part.clone()].select_nth_unstable_by(cut - part.start, |&a, &b| {
@@ -213,12 +203,8 @@ impl Builder<'_> {
     /// Adds the block of the triangles `order[range]`; returns its index.
     fn block(&mut self, range: Range<usize>) -> u32 {
         let mut block = Block {
-            corners: [[UNUSED; 3]; 3],
-            normal: [UNUSED; 3],
-            spread: UNUSED,
-            sides: [0; LANES],
             first: self.built.triangles.len() as u32,
-            used: 0,
+            ..Block::default()
         };
         for (lane, &place) in self.order[range].iter().enumerate() {
             let face = self.faces[place as usize];

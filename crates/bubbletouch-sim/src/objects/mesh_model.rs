@@ -65,20 +65,7 @@ const UNKNOWN: f64 = 2.0;
 impl MeshModel {
     /// Prepares a mesh for contacts; takes a few microseconds per triangle.
     pub fn new(mesh: TriangleMesh) -> Self {
-        let rounding = 0.0;
-        let bvh = Bvh::new(&mesh);
-        let faces = contact_faces(&mesh, &Welded::new(&mesh));
-        let triangles: Vec<Triangle> = (0..faces.len()).map(|t| mesh.triangle(t)).collect();
-        let blocks = MeshBlocks::new(&triangles, &faces);
-        Self {
-            data: Arc::new(Data {
-                mesh,
-                rounding,
-                bvh,
-                blocks,
-                features: OnceLock::new(),
-            }),
-        }
+        Self::prepared(mesh, 0.0)
     }
 
     /// Prepares a rounded mesh for contacts: the set of all points within `rounding` metres of a triangle.
@@ -90,11 +77,22 @@ impl MeshModel {
             let allowed = "a finite number of metres, zero or more";
             return Err(Error::input("rounding", rounding, allowed));
         }
-        let Self { data } = Self::new(mesh);
-        let data = Arc::into_inner(data).expect("a new model has one owner");
-        Ok(Self {
-            data: Arc::new(Data { rounding, ..data }),
-        })
+        Ok(Self::prepared(mesh, rounding))
+    }
+
+    fn prepared(mesh: TriangleMesh, rounding: f64) -> Self {
+        let faces = contact_faces(&mesh, &Welded::new(&mesh));
+        let triangles: Vec<Triangle> = (0..faces.len()).map(|t| mesh.triangle(t)).collect();
+        let data = Data {
+            rounding,
+            bvh: Bvh::new(&mesh),
+            blocks: MeshBlocks::new(&triangles, &faces),
+            mesh,
+            features: OnceLock::new(),
+        };
+        Self {
+            data: Arc::new(data),
+        }
     }
 
     /// Creates a capsule about the origin along z, a rounded line segment. `length` is the distance between the centres of its hemispheres, zero or more,
@@ -239,14 +237,11 @@ impl ContactFace {
             let along = corners[(side + 1) % 3] - corners[side];
             along.cross(self.normal).normalize_or_zero()
         });
-        let of_edges =
-            [0, 1, 2].map(
-                |side| match (self.has_edge(side), self.across[side] == DVec3::ZERO) {
-                    (false, _) => 0.0,
-                    (true, true) => UNKNOWN,
-                    (true, false) => (self.normal + self.across[side]).length(),
-                },
-            );
+        let of_edges = [0, 1, 2].map(|side| match self.across[side] {
+            _ if !self.has_edge(side) => 0.0,
+            across if across == DVec3::ZERO => UNKNOWN,
+            across => (self.normal + across).length(),
+        });
         let edges = of_edges.into_iter().fold(0.0, f64::max);
         let own_corners = (0..3).filter(|&corner| self.owns(corner));
         let corners = own_corners.fold(0.0, |spread, corner| around[corner].max(spread));

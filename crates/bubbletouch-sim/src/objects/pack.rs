@@ -27,38 +27,32 @@ use crate::error::{Error, Result};
 /// If the tolerance is not positive, or is so small that a part would need more than [`MAX_SPHERES`].
 pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
     if !(tolerance.is_finite() && tolerance > 0.0) {
+        let allowed = "a finite positive length";
         return Err(Error::input(
             "surface error",
             format!("{tolerance} m"),
-            "a finite positive length",
+            allowed,
         ));
     }
     // The margin for rounding errors keeps the stated tolerance exact.
     let fit = Fit::within(tolerance * (1.0 - 1e-6));
-    if !solid.cuts().is_empty() {
-        return pack_less(solid, tolerance, fit);
-    }
-    let mut kept = Vec::new();
-    for (index, part) in solid.parts().iter().enumerate() {
-        let packed = part.resolves(fit).then(|| part.pack(fit));
-        let Some(spheres) = packed.filter(|spheres| spheres.len() <= MAX_SPHERES) else {
-            return Err(Error::input(
-                "surface error",
-                format!(
-                    "{:e} mm, which takes more than {MAX_SPHERES} spheres for part {}",
-                    1e3 * tolerance,
-                    index + 1
-                ),
-                "a larger surface error",
-            ));
-        };
-        kept.extend(
-            spheres
-                .into_iter()
-                .filter(|s| !is_buried(s, index, solid, fit)),
-        );
-    }
-    Ok(SphereUnion::new(kept)?.representing(Represented::Solid(solid.clone())))
+    let too_fine = |what: &str, allowed: &str| {
+        let tolerance = 1e3 * tolerance;
+        let given =
+            format!("{tolerance:e} mm, which takes more than {MAX_SPHERES} spheres for {what}");
+        Error::input("surface error", given, allowed)
+    };
+    let spheres = match solid.cuts().is_empty() {
+        true => pack_parts(solid, fit)
+            .map_err(|part| too_fine(&format!("part {}", part + 1), "a larger surface error"))?,
+        false => pack_difference(solid, fit).ok_or_else(|| {
+            too_fine(
+                "a solid less other shapes, or walls too thin for it",
+                "a larger surface error, or subtracted shapes that leave thicker walls",
+            )
+        })?,
+    };
+    Ok(SphereUnion::new(spheres)?.representing(Represented::Solid(solid.clone())))
 }
 
 impl Solid {
@@ -71,21 +65,16 @@ impl Solid {
     }
 }
 
-/// Returns spheres that approximate a solid from which shapes are subtracted.
-fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
-    match pack_difference(solid, fit) {
-        Some(spheres) => {
-            Ok(SphereUnion::new(spheres)?.representing(Represented::Solid(solid.clone())))
-        }
-        None => Err(Error::input(
-            "surface error",
-            format!(
-                "{:e} mm, which takes more than {MAX_SPHERES} spheres for a solid less other shapes, or walls too thin for it",
-                1e3 * tolerance
-            ),
-            "a larger surface error, or subtracted shapes that leave thicker walls",
-        )),
+/// Returns the spheres of all parts without buried ones, or the index of a part that needs more than [`MAX_SPHERES`].
+fn pack_parts(solid: &Solid, fit: Fit) -> std::result::Result<Vec<Sphere>, usize> {
+    let mut kept = Vec::new();
+    for (index, part) in solid.parts().iter().enumerate() {
+        let spheres = part.resolves(fit).then(|| part.pack(fit));
+        let spheres = spheres.filter(|spheres| spheres.len() <= MAX_SPHERES);
+        let spheres = spheres.ok_or(index)?.into_iter();
+        kept.extend(spheres.filter(|s| !is_buried(s, index, solid, fit)));
     }
+    Ok(kept)
 }
 
 /// Returns whether a sphere is not needed, because the whole surface that it covers lies inside another part.

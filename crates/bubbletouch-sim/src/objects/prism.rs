@@ -184,14 +184,7 @@ mod tests {
 
     #[test]
     fn the_patches_of_a_wall_and_of_a_face_end_where_the_wall_and_the_outline_do() {
-        let corners = [
-            [0.0, 0.0],
-            [3.0, 0.0],
-            [3.0, 1.0],
-            [1.0, 1.0],
-            [1.0, 2.0],
-            [0.0, 2.0],
-        ];
+        let corners = [[0., 0.], [3., 0.], [3., 1.], [1., 1.], [1., 2.], [0., 2.]];
         let prism = Prism::new(&corners.map(DVec2::from), 0.5);
         let patches = prism.patches();
         let middle = |patch: &SurfacePatch| patch.at(0.5 * (patch.low + patch.high));

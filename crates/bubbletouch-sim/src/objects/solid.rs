@@ -68,9 +68,10 @@ impl Part {
     pub fn new(shape: Shape, pose: Pose) -> Result<Self> {
         shape.check()?;
         if !(pose.translation.is_finite() && pose.rotation.is_finite()) {
+            let given = format!("{} and {}", pose.translation, pose.rotation);
             return Err(Error::input(
                 "position and rotation",
-                format!("{} and {}", pose.translation, pose.rotation),
+                given,
                 "finite numbers",
             ));
         }
@@ -166,16 +167,11 @@ impl Solid {
     pub fn less(self, cuts: Vec<Part>) -> Result<Self> {
         let seam = SEAM * self.bounds().size().length();
         let solid = Self { cuts, seam, ..self };
-        if solid
-            .surface_points(1e-2 * solid.bounds().size().length())
-            .is_empty()
-        {
+        let spacing = 1e-2 * solid.bounds().size().length();
+        if solid.surface_points(spacing).is_empty() {
             let given = "shapes that take away all parts";
-            return Err(Error::input(
-                "subtract",
-                given,
-                "shapes that leave something",
-            ));
+            let allowed = "shapes that leave something";
+            return Err(Error::input("subtract", given, allowed));
         }
         Ok(solid)
     }
@@ -218,12 +214,8 @@ impl Solid {
             supports.fold(f64::NEG_INFINITY, f64::max)
         };
         Aabb {
-            min: -DVec3::new(
-                support(DVec3::NEG_X),
-                support(DVec3::NEG_Y),
-                support(DVec3::NEG_Z),
-            ),
-            max: DVec3::new(support(DVec3::X), support(DVec3::Y), support(DVec3::Z)),
+            min: -DVec3::from_array(DVec3::AXES.map(|axis| support(-axis))),
+            max: DVec3::from_array(DVec3::AXES.map(support)),
         }
     }
 

@@ -211,12 +211,11 @@ mod tests {
     fn every_sphere_is_in_one_cluster_and_inside_its_ball() {
         let mut rng = Seed::new(1).named("clusters").rng();
         for n in [1, 16, 17, 1000] {
-            let spheres: Vec<Sphere> = (0..n)
-                .map(|_| Sphere {
-                    center: DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0))),
-                    radius: rng.gen_range(0.01..0.2),
-                })
-                .collect();
+            let mut sphere = || Sphere {
+                center: DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0))),
+                radius: rng.gen_range(0.01..0.2),
+            };
+            let spheres: Vec<Sphere> = (0..n).map(|_| sphere()).collect();
             let clusters = SphereClusters::from_spheres(&spheres);
             let is_inside = |inner: &Sphere, outer: &Sphere| {
                 inner.center.distance(outer.center) + inner.radius <= outer.radius * (1.0 + 1e-12)
@@ -233,11 +232,8 @@ mod tests {
                 assert!(its.iter().all(|sphere| is_inside(sphere, &ball)));
                 found.extend(its);
             }
-            assert!(
-                found
-                    .iter()
-                    .all(|sphere| is_inside(sphere, &clusters.ball()))
-            );
+            let all = clusters.ball();
+            assert!(found.iter().all(|sphere| is_inside(sphere, &all)));
             let bits = |s: &Sphere| (s.center.to_array().map(f64::to_bits), s.radius.to_bits());
             let mut pairs = [spheres, found].map(|all| all.iter().map(bits).collect::<Vec<_>>());
             pairs.iter_mut().for_each(|all| all.sort_unstable());

@@ -40,11 +40,8 @@ pub fn read_spheres(
         }
     }
     if spheres.is_empty() {
-        return Err(Error::input(
-            place,
-            "no spheres",
-            "rows of x,y,z,r in metres",
-        ));
+        let allowed = "rows of x,y,z,r in metres";
+        return Err(Error::input(place, "no spheres", allowed));
     }
     let union = SphereUnion::new(spheres)?;
     let Some(unit) = unit else {
@@ -67,11 +64,8 @@ pub fn read_spheres(
 pub fn write_spheres(union: &SphereUnion, mut sink: impl Write) -> io::Result<()> {
     writeln!(sink, "{}", COLUMNS.join(","))?;
     for Sphere { center, radius } in union.spheres() {
-        writeln!(
-            sink,
-            "{:.16e},{:.16e},{:.16e},{:.16e}",
-            center.x, center.y, center.z, radius
-        )?;
+        let DVec3 { x, y, z } = center;
+        writeln!(sink, "{x:.16e},{y:.16e},{z:.16e},{radius:.16e}")?;
     }
     Ok(())
 }
@@ -84,26 +78,20 @@ struct Row<'a> {
 impl Row<'_> {
     /// Returns whether the first row contains no number and is therefore a header.
     fn is_header(&self) -> bool {
-        self.record
-            .iter()
-            .all(|field| field.parse::<f64>().is_err())
+        let mut fields = self.record.iter();
+        fields.all(|field| field.parse::<f64>().is_err())
     }
 
     /// Returns the indices of the columns x, y, z, r, and the total number of columns.
     fn header(&self) -> Result<([usize; 4], usize)> {
         let mut columns = [0; 4];
         for (column, name) in columns.iter_mut().zip(COLUMNS) {
-            let found = self
-                .record
-                .iter()
-                .position(|field| field.eq_ignore_ascii_case(name));
+            let mut fields = self.record.iter();
+            let found = fields.position(|field| field.eq_ignore_ascii_case(name));
             *column = found.ok_or_else(|| {
                 let header = self.record.iter().collect::<Vec<_>>().join(",");
-                Error::input(
-                    &self.place,
-                    format!("header `{header}` without a column {name}"),
-                    "columns x,y,z,r in metres",
-                )
+                let given = format!("header `{header}` without a column {name}");
+                Error::input(&self.place, given, "columns x,y,z,r in metres")
             })?;
         }
         Ok((columns, self.record.len()))
@@ -114,11 +102,8 @@ impl Row<'_> {
         let [x, y, z, radius] = [0, 1, 2, 3].map(|k| self.number(columns[k], COLUMNS[k]));
         let (center, radius) = (DVec3::new(x?, y?, z?), radius?);
         if radius <= 0.0 {
-            return Err(Error::input(
-                format!("{}, column r", self.place),
-                radius,
-                "a positive radius in metres",
-            ));
+            let place = format!("{}, column r", self.place);
+            return Err(Error::input(place, radius, "a positive radius in metres"));
         }
         Ok(Sphere { center, radius })
     }

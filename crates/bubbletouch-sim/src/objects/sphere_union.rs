@@ -1,12 +1,31 @@
-//! Unions of rigid spheres.
+//! Rigid spheres and their unions.
 
 use super::sphere_mass::center_of_spheres;
-use super::{Solid, Sphere, SphereClusters};
+use super::{Solid, SphereClusters};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use crate::mesh::TriangleMesh;
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
+
+/// Rigid sphere, given by centre and radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Centre of the sphere, metres.
+    pub center: DVec3,
+    /// Radius of the sphere, metres, positive.
+    pub radius: f64,
+}
+
+impl Sphere {
+    /// Returns the bounding box of the sphere, metres.
+    pub fn bounds(&self) -> Aabb {
+        Aabb {
+            min: self.center - DVec3::splat(self.radius),
+            max: self.center + DVec3::splat(self.radius),
+        }
+    }
+}
 
 /// Union of rigid spheres in the frame of the object, metres. Clones share their data.
 ///
@@ -49,28 +68,21 @@ impl SphereUnion {
     /// If a sphere violates the invariant; the error names the first one.
     pub fn new(spheres: Vec<Sphere>) -> Result<Self> {
         if spheres.is_empty() {
-            return Err(Error::input(
-                "sphere union",
-                "no spheres",
-                "at least one sphere",
-            ));
+            let allowed = "at least one sphere";
+            return Err(Error::input("sphere union", "no spheres", allowed));
         }
         for (index, sphere) in spheres.iter().enumerate() {
-            let place = || format!("sphere {}", index + 1);
-            if !sphere.center.is_finite() {
-                return Err(Error::input(
-                    place(),
-                    format!("centre {}", sphere.center),
-                    "finite coordinates in metres",
-                ));
-            }
-            if !(sphere.radius.is_finite() && sphere.radius > 0.0) {
-                return Err(Error::input(
-                    place(),
-                    format!("radius {}", sphere.radius),
-                    "a finite positive radius in metres",
-                ));
-            }
+            let Sphere { center, radius } = sphere;
+            let (given, allowed) = if !center.is_finite() {
+                (format!("centre {center}"), "finite coordinates in metres")
+            } else if !(radius.is_finite() && *radius > 0.0) {
+                let allowed = "a finite positive radius in metres";
+                (format!("radius {radius}"), allowed)
+            } else {
+                continue;
+            };
+            let place = format!("sphere {}", index + 1);
+            return Err(Error::input(place, given, allowed));
         }
         Ok(Self::from_spheres(spheres, None))
     }
@@ -88,10 +100,8 @@ impl SphereUnion {
 
     /// Returns the union as an approximation of a body in the same frame, whose centre of mass it then has.
     pub fn representing(&self, body: Represented) -> Self {
-        Self::from_spheres(
-            self.spheres().to_vec(),
-            Some((Arc::new(body), Pose::IDENTITY)),
-        )
+        let body = Some((Arc::new(body), Pose::IDENTITY));
+        Self::from_spheres(self.spheres().to_vec(), body)
     }
 
     /// Returns the centre of mass of the homogeneous body that the spheres represent, or of their union as a homogeneous solid, metres; computed on first use.

@@ -16,11 +16,8 @@ use glam::DVec3;
 pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
     let centers = distinct_places(vertices);
     if centers.len() < 2 {
-        return Err(Error::input(
-            place,
-            "all vertices at one place",
-            "at least two vertices apart, since the radius is twice their distance",
-        ));
+        let allowed = "at least two vertices apart, since the radius is twice their distance";
+        return Err(Error::input(place, "all vertices at one place", allowed));
     }
     let distances = nearest_distances(&centers);
     let radius = 2.0 * distances.iter().sum::<f64>() / distances.len() as f64;
@@ -63,33 +60,24 @@ mod tests {
             let mut rng = Seed::new(1).named("neighbours").numbered(case).rng();
             let n = rng.gen_range(2..400);
             let stretch = DVec3::new(1.0, 10f64.powi(-(case as i32 % 4)), (case % 3) as f64);
-            let points: Vec<DVec3> = (0..n)
-                .map(|_| stretch * DVec3::new(rng.r#gen(), rng.r#gen::<f64>().powi(6), rng.r#gen()))
-                .collect();
+            let mut point = || DVec3::new(rng.r#gen(), rng.r#gen::<f64>().powi(6), rng.r#gen());
+            let points: Vec<DVec3> = (0..n).map(|_| stretch * point()).collect();
             let brute = |i: usize| {
                 let others = (0..n).filter(|&j| j != i);
-                others
-                    .map(|j| (points[j] - points[i]).length())
-                    .fold(f64::INFINITY, f64::min)
+                let distances = others.map(|j| (points[j] - points[i]).length());
+                distances.fold(f64::INFINITY, f64::min)
             };
             let expected: Vec<f64> = (0..n).map(brute).collect();
-            assert_eq!(
-                nearest_distances(&points),
-                expected,
-                "case {case}, {n} points"
-            );
+            assert_eq!(nearest_distances(&points), expected, "case {case}");
         }
     }
 
     #[test]
     fn corners_stored_twice_change_nothing() {
-        let once: Vec<DVec3> = (0..20)
-            .map(|i| DVec3::new(f64::from(i * i), 1.0, -0.0))
-            .collect();
-        let twice: Vec<DVec3> = once
-            .iter()
-            .flat_map(|&v| [v, DVec3::new(v.x, 1.0, 0.0)])
-            .collect();
+        let once = (0..20).map(|i| DVec3::new(f64::from(i * i), 1.0, -0.0));
+        let once: Vec<DVec3> = once.collect();
+        let twice = once.iter().flat_map(|&v| [v, DVec3::new(v.x, 1.0, 0.0)]);
+        let twice: Vec<DVec3> = twice.collect();
         let union = |v: &[DVec3]| vertex_spheres("test", v).unwrap();
         assert_eq!(union(&once), union(&twice));
     }
@@ -105,12 +93,8 @@ mod tests {
 
     #[test]
     fn one_place_has_no_radius() {
-        let error = vertex_spheres("dot.ply", &[DVec3::ONE; 5])
-            .unwrap_err()
-            .to_string();
-        assert!(
-            error.starts_with("dot.ply: all vertices at one place"),
-            "{error}"
-        );
+        let error = vertex_spheres("dot.ply", &[DVec3::ONE; 5]).unwrap_err();
+        let said = "dot.ply: all vertices at one place";
+        assert!(error.to_string().starts_with(said), "{error}");
     }
 }

@@ -96,13 +96,14 @@ const NOT_HERE: u32 = u32::MAX;
 
 impl<'a> Covering<'a> {
     fn new(target: &'a Target<'a>) -> Result<Self> {
-        let sampling = sample(target)?;
+        let mut sampling = sample(target)?;
+        let samples = std::mem::take(&mut sampling.samples);
         Ok(Self {
             target,
-            tree: SampleTree::new(&sampling.samples),
             chosen: Vec::new(),
-            counts: vec![0; sampling.samples.len()],
-            row_of: vec![NOT_HERE; sampling.samples.len()],
+            counts: vec![0; samples.len()],
+            row_of: vec![NOT_HERE; samples.len()],
+            tree: SampleTree::new(samples, target.e),
             sampling,
         })
     }
@@ -117,7 +118,7 @@ impl<'a> Covering<'a> {
 
     /// Optimises the balls of all cells, one cell after another, in one pass.
     fn pass(&mut self, pass: &Pass, number: u64, watch: &mut dyn FnMut(f64)) {
-        let positions: Vec<DVec3> = self.sampling.samples.iter().map(|s| s.position).collect();
+        let positions: Vec<DVec3> = self.tree.samples.iter().map(|s| s.position).collect();
         let cells = Cells::new(&positions, CELL, pass.cut);
         let mut samples_in = vec![Vec::new(); cells.n_cells()];
         for (index, &position) in positions.iter().enumerate() {
@@ -165,28 +166,21 @@ impl<'a> Covering<'a> {
             }
         };
         for ball in &balls[..n_freed] {
-            self.tree
-                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
-                    self.counts[s] -= 1
-                });
+            self.tree.each_covered(ball, |s| self.counts[s] -= 1);
         }
         for ball in &balls[..n_freed] {
-            self.tree
-                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
-                    needs(s, &self.counts)
-                });
+            self.tree.each_covered(ball, |s| needs(s, &self.counts));
         }
         samples.iter().for_each(|&s| needs(s, &self.counts));
         let mut rows_of = Lists::new();
         let mut rows = Vec::new();
         for ball in &balls {
             rows.clear();
-            self.tree
-                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
-                    if row_of[s] != NOT_HERE {
-                        rows.push(row_of[s]);
-                    }
-                });
+            self.tree.each_covered(ball, |s| {
+                if row_of[s] != NOT_HERE {
+                    rows.push(row_of[s]);
+                }
+            });
             rows_of.push(rows.iter().copied());
         }
         sample_of.iter().for_each(|&s| row_of[s] = NOT_HERE);
@@ -195,14 +189,9 @@ impl<'a> Covering<'a> {
         cover.complete();
         let steps_a_ball = pass.steps * self.sampling.effort.steps_a_ball;
         cover.improve((steps_a_ball * cover.chosen().len() as f64) as usize, rng);
-        let mut chosen: Vec<u32> = cover.chosen().to_vec();
-        chosen.sort_unstable();
-        for set in chosen {
-            let ball = balls[set as usize];
-            self.tree
-                .each_covered(&self.sampling.samples, &ball, self.target.e, |s| {
-                    self.counts[s] += 1
-                });
+        for set in cover.sorted() {
+            let ball = balls[set];
+            self.tree.each_covered(&ball, |s| self.counts[s] += 1);
             self.chosen.push(ball);
         }
     }
@@ -232,15 +221,12 @@ impl<'a> Covering<'a> {
     /// Adds the gaps to the samples, and balls that cover the gaps to the candidates.
     fn sample_gaps(&mut self, gaps: &[Sample]) {
         self.sampling.balls.extend(self.balls_at(gaps));
-        self.sampling.samples.extend_from_slice(gaps);
-        self.tree = SampleTree::new(&self.sampling.samples);
-        self.counts = vec![0; self.sampling.samples.len()];
-        self.row_of = vec![NOT_HERE; self.sampling.samples.len()];
+        let samples = [&self.tree.samples[..], gaps].concat();
+        self.counts = vec![0; samples.len()];
+        self.row_of = vec![NOT_HERE; samples.len()];
+        self.tree = SampleTree::new(samples, self.target.e);
         for ball in &self.chosen {
-            self.tree
-                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
-                    self.counts[s] += 1
-                });
+            self.tree.each_covered(ball, |s| self.counts[s] += 1);
         }
     }
 
@@ -262,18 +248,17 @@ impl<'a> Covering<'a> {
         if places.is_empty() {
             return;
         }
-        let (gaps, tree) = (&places, SampleTree::new(&places));
+        let n_gaps = places.len();
+        let tree = SampleTree::new(places, target.e);
         let mut rows_of = Lists::new();
         for ball in &balls {
             let mut rows = Vec::new();
-            tree.each_covered(gaps, ball, self.target.e, |s| rows.push(s as u32));
+            tree.each_covered(ball, |s| rows.push(s as u32));
             rows_of.push(rows);
         }
-        let mut cover = Cover::new(&rows_of, gaps.len());
+        let mut cover = Cover::new(&rows_of, n_gaps);
         cover.complete();
-        let mut chosen = cover.chosen().to_vec();
-        chosen.sort_unstable();
-        self.chosen
-            .extend(chosen.into_iter().map(|set| balls[set as usize]));
+        let chosen = cover.sorted().into_iter();
+        self.chosen.extend(chosen.map(|set| balls[set]));
     }
 }

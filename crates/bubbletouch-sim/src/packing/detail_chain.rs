@@ -23,11 +23,9 @@ impl DetailChain {
         let mut tolerances = tolerances.to_vec();
         tolerances.sort_by(|a, b| b.total_cmp(a));
         tolerances.dedup();
-        let packings: Result<Vec<Packing>> = tolerances
-            .par_iter()
-            .map(|&tolerance| pack_mesh(surface, body, tolerance))
-            .collect();
-        Self::new(packings?)
+        let tolerances = tolerances.into_par_iter();
+        let packings = tolerances.map(|tolerance| pack_mesh(surface, body, tolerance));
+        Self::new(packings.collect::<Result<_>>()?)
     }
 
     /// Creates a chain from packings of one mesh at different tolerances, in any order.
@@ -39,11 +37,9 @@ impl DetailChain {
         let is_twice = |pair: &[Packing]| pair[0].tolerance == pair[1].tolerance;
         if packings.is_empty() || packings.windows(2).any(is_twice) {
             let tolerances = packings.iter().map(|packing| packing.tolerance);
-            return Err(Error::input(
-                "levels of detail",
-                format!("tolerances {:?} m", tolerances.collect::<Vec<_>>()),
-                "at least one, each once",
-            ));
+            let given = format!("tolerances {:?} m", tolerances.collect::<Vec<_>>());
+            let allowed = "at least one, each once";
+            return Err(Error::input("levels of detail", given, allowed));
         }
         Ok(Self { packings })
     }
@@ -58,20 +54,12 @@ impl DetailChain {
     /// # Errors
     /// If the tolerance of the finest packing exceeds `tolerance`.
     pub fn coarsest_within(&self, tolerance: f64) -> Result<&Packing> {
-        let fitting = self
-            .packings
-            .iter()
-            .find(|packing| packing.tolerance <= tolerance);
+        let mut packings = self.packings.iter();
+        let fitting = packings.find(|packing| packing.tolerance <= tolerance);
         fitting.ok_or_else(|| {
-            let finest = self
-                .packings
-                .last()
-                .map_or(f64::NAN, |packing| packing.tolerance);
-            Error::input(
-                "tolerance",
-                format!("{tolerance} m"),
-                format!("at least {finest} m, the finest level of detail"),
-            )
+            let finest = self.packings[self.packings.len() - 1].tolerance;
+            let allowed = format!("at least {finest} m, the finest level of detail");
+            Error::input("tolerance", format!("{tolerance} m"), allowed)
         })
     }
 }

@@ -42,14 +42,11 @@ pub fn pack_mesh_watched(
     let target = Target::new(surface, body, tolerance)?;
     let (balls, n_unproved) = cover_surface(&target, watch)?;
     if n_unproved > 0 {
-        return Err(Error::input(
-            MESH,
-            format!(
-                "{n_unproved} places that are not proved to be within {} mm of the spheres",
-                1e3 * tolerance
-            ),
-            "a larger tolerance",
-        ));
+        let given = format!(
+            "{n_unproved} places that are not proved to be within {} mm of the spheres",
+            1e3 * tolerance
+        );
+        return Err(Error::input(MESH, given, "a larger tolerance"));
     }
     let spheres = balls.iter().map(|ball| ball.sphere(target.e)).collect();
     Ok(Packing {

@@ -82,16 +82,14 @@ pub(super) fn sample(target: &Target) -> Result<Sampling> {
     let demand = Demand::new(target);
     let n_spheres = demand.bent.min(demand.flat);
     if n_spheres > MAX_SPHERES as f64 {
-        return Err(Error::input(
-            "tolerance",
-            format!(
-                "{:.3e} mm, which takes about {} spheres for {:.1} cm² of surface",
-                1e3 * target.e,
-                short_number(n_spheres),
-                1e4 * surface.mesh().area()
-            ),
-            format!("a larger one, of at most {MAX_SPHERES} spheres"),
-        ));
+        let given = format!(
+            "{:.3e} mm, which takes about {} spheres for {:.1} cm² of surface",
+            1e3 * target.e,
+            short_number(n_spheres),
+            1e4 * surface.mesh().area()
+        );
+        let allowed = format!("a larger one, of at most {MAX_SPHERES} spheres");
+        return Err(Error::input("tolerance", given, allowed));
     }
     let effort = Effort::for_about(&demand);
     let mut sampler = Sampler {
@@ -266,9 +264,12 @@ impl<'a> Sizes<'a> {
     }
 }
 
-/// Search tree over the samples.
+/// Samples with a search tree.
 pub(super) struct SampleTree {
+    pub samples: Vec<Sample>,
     tree: BoxTree,
+    /// Tolerance with which balls cover samples, metres.
+    e: f64,
 }
 
 /// Factor of the margin around a sample that a ball must also cover. The margin is this factor times the sample's radius times the slope of the ball's
@@ -276,39 +277,29 @@ pub(super) struct SampleTree {
 const MARGIN: f64 = 0.7;
 
 impl SampleTree {
-    /// Builds the search tree over the samples; there must be at least one.
-    pub fn new(samples: &[Sample]) -> Self {
+    /// Builds the search tree over the samples; there must be at least one. `e` is the tolerance, metres.
+    pub fn new(samples: Vec<Sample>, e: f64) -> Self {
         let boxes = samples.iter().map(|sample| Aabb {
             min: sample.position,
             max: sample.position,
         });
-        Self {
-            tree: BoxTree::new(boxes.collect()).expect("there are samples"),
-        }
+        let tree = BoxTree::new(boxes.collect()).expect("there are samples");
+        Self { samples, tree, e }
     }
 
-    /// Calls `visit` with the index of each sample that a ball covers with the tolerance `e`.
-    pub fn each_covered(
-        &self,
-        samples: &[Sample],
-        ball: &Ball,
-        e: f64,
-        mut visit: impl FnMut(usize),
-    ) {
-        let reach = ball.reach(e);
-        let slope = MARGIN * ball.half_width(e) / reach;
-        self.tree.search(
-            reach * reach,
-            |bounds| bounds.distance_squared(ball.center),
-            |places, limit| {
-                for &number in &self.tree.order()[places] {
-                    let Sample { position, radius } = samples[number as usize];
-                    if position.distance(ball.center) <= reach - slope * radius {
-                        visit(number as usize);
-                    }
+    /// Calls `visit` with the index of each sample that a ball covers.
+    pub fn each_covered(&self, ball: &Ball, mut visit: impl FnMut(usize)) {
+        let reach = ball.reach(self.e);
+        let slope = MARGIN * ball.half_width(self.e) / reach;
+        let bound = |bounds: &Aabb| bounds.distance_squared(ball.center);
+        self.tree.search(reach * reach, bound, |places, limit| {
+            for &number in &self.tree.order()[places] {
+                let Sample { position, radius } = self.samples[number as usize];
+                if position.distance(ball.center) <= reach - slope * radius {
+                    visit(number as usize);
                 }
-                limit
-            },
-        );
+            }
+            limit
+        });
     }
 }

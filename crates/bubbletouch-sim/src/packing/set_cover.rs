@@ -141,6 +141,14 @@ impl<'a> Cover<'a> {
         &self.chosen.members
     }
 
+    /// Returns the chosen sets, ascending.
+    pub fn sorted(self) -> Vec<usize> {
+        let chosen = self.chosen.members.into_iter();
+        let mut sets: Vec<usize> = chosen.map(|set| set as usize).collect();
+        sets.sort_unstable();
+        sets
+    }
+
     /// Adds a set to the chosen sets.
     pub fn add(&mut self, set: usize) {
         self.chosen.insert(set);
@@ -306,11 +314,8 @@ mod tests {
     }
 
     fn covers(rows_of: &Lists, sets: &[u32], n_rows: usize) -> bool {
-        let holds = |row: u32| {
-            sets.iter()
-                .any(|&set| rows_of.list(set as usize).contains(&row))
-        };
-        (0..n_rows as u32).all(holds)
+        let holds = |set: u32, row: u32| rows_of.list(set as usize).contains(&row);
+        (0..n_rows as u32).all(|row| sets.iter().any(|&set| holds(set, row)))
     }
 
     #[test]
@@ -318,13 +323,12 @@ mod tests {
         for case in 0..30 {
             let (n_sets, n_rows) = (10, 24);
             let rows_of = random_sets(n_sets, n_rows, case);
-            let choices = 0..1_u32 << n_sets;
-            let sets_in =
-                |choice: u32| (0..n_sets as u32).filter(move |set| choice >> set & 1 == 1);
-            let fewest = choices
-                .filter(|&choice| covers(&rows_of, &sets_in(choice).collect::<Vec<_>>(), n_rows))
-                .map(u32::count_ones)
-                .min();
+            let is_cover = |choice: &u32| {
+                let sets = (0..n_sets as u32).filter(|set| choice >> set & 1 == 1);
+                covers(&rows_of, &sets.collect::<Vec<_>>(), n_rows)
+            };
+            let choices = (0..1_u32 << n_sets).filter(is_cover);
+            let fewest = choices.map(u32::count_ones).min();
             let mut cover = Cover::new(&rows_of, n_rows);
             cover.complete();
             assert!(covers(&rows_of, cover.chosen(), n_rows), "case {case}");
@@ -343,9 +347,7 @@ mod tests {
         rows_of.push([3, 4, 5]);
         let mut cover = Cover::new(&rows_of, 6);
         cover.complete();
-        let mut chosen = cover.chosen().to_vec();
-        chosen.sort_unstable();
-        assert_eq!(chosen, [1, 2]);
+        assert_eq!(cover.sorted(), [1, 2]);
     }
 
     #[test]

@@ -33,11 +33,8 @@ impl<'a> Target<'a> {
     /// Creates the target and checks that the mesh meets the requirements of the body.
     pub fn new(surface: &'a Surface, body: Body, tolerance: f64) -> Result<Self> {
         if !(tolerance.is_finite() && tolerance > 0.0) {
-            return Err(Error::input(
-                "tolerance",
-                format!("{tolerance} m"),
-                "a finite positive length",
-            ));
+            let allowed = "a finite positive length";
+            return Err(Error::input("tolerance", format!("{tolerance} m"), allowed));
         }
         if surface.mesh().area() <= 0.0 {
             return Err(Error::input(MESH, "no face with an area", "at least one"));
@@ -89,19 +86,15 @@ fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {
     let welded = Welded::new(mesh);
     let n_unbalanced = welded.n_unbalanced();
     if n_unbalanced > 0 {
-        return Err(Error::input(
-            MESH,
-            not_closed(&Hole::all(mesh, &welded), n_unbalanced),
-            "a closed mesh, or its surface packed as a sheet",
-        ));
+        let given = not_closed(&Hole::all(mesh, &welded), n_unbalanced);
+        let allowed = "a closed mesh, or its surface packed as a sheet";
+        return Err(Error::input(MESH, given, allowed));
     }
     let (volume, _) = mesh.volume_and_centroid();
     if volume <= 0.0 {
-        return Err(Error::input(
-            MESH,
-            format!("an enclosed volume of {:.3} cm³", 1e6 * volume),
-            "faces counter-clockwise seen from outside, around a positive volume",
-        ));
+        let given = format!("an enclosed volume of {:.3} cm³", 1e6 * volume);
+        let allowed = "faces counter-clockwise seen from outside, around a positive volume";
+        return Err(Error::input(MESH, given, allowed));
     }
     Ok(())
 }

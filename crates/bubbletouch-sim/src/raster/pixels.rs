@@ -145,16 +145,10 @@ mod tests {
     #[test]
     fn a_pixel_of_half_the_size_is_the_rounded_mean_of_four_and_an_odd_rest_is_cut_off() {
         // 3 × 3 pixels; the last row and column are not used.
+        let rest = [99; 3];
+        let (above, below) = ([[1, 10, 0], [2, 20, 0]], [[3, 30, 255], [4, 40, 255]]);
         let rgb = [
-            [1, 10, 0],
-            [2, 20, 0],
-            [99, 99, 99],
-            [3, 30, 255],
-            [4, 40, 255],
-            [99, 99, 99],
-            [99, 99, 99],
-            [99, 99, 99],
-            [99, 99, 99],
+            above[0], above[1], rest, below[0], below[1], rest, rest, rest, rest,
         ];
         assert_eq!(halved(rgb.as_flattened(), 3), [3, 25, 128]);
         assert!(halved(&rgb.as_flattened()[..9], 1).is_empty());

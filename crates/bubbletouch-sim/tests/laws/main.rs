@@ -8,6 +8,7 @@ mod fixtures {
     pub mod random_scenes;
     pub mod reference_data;
     pub mod scans;
+    pub mod shapes;
     pub mod time_loop;
 }
 mod contact;
@@ -18,5 +19,5 @@ mod world;
 use bubbletouch_sim::statistics::standard_errors;
 use fixtures::{
     counting, double_double, mesh_shapes, overlapping, random_scenes, reference_data, scans,
-    time_loop,
+    shapes, time_loop,
 };

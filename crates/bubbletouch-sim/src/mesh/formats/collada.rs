@@ -2,13 +2,13 @@
 //! ignored. Skins are read in their bind pose.
 
 use super::joined_parts::{
-    JoinedParts, check_depth, triangles_of_fan, triangles_of_list, triangles_of_strip,
+    JoinedParts, affine, check_depth, triangles_of_fan, triangles_of_list, triangles_of_strip,
 };
 use super::text_lines::all_bytes;
 use crate::error::{Error, Result};
 use crate::mesh::MeshFile;
 use crate::text::encoding::utf8_or_latin1;
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat4, DQuat, DVec3};
 use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -326,15 +326,10 @@ impl<'a> Collada<'a> {
     /// Returns the affine map of sixteen numbers, row by row.
     fn matrix(&self, element: Node) -> Result<DAffine3> {
         let rows = DMat4::from_cols_array(&self.exactly(element)?);
-        if rows.w_axis != glam::DVec4::W {
+        affine(&rows.transpose()).ok_or_else(|| {
             let given = format!("a matrix with the last row {}", rows.w_axis);
-            return Err(self.refuse(element, given, "0 0 0 1"));
-        }
-        let matrix = rows.transpose();
-        Ok(DAffine3::from_mat3_translation(
-            DMat3::from_mat4(matrix),
-            matrix.w_axis.truncate(),
-        ))
+            self.refuse(element, given, "0 0 0 1")
+        })
     }
 }
 

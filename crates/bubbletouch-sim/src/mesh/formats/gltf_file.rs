@@ -1,8 +1,9 @@
 //! Contents of a glTF 2.0 file: the JSON description and the buffers of numbers.
 
 use super::base64;
+use super::joined_parts::affine;
 use crate::error::{Error, Result};
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -20,44 +21,6 @@ const ENCODINGS: [&str; 4] = [
     "KHR_meshopt_compression",
     "EXT_mesh_gpu_instancing",
 ];
-
-/// Type of the numbers in an accessor, little-endian.
-struct Component {
-    kind: u32,
-    /// Number of bytes.
-    size: usize,
-    /// Number that stands for 1 if numbers are normalised.
-    largest: f64,
-    decode: fn(&[u8]) -> f64,
-}
-
-const COMPONENTS: [Component; 6] = [
-    Component::new(5120, 1, 127.0, |b| f64::from(b[0] as i8)),
-    Component::new(5121, 1, 255.0, |b| f64::from(b[0])),
-    Component::new(5122, 2, 32_767.0, |b| {
-        f64::from(i16::from_le_bytes([b[0], b[1]]))
-    }),
-    Component::new(5123, 2, 65_535.0, |b| {
-        f64::from(u16::from_le_bytes([b[0], b[1]]))
-    }),
-    Component::new(5125, 4, 1.0, |b| {
-        f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-    }),
-    Component::new(5126, 4, 1.0, |b| {
-        f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-    }),
-];
-
-impl Component {
-    const fn new(kind: u32, size: usize, largest: f64, decode: fn(&[u8]) -> f64) -> Self {
-        Self {
-            kind,
-            size,
-            largest,
-            decode,
-        }
-    }
-}
 
 /// Parts of the JSON description of a glTF file from which meshes are read.
 #[derive(Deserialize)]
@@ -235,11 +198,8 @@ impl<'p> GltfFile<'p> {
     }
 
     fn refuse(&self, accessor: usize, given: impl ToString, allowed: impl ToString) -> Error {
-        Error::input(
-            format!("{}, accessor {accessor}", self.place),
-            given,
-            allowed,
-        )
+        let place = format!("{}, accessor {accessor}", self.place);
+        Error::input(place, given, allowed)
     }
 
     /// Returns an item of a list of the file.
@@ -265,17 +225,17 @@ impl<'p> GltfFile<'p> {
         if accessor.sparse.is_some() {
             return Err(self.refuse(index, "`sparse` values", "values in a buffer"));
         }
-        let mut known = COMPONENTS.iter();
-        let known = known.find(|component| component.kind == accessor.component_type);
-        let Some(&Component {
-            size,
-            largest,
-            decode,
-            ..
-        }) = known
-        else {
-            let given = format!("`componentType` {}", accessor.component_type);
-            return Err(self.refuse(index, given, "5120 to 5123, 5125 or 5126"));
+        // Size of a number, bytes, and the number that stands for 1 if numbers are normalised.
+        let (size, largest) = match accessor.component_type {
+            5120 => (1, 127.0),
+            5121 => (1, 255.0),
+            5122 => (2, 32_767.0),
+            5123 => (2, 65_535.0),
+            5125 | 5126 => (4, 1.0),
+            other => {
+                let given = format!("`componentType` {other}");
+                return Err(self.refuse(index, given, "5120 to 5123, 5125 or 5126"));
+            }
         };
         let Some(view) = accessor.buffer_view else {
             return Err(self.refuse(index, "no `bufferView`", "values in a buffer"));
@@ -302,7 +262,7 @@ impl<'p> GltfFile<'p> {
         for element in 0..accessor.count {
             for component in 0..n {
                 let start = element * stride + component * size;
-                let value = decode(&bytes[start..start + size]);
+                let value = number(&bytes[start..start + size], accessor.component_type);
                 if !value.is_finite() {
                     let given = format!("element {element}: {value}");
                     return Err(self.refuse(index, given, "finite numbers"));
@@ -319,10 +279,7 @@ impl Node {
     pub fn transform(&self) -> Option<DAffine3> {
         if let Some(columns) = &self.matrix {
             let matrix = DMat4::from_cols_array(columns);
-            let is_affine = matrix.row(3) == glam::DVec4::W && matrix.is_finite();
-            let affine =
-                DAffine3::from_mat3_translation(DMat3::from_mat4(matrix), matrix.w_axis.truncate());
-            return is_affine.then_some(affine);
+            return affine(&matrix).filter(|_| matrix.is_finite());
         }
         let rotation = DQuat::from_array(self.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
         let rotation = crate::geometry::written_rotation(rotation)?;
@@ -350,10 +307,8 @@ fn chunks<'b>(place: &str, bytes: &'b [u8]) -> Result<(&'b [u8], Option<&'b [u8]
         return Err(cut_off(format!("version {version}")));
     }
     if (length as usize) > bytes.len() {
-        return Err(cut_off(format!(
-            "{} of {length} bytes, cut off",
-            bytes.len()
-        )));
+        let n = bytes.len();
+        return Err(cut_off(format!("{n} of {length} bytes, cut off")));
     }
     let (mut json, mut binary, mut at) = (None, None, HEADER);
     while at + 8 <= length as usize {
@@ -361,10 +316,8 @@ fn chunks<'b>(place: &str, bytes: &'b [u8]) -> Result<(&'b [u8], Option<&'b [u8]
             break;
         };
         let start = at + 8;
-        let Some(chunk) = start
-            .checked_add(size as usize)
-            .and_then(|end| bytes.get(start..end))
-        else {
+        let end = start.checked_add(size as usize);
+        let Some(chunk) = end.and_then(|end| bytes.get(start..end)) else {
             return Err(cut_off(format!("a chunk of {size} bytes, cut off")));
         };
         match kind {
@@ -385,11 +338,8 @@ fn content_of(place: &str, place_of_buffer: &str, address: &str) -> Result<Vec<u
     if let Some(data) = address.strip_prefix("data:") {
         let text = data.split_once(";base64,").map(|(_, text)| text);
         return text.and_then(base64::decoded).ok_or_else(|| {
-            Error::input(
-                place_of_buffer,
-                "data that is not Base64",
-                "Base64, or a file",
-            )
+            let given = "data that is not Base64";
+            Error::input(place_of_buffer, given, "Base64, or a file")
         });
     }
     let folder = Path::new(place).parent().unwrap_or(Path::new(""));
@@ -398,4 +348,17 @@ fn content_of(place: &str, place_of_buffer: &str, address: &str) -> Result<Vec<u
         let given = format!("{}, which cannot be read ({error})", path.display());
         Error::input(place_of_buffer, given, "a file beside the glTF file")
     })
+}
+
+/// Returns a little-endian number; `kind` is the component type of glTF, and the slice has its size.
+fn number(bytes: &[u8], kind: u32) -> f64 {
+    match (kind, bytes) {
+        (5120, &[a]) => f64::from(a as i8),
+        (5121, &[a]) => f64::from(a),
+        (5122, &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
+        (5123, &[a, b]) => f64::from(u16::from_le_bytes([a, b])),
+        (5125, &[a, b, c, d]) => f64::from(u32::from_le_bytes([a, b, c, d])),
+        (_, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+        _ => f64::NAN,
+    }
 }

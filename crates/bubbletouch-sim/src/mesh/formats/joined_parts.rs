@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::mesh::MeshFile;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
 /// Largest number of polygons of a file. With a larger value, a small file whose nodes refer to each other repeatedly can fill the memory.
 const MAX_POLYGONS: usize = 50_000_000;
@@ -91,6 +91,13 @@ pub(super) fn used_positions(positions: &[DVec3], polygons: &mut [Vec<u32>]) -> 
         *corner = *index;
     }
     used
+}
+
+/// Returns the affine map of a matrix; `None` if its last row is not 0, 0, 0, 1.
+pub(super) fn affine(matrix: &DMat4) -> Option<DAffine3> {
+    let is_affine = matrix.row(3) == DVec4::W;
+    let linear = DMat3::from_mat4(*matrix);
+    is_affine.then(|| DAffine3::from_mat3_translation(linear, matrix.w_axis.truncate()))
 }
 
 /// Returns an error if a node is so deep in the tree of nodes that nodes contain each other.

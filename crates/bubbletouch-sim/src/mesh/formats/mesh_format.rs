@@ -63,11 +63,14 @@ impl MeshFormat {
             "stl" => Ok(Self::Stl),
             "dae" => Ok(Self::Collada),
             "glb" | "gltf" => Ok(Self::Gltf),
-            _ => Err(Error::input(
-                path.display(),
-                "not a mesh by its name",
-                format!("a name that ends in {}", Self::ENDINGS),
-            )),
+            _ => {
+                let allowed = format!("a name that ends in {}", Self::ENDINGS);
+                Err(Error::input(
+                    path.display(),
+                    "not a mesh by its name",
+                    allowed,
+                ))
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use bubbletouch_sim::world::{DrapeRegion, Layout};
 use glam::DVec3;
 use rand::Rng;
 
-use crate::mesh_shapes::{cuboid, icosphere};
+use crate::mesh_shapes::{cuboid, icosphere, inside_out, joined};
 
 const PITCH: f64 = 4e-3;
 
@@ -138,23 +138,6 @@ fn what_cannot_be_draped_is_refused() {
     );
 }
 
-/// Joins all triangles of several meshes.
-fn together(parts: &[TriangleMesh]) -> TriangleMesh {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for part in parts {
-        let shift = vertices.len() as u32;
-        vertices.extend_from_slice(part.vertices());
-        triangles.extend(part.triangles().iter().map(|t| t.map(|c| c + shift)));
-    }
-    TriangleMesh::new("parts", vertices, triangles).unwrap()
-}
-
-/// Returns the mesh with all faces reversed.
-fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
-    let triangles = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]);
-    TriangleMesh::new("inside out", mesh.vertices().to_vec(), triangles.collect()).unwrap()
-}
-
 /// Returns a mesh without some of its triangles.
 fn without(mesh: &TriangleMesh, triangles: std::ops::Range<usize>) -> TriangleMesh {
     let kept = mesh.triangles().iter().enumerate();
@@ -173,19 +156,19 @@ fn hollow_meshes() -> [(&'static str, TriangleMesh); 4] {
     let cavity = inside_out(&cuboid(DVec3::splat(0.0168)));
     let lid = 10..12;
     let open = [&outer, &cavity].map(|mesh| without(mesh, lid.clone()));
-    let open_housing = together(&open);
+    let open_housing = joined(&open);
     let plate = || cuboid(DVec3::new(1e-3, 0.02, 0.02));
     let loose = [
         at(icosphere(5e-3, 2), -8e-3),
         at(cuboid(DVec3::splat(4e-3)), 8e-3),
     ];
     [
-        ("housing", together(&[outer.clone(), cavity.clone()])),
+        ("housing", joined(&[outer.clone(), cavity.clone()])),
         (
             "loose parts",
-            together(&[vec![outer.clone(), cavity], loose.into()].concat()),
+            joined(&[vec![outer.clone(), cavity], loose.into()].concat()),
         ),
-        ("plates", together(&[at(plate(), -5e-3), at(plate(), 5e-3)])),
+        ("plates", joined(&[at(plate(), -5e-3), at(plate(), 5e-3)])),
         ("open housing", open_housing),
     ]
 }

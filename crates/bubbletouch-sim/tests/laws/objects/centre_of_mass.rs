@@ -1,10 +1,12 @@
 //! Laws of volume and centre of mass: overlapping parts count once, and solids, their packings and equal meshes agree.
 
+use crate::mesh_shapes::{inside_out, joined};
 use crate::random_scenes::{direction, rng};
+use crate::shapes::{part, shape, solid};
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::mesh::{LengthUnit, TriangleMesh};
-use bubbletouch_sim::objects::{Catalogue, Part, Shape, Solid, Sphere, SphereUnion};
-use glam::{DQuat, DVec2, DVec3};
+use bubbletouch_sim::mesh::TriangleMesh;
+use bubbletouch_sim::objects::{Catalogue, Part, Solid, Sphere, SphereUnion};
+use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::f64::consts::PI;
 
@@ -12,33 +14,6 @@ use std::f64::consts::PI;
 fn cuboid([low, high]: [DVec3; 2]) -> TriangleMesh {
     let mesh = TriangleMesh::cuboid("box", high - low).unwrap();
     mesh.moved(&Pose::from_translation(0.5 * (low + high)))
-}
-
-/// Returns meshes as one mesh of several parts.
-fn joined(meshes: &[TriangleMesh]) -> TriangleMesh {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for mesh in meshes {
-        let first = vertices.len() as u32;
-        vertices.extend_from_slice(mesh.vertices());
-        triangles.extend(
-            mesh.triangles()
-                .iter()
-                .map(|t| t.map(|corner| corner + first)),
-        );
-    }
-    TriangleMesh::in_unit("parts", LengthUnit::Metre, vertices, triangles).unwrap()
-}
-
-/// Returns the mesh with all faces turned.
-fn turned(mesh: &TriangleMesh) -> TriangleMesh {
-    let triangles = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]);
-    TriangleMesh::in_unit(
-        "turned",
-        LengthUnit::Metre,
-        mesh.vertices().to_vec(),
-        triangles.collect(),
-    )
-    .unwrap()
 }
 
 /// Returns volume and centroid of the union of boxes whose corners have integer coordinates from 0 to 8.
@@ -74,8 +49,8 @@ fn overlapping_parts_of_a_mesh_count_once() {
             DQuat::from_rotation_arc(DVec3::Z, direction(&mut rng)),
             direction(&mut rng),
         );
-        let mesh = joined(&boxes.map_meshes()).moved(&pose);
-        for (mesh, sign) in [(&mesh, 1.0), (&turned(&mesh), -1.0)] {
+        let mesh = joined(&boxes.iter().copied().map(cuboid).collect::<Vec<_>>()).moved(&pose);
+        for (mesh, sign) in [(&mesh, 1.0), (&inside_out(&mesh), -1.0)] {
             let (found, centroid) = mesh.volume_and_centroid();
             assert!(
                 (found - sign * volume).abs() < 1e-6 * volume,
@@ -89,23 +64,13 @@ fn overlapping_parts_of_a_mesh_count_once() {
     }
 }
 
-trait MapMeshes {
-    fn map_meshes(&self) -> Vec<TriangleMesh>;
-}
-
-impl MapMeshes for [[DVec3; 2]] {
-    fn map_meshes(&self) -> Vec<TriangleMesh> {
-        self.iter().copied().map(cuboid).collect()
-    }
-}
-
 #[test]
 fn a_cavity_does_not_count_and_a_part_inside_a_part_adds_nothing() {
     let cube = |half: f64| cuboid([DVec3::splat(-half), DVec3::splat(half)]);
     let volume = |meshes: &[TriangleMesh]| joined(meshes).volume_and_centroid().0;
-    assert!((volume(&[cube(2.0), turned(&cube(1.0))]) - 56.0).abs() < 1e-12);
+    assert!((volume(&[cube(2.0), inside_out(&cube(1.0))]) - 56.0).abs() < 1e-12);
     assert!((volume(&[cube(2.0), cube(1.0)]) - 64.0).abs() < 1e-12);
-    assert!((volume(&[cube(2.0), turned(&cube(1.0)), cube(0.5)]) - 57.0).abs() < 1e-12);
+    assert!((volume(&[cube(2.0), inside_out(&cube(1.0)), cube(0.5)]) - 57.0).abs() < 1e-12);
     assert!((volume(&[cube(2.0), cube(2.0), cube(2.0)]) - 64.0).abs() < 1e-12);
 }
 
@@ -113,27 +78,16 @@ fn a_cavity_does_not_count_and_a_part_inside_a_part_adds_nothing() {
 fn two_round_parts_count_their_lens_once() {
     let ball = TriangleMesh::ellipsoid("ball", DVec3::ONE, 2e-3).unwrap();
     let apart = 0.8;
-    let two = joined(&[
-        ball.clone(),
-        ball.moved(&Pose::from_translation(DVec3::new(apart, 0.0, 0.0))),
-    ]);
+    let shift = Pose::from_translation(DVec3::new(apart, 0.0, 0.0));
+    let two = joined(&[ball.clone(), ball.moved(&shift)]);
     let lens = PI / 12.0 * (4.0 + apart) * (2.0 - apart) * (2.0 - apart);
     let share = (8.0 / 3.0 * PI - lens) / (4.0 / 3.0 * PI);
     let (one, _) = ball.volume_and_centroid();
     let (volume, center) = two.volume_and_centroid();
-    assert!(
-        (volume / one - share).abs() < 2e-3,
-        "{} for {share}",
-        volume / one
-    );
-    assert!(
-        (center.x - 0.5 * apart).abs() < 1e-3 && center.y.abs() < 1e-3,
-        "{center}"
-    );
-}
-
-fn part(shape: Shape, position: [f64; 3]) -> Part {
-    Part::new(shape, Pose::from_translation(DVec3::from_array(position))).unwrap()
+    let found = volume / one;
+    assert!((found - share).abs() < 2e-3, "{found} for {share}");
+    let exact = DVec3::new(0.5 * apart, 0.0, center.z);
+    assert!((center - exact).abs().max_element() < 1e-3, "{center}");
 }
 
 /// Returns the centroid of a solid, as the mean of random points in it, and its standard error along each axis.
@@ -142,13 +96,8 @@ fn sampled(solid: &Solid, n: usize) -> (DVec3, DVec3) {
     let bounds = solid.bounds();
     let (mut count, mut sum, mut squares) = (0.0, DVec3::ZERO, DVec3::ZERO);
     for _ in 0..n {
-        let point = bounds.min
-            + bounds.size()
-                * DVec3::new(
-                    rng.gen_range(0.0..1.0),
-                    rng.gen_range(0.0..1.0),
-                    rng.gen_range(0.0..1.0),
-                );
+        let share = DVec3::from_array([0; 3].map(|_| rng.gen_range(0.0..1.0)));
+        let point = bounds.min + bounds.size() * share;
         if solid.distance(point) < 0.0 {
             let from_middle = point - bounds.center();
             count += 1.0;
@@ -166,129 +115,63 @@ fn sampled(solid: &Solid, n: usize) -> (DVec3, DVec3) {
 
 #[test]
 fn every_shape_has_its_centre_of_mass() {
-    let points = [[0.0, 0.0, 0.0], [0.04, 0.01, 0.0], [0.05, 0.05, 0.02]]
-        .map(DVec3::from_array)
-        .to_vec();
-    let diameters = vec![0.02, 0.03, 0.01];
-    let lathe = [
-        [0.0, 0.0],
-        [0.03, 0.0],
-        [0.02, 0.02],
-        [0.04, 0.05],
-        [0.01, 0.04],
-        [0.0, 0.03],
+    let texts = [
+        "ball diameter=0.03",
+        "box size=[0.02,0.03,0.05] rounding=0.004",
+        "torus ring_diameter=0.05 tube_diameter=0.02",
+        "cone_frustum bottom_diameter=0.03 top_diameter=0.01 height=0.04",
+        "capsule diameter=0.02 length=0.05",
+        "strand points=[[0,0,0],[0.04,0.01,0]] diameters=[0.02,0.03]",
+        "strand points=[[0,0,0],[0.04,0.01,0],[0.05,0.05,0.02]] diameters=[0.02,0.03,0.01]",
+        "lathe profile=[[0,0],[0.03,0],[0.02,0.02],[0.04,0.05],[0.01,0.04],[0,0.03]]",
+        "prism outline=[[0,0],[0.05,0],[0.05,0.01],[0.01,0.01],[0.01,0.04],[0,0.04]] thickness=0.01",
     ];
-    let outline = [
-        [0.0, 0.0],
-        [0.05, 0.0],
-        [0.05, 0.01],
-        [0.01, 0.01],
-        [0.01, 0.04],
-        [0.0, 0.04],
-    ];
-    let shapes = [
-        Shape::Ball { diameter: 0.03 },
-        Shape::Box {
-            size: DVec3::new(0.02, 0.03, 0.05),
-            rounding: 0.004,
-        },
-        Shape::Torus {
-            ring_diameter: 0.05,
-            tube_diameter: 0.02,
-        },
-        Shape::ConeFrustum {
-            bottom_diameter: 0.03,
-            top_diameter: 0.01,
-            height: 0.04,
-        },
-        Shape::Capsule {
-            diameter: 0.02,
-            length: 0.05,
-        },
-        Shape::SphereSweep {
-            points: points[..2].to_vec(),
-            diameters: diameters[..2].to_vec(),
-        },
-        Shape::SphereSweep { points, diameters },
-        Shape::Lathe {
-            profile: lathe.map(DVec2::from).to_vec(),
-        },
-        Shape::Prism {
-            outline: outline.map(DVec2::from).to_vec(),
-            thickness: 0.01,
-        },
-    ];
-    for (number, shape) in shapes.into_iter().enumerate() {
+    for (number, text) in texts.into_iter().enumerate() {
         let pose = Pose::new(
             DQuat::from_rotation_y(0.4 * number as f64),
             DVec3::new(0.1, 0.0, -0.2),
         );
         // A ball of its own and far away shows the volume of the shape, too.
-        let far = part(Shape::Ball { diameter: 0.03 }, [0.2, 0.0, -0.2]);
-        let solid = Solid::new(vec![Part::new(shape.clone(), pose).unwrap(), far]).unwrap();
+        let far = part("ball diameter=0.03", [0.2, 0.0, -0.2]);
+        let solid = Solid::new(vec![Part::new(shape(text), pose).unwrap(), far]).unwrap();
         let (mean, error) = sampled(&solid, 400_000);
         let found = solid.center_of_mass();
         assert!(
             (found - mean).abs().cmplt(5.0 * error).all(),
-            "{shape:?}: {found} for {mean} ± {error}"
+            "{text}: {found} for {mean} ± {error}"
         );
     }
 }
 
 #[test]
 fn solids_of_overlapping_and_subtracted_shapes_have_their_exact_centre_of_mass() {
-    let cuboid = |size: [f64; 3]| Shape::Box {
-        size: DVec3::from_array(size),
-        rounding: 0.0,
-    };
     // A hammer: its handle ends in the middle of the head.
-    let handle = part(cuboid([0.02, 0.02, 0.18]), [0.0, 0.0, 0.09]);
-    let head = part(cuboid([0.1, 0.03, 0.04]), [0.0, 0.0, 0.18]);
+    let handle = part("box size=[0.02,0.02,0.18]", [0.0, 0.0, 0.09]);
+    let head = part("box size=[0.1,0.03,0.04]", [0.0, 0.0, 0.18]);
     let volumes = [0.02 * 0.02 * 0.16, 0.1 * 0.03 * 0.04];
     let exact = (volumes[0] * 0.08 + volumes[1] * 0.18) / (volumes[0] + volumes[1]);
     let hammer = Solid::new(vec![handle, head]).unwrap();
-    assert!(
-        (hammer.center_of_mass().z - exact).abs() < 3e-6,
-        "{}",
-        hammer.center_of_mass().z - exact
-    );
+    let found = hammer.center_of_mass().z;
+    assert!((found - exact).abs() < 3e-6, "{found} for {exact}");
     // A thin cup: a cylinder less a cylinder that ends in its rim.
     let [diameter, height, wall] = [0.08, 0.1, 5e-4];
     let inner = diameter - 2.0 * wall;
-    let cup = Solid::new(vec![part(
-        Shape::Cylinder { diameter, height },
-        [0.0, 0.0, 0.5 * height],
-    )])
-    .unwrap();
-    let hole = Shape::Cylinder {
-        diameter: inner,
-        height: height - wall,
-    };
-    let cup = cup
-        .less(vec![part(hole, [0.0, 0.0, 0.5 * (height + wall)])])
-        .unwrap();
-    let turned = [
-        [0.0, 0.0],
-        [0.5 * diameter, 0.0],
-        [0.5 * diameter, height],
-        [0.5 * inner, height],
-        [0.5 * inner, wall],
-        [0.0, wall],
-    ];
-    let turned = Solid::from_shape(Shape::Lathe {
-        profile: turned.map(DVec2::from).to_vec(),
-    })
-    .unwrap();
+    let outside = format!("cylinder diameter={diameter} height={height}");
+    let hole = format!("cylinder diameter={inner} height={}", height - wall);
+    let cup = Solid::new(vec![part(&outside, [0.0, 0.0, 0.5 * height])]).unwrap();
+    let hole = part(&hole, [0.0, 0.0, 0.5 * (height + wall)]);
+    let cup = cup.less(vec![hole]).unwrap();
+    let [o, i] = [0.5 * diameter, 0.5 * inner];
+    let turned = solid(&format!(
+        "lathe profile=[[0,0],[{o},0],[{o},{height}],[{i},{height}],[{i},{wall}],[0,{wall}]]"
+    ));
     let [out, within] = [diameter, inner].map(|d| 0.25 * PI * d * d);
     let volumes = [out * height, within * (height - wall)];
     let exact = (volumes[0] * 0.5 * height - volumes[1] * 0.5 * (height + wall))
         / (volumes[0] - volumes[1]);
     assert!((turned.center_of_mass().z - exact).abs() < 1e-12);
-    assert!(
-        (cup.center_of_mass().z - exact).abs() < 1e-3 * height,
-        "{} for {exact}",
-        cup.center_of_mass().z
-    );
+    let found = cup.center_of_mass().z;
+    assert!((found - exact).abs() < 1e-3 * height, "{found} for {exact}");
     // The spheres of a packing weigh like the solid.
     let packed = hammer.pack(5e-4).unwrap();
     assert_eq!(packed.center_of_mass(), hammer.center_of_mass());
@@ -332,11 +215,7 @@ fn spheres_of_a_file_balance_within_a_tenth_of_the_documented_error() {
         exact[1] += area * x;
     }
     let found = union.center_of_mass();
-    assert!(
-        (found.x - exact[1] / exact[0]).abs() < 2e-4 * 0.24,
-        "{} for {}",
-        found.x,
-        exact[1] / exact[0]
-    );
+    let exact = exact[1] / exact[0];
+    assert!((found.x - exact).abs() < 2e-4 * 0.24, "{found} for {exact}");
     assert!(found.y.abs() < 1e-9 && found.z.abs() < 1e-9, "{found}");
 }

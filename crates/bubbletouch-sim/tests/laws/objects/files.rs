@@ -24,40 +24,25 @@ property list uchar int vertex_indices
 end_header
 ";
 
-const CORNERS: [[f64; 3]; 5] = [
-    [0., 0., 0.],
-    [1., 0., 0.],
-    [1., 1., 0.],
-    [0., 1., 0.],
-    [0.5, 0.5, 7.],
-];
+const CORNERS: &str = "0 0 0, 1 0 0, 1 1 0, 0 1 0, 0.5 0.5 7";
+const FACES: &str = "3 2 1 0, 0 1 4, 1 2 4, 2 3 4, 3 0 4";
+const TRIANGLES: &str = "3 2 1, 3 1 0, 0 1 4, 1 2 4, 2 3 4, 3 0 4";
 
-const FACES: [&[i32]; 5] = [
-    &[3, 2, 1, 0],
-    &[0, 1, 4],
-    &[1, 2, 4],
-    &[2, 3, 4],
-    &[3, 0, 4],
-];
-
-const TRIANGLES: [[u32; 3]; 6] = [
-    [3, 2, 1],
-    [3, 1, 0],
-    [0, 1, 4],
-    [1, 2, 4],
-    [2, 3, 4],
-    [3, 0, 4],
-];
+/// Returns lists of numbers in a text.
+fn lists<T: std::str::FromStr<Err: std::fmt::Debug>>(text: &str) -> Vec<Vec<T>> {
+    let list = |list: &str| list.split(' ').map(|word| word.parse().unwrap()).collect();
+    text.split(", ").map(list).collect()
+}
 
 fn ascii() -> String {
     let mut text = HEADER.replace("FORMAT", "ascii");
-    for [x, y, z] in CORNERS {
-        writeln!(text, "{x} {y} 255 {z}").unwrap();
+    for corner in CORNERS.split(", ") {
+        let (xy, z) = corner.rsplit_once(' ').unwrap();
+        writeln!(text, "{xy} 255 {z}").unwrap();
     }
     writeln!(text, "3 2 0.5 1.5").unwrap();
-    for face in FACES {
-        let list: Vec<String> = face.iter().map(i32::to_string).collect();
-        writeln!(text, "9 {} {}", face.len(), list.join(" ")).unwrap();
+    for face in FACES.split(", ") {
+        writeln!(text, "9 {} {face}", face.split(' ').count()).unwrap();
     }
     text
 }
@@ -65,17 +50,17 @@ fn ascii() -> String {
 macro_rules! binary {
     ($order:ident, $format:literal) => {{
         let mut bytes = HEADER.replace("FORMAT", $format).into_bytes();
-        for [x, y, z] in CORNERS {
-            bytes.extend((x as f32).$order());
-            bytes.extend(y.$order());
+        for corner in lists::<f64>(CORNERS) {
+            bytes.extend((corner[0] as f32).$order());
+            bytes.extend(corner[1].$order());
             bytes.push(255);
-            bytes.extend((z as i16).$order());
+            bytes.extend((corner[2] as i16).$order());
         }
         bytes.extend(3i32.$order());
         bytes.push(2);
         bytes.extend(0.5f32.$order());
         bytes.extend(1.5f32.$order());
-        for face in FACES {
+        for face in lists::<i32>(FACES) {
             bytes.extend([9, face.len() as u8]);
             for index in face {
                 bytes.extend(index.$order());
@@ -101,8 +86,14 @@ fn ply_error(bytes: &[u8]) -> String {
 #[test]
 fn the_three_encodings_of_a_ply_give_the_same_mesh() {
     let mesh = read_ply("p", ascii().as_bytes()).unwrap();
-    assert_eq!(mesh.vertices(), CORNERS.map(DVec3::from));
-    assert_eq!(mesh.clone().into_mesh("p").unwrap().triangles(), TRIANGLES);
+    let corners = lists::<f64>(CORNERS).into_iter();
+    assert!(
+        corners
+            .map(|corner| DVec3::from_slice(&corner))
+            .eq(mesh.vertices().to_vec())
+    );
+    let triangles = mesh.clone().into_mesh("p").unwrap().triangles().to_vec();
+    assert_eq!(lists::<u32>(TRIANGLES), triangles);
     assert_eq!(read_ply("p", &little_endian()[..]).unwrap(), mesh);
     let big = binary!(to_be_bytes, "binary_big_endian");
     assert_eq!(read_ply("p", &big[..]).unwrap(), mesh);
@@ -117,13 +108,8 @@ fn a_ply_cut_off_anywhere_is_an_error() {
         for length in 0..whole.len() - 1 {
             let result = read_ply("cup.ply", &whole[..length]);
             // ASCII numbers can be truncated to shorter numbers, but only in the last line.
-            if result.is_ok() {
-                assert!(
-                    length > whole.len() - 3,
-                    "{length} of {} bytes",
-                    whole.len()
-                );
-            }
+            let n = whole.len();
+            assert!(result.is_err() || length > n - 3, "{length} of {n} bytes");
         }
     }
     assert!(ply_error(&little_endian()[..400]).contains("cut off"));
@@ -132,46 +118,46 @@ fn a_ply_cut_off_anywhere_is_an_error() {
 #[test]
 fn a_ply_that_cannot_be_used_says_why() {
     let text = ascii();
-    let cases = [
-        (String::new(), "an empty file"),
-        ("solid cup\n".into(), "not a PLY file"),
-        (text.replace("ascii", "asciii"), "not readable as PLY: Line 2"),
-        (text.replace("element vertex 5", "element point 5"), "no element `vertex`"),
-        (text.replace("double y", "double w"), "vertices without a number `y`"),
-        (text.replace("1 0 255 0", "1 NaN 255 0"), "not readable as PLY: Line 17"),
-        (text.replace("1 0 255 0", "1 inf 255 0"), "not readable as PLY: Line 17"),
-        (text.replace("1 0 255 0", "1 255 0"), "not readable as PLY: Line 17"),
-        (text.replace("9 3 0 1 4", "9 3 0 1 5"), "face 2: vertex indices [0, 1, 5]; 0 to 4"),
-        (text.replace("9 3 0 1 4", "9 3 0 1 -1"), "face 2: vertex index -1"),
-        (text.replace("9 3 0 1 4", "9 2 0 1"), "face 2: 2 corners"),
-        (text.replace("int vertex_indices", "float vertex_indices"), "faces without a list"),
-        (text.replace("element edge 1", "element junk 1\nelement edge 1"), "element `junk` without"),
-        (text.replace("end_header\n", ""), "not readable as PLY"),
-        (text.replace("element vertex 5", "element vertex 99999999999"), "not readable as PLY"),
-        (
-            "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
-                .into(),
-            "no vertices; at least one vertex",
-        ),
-    ];
-    for (text, expected) in cases {
+    let refuse = |text: &str, expected: &str| {
         let error = ply_error(text.as_bytes());
         assert!(
             error.contains(expected),
             "expected `{expected}` in: {error}"
         );
+    };
+    refuse("", "an empty file");
+    refuse("solid cup\n", "not a PLY file");
+    let xyz = "property float x\nproperty float y\nproperty float z";
+    let empty = format!("ply\nformat ascii 1.0\nelement vertex 0\n{xyz}\nend_header\n");
+    refuse(&empty, "no vertices; at least one vertex");
+    let junk = text.replace("element edge 1", "element junk 1\nelement edge 1");
+    refuse(&junk, "element `junk` without");
+    refuse(&text.replace("end_header\n", ""), "not readable as PLY");
+    // A text of the file, what replaces it, and a part of the error.
+    let changes = "ascii | asciii | not readable as PLY: Line 2
+        element vertex 5 | element point 5 | no element `vertex`
+        double y | double w | vertices without a number `y`
+        1 0 255 0 | 1 NaN 255 0 | not readable as PLY: Line 17
+        1 0 255 0 | 1 inf 255 0 | not readable as PLY: Line 17
+        1 0 255 0 | 1 255 0 | not readable as PLY: Line 17
+        9 3 0 1 4 | 9 3 0 1 5 | face 2: vertex indices [0, 1, 5]; 0 to 4
+        9 3 0 1 4 | 9 3 0 1 -1 | face 2: vertex index -1
+        9 3 0 1 4 | 9 2 0 1 | face 2: 2 corners
+        int vertex_indices | float vertex_indices | faces without a list
+        element vertex 5 | element vertex 99999999999 | not readable as PLY";
+    for change in changes.lines() {
+        let [old, new, expected] = change.trim().split(" | ").collect::<Vec<_>>()[..] else {
+            panic!("{change}");
+        };
+        refuse(&text.replace(old, new), expected);
     }
 }
 
 #[test]
 fn a_binary_nan_is_named_by_its_vertex() {
     let mut bytes = little_endian();
-    let header = bytes
-        .windows(11)
-        .position(|w| w == b"end_header\n")
-        .unwrap()
-        + 11;
-    let second_x = header + 15;
+    let header = bytes.windows(11).position(|w| w == b"end_header\n");
+    let second_x = header.unwrap() + 11 + 15;
     bytes[second_x..second_x + 4].copy_from_slice(&f32::NAN.to_le_bytes());
     assert!(ply_error(&bytes).starts_with("cup.ply: vertex 2: "));
 }
@@ -192,50 +178,39 @@ fn spheres_survive_csv_to_the_last_bit() {
 fn a_header_may_order_the_columns() {
     let plain = read_spheres("a", None, &SizeLimits::ANY, "1,2,3,4\n".as_bytes()).unwrap();
     let named = "\u{feff}name, R ,z,Y,X\nfirst,4,3, 2,1\n";
-    assert_eq!(
-        read_spheres("b", None, &SizeLimits::ANY, named.as_bytes()).unwrap(),
-        plain
-    );
+    let named = read_spheres("b", None, &SizeLimits::ANY, named.as_bytes()).unwrap();
+    assert_eq!(named, plain);
 }
 
 #[test]
 fn spheres_that_cannot_be_used_say_why() {
-    let cases = [
-        ("", "s.csv: no spheres"),
-        ("x,y,z,r\n", "s.csv: no spheres"),
-        (
-            "x,y,r\n1,2,3\n",
-            "s.csv, line 1: header `x,y,r` without a column z",
-        ),
-        ("1,2,3\n", "s.csv, line 1: 3 columns; 4"),
-        ("1,2,3,4\n1,2,3,4,5\n", "s.csv, line 2: 5 columns; 4"),
-        (
-            "x,y,z,r\n0,0,0,1\n0,nan,0,1\n",
-            "s.csv, line 3, column y: `nan`",
-        ),
-        ("NaN,NaN,NaN,NaN\n", "s.csv, line 1, column x: `NaN`"),
-        ("0,0,inf,1\n", "s.csv, line 1, column z: `inf`"),
-        ("0,0,0,-1\n", "s.csv, line 1, column r: -1; a positive"),
-        ("0,0,0,0\n", "s.csv, line 1, column r: 0; a positive"),
-        ("0,0,0,ten\n", "s.csv, line 1, column r: `ten`"),
-        ("0,0,,1\n", "s.csv, line 1, column z: ``"),
-    ];
-    for (text, expected) in cases {
-        let error = read_spheres("s.csv", None, &SizeLimits::ANY, text.as_bytes()).unwrap_err();
+    let refuse = |bytes: &[u8]| {
+        let error = read_spheres("s.csv", None, &SizeLimits::ANY, bytes).unwrap_err();
         assert_eq!(error.exit_code(), 2);
+        error.to_string()
+    };
+    refuse(b"x,y,z,r\n0,0,0,\xb5\n");
+    // Rows of the file, and the beginning of the error.
+    let cases = "| s.csv: no spheres
+        x,y,z,r | s.csv: no spheres
+        x,y,r 1,2,3 | s.csv, line 1: header `x,y,r` without a column z
+        1,2,3 | s.csv, line 1: 3 columns; 4
+        1,2,3,4 1,2,3,4,5 | s.csv, line 2: 5 columns; 4
+        x,y,z,r 0,0,0,1 0,nan,0,1 | s.csv, line 3, column y: `nan`
+        NaN,NaN,NaN,NaN | s.csv, line 1, column x: `NaN`
+        0,0,inf,1 | s.csv, line 1, column z: `inf`
+        0,0,0,-1 | s.csv, line 1, column r: -1; a positive
+        0,0,0,0 | s.csv, line 1, column r: 0; a positive
+        0,0,0,ten | s.csv, line 1, column r: `ten`
+        0,0,,1 | s.csv, line 1, column z: ``";
+    for case in cases.lines() {
+        let (rows, expected) = case.split_once("| ").unwrap();
+        let error = refuse(rows.trim().replace(' ', "\n").as_bytes());
         assert!(
-            error.to_string().starts_with(expected),
+            error.starts_with(expected),
             "expected `{expected}` in: {error}"
         );
     }
-    let latin = read_spheres(
-        "s.csv",
-        None,
-        &SizeLimits::ANY,
-        &b"x,y,z,r\n0,0,0,\xb5\n"[..],
-    )
-    .unwrap_err();
-    assert_eq!(latin.exit_code(), 2, "{latin}");
 }
 
 #[test]

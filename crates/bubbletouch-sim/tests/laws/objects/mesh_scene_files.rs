@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-use crate::mesh_shapes::cuboid;
+use crate::mesh_shapes::{corners, cuboid};
 
 const SIDES: DVec3 = DVec3::new(0.25, 0.5, 1.0);
 
@@ -14,13 +14,6 @@ fn read(format: MeshFormat, bytes: &[u8]) -> bubbletouch_sim::Result<TriangleMes
     format
         .read("m", None, &SizeLimits::ANY, bytes)?
         .into_mesh("m")
-}
-
-/// Returns the corners of all triangles in order.
-fn corners(mesh: &TriangleMesh) -> Vec<DVec3> {
-    (0..mesh.n_triangles())
-        .flat_map(|t| mesh.triangle(t).0)
-        .collect()
 }
 
 #[track_caller]
@@ -83,12 +76,8 @@ fn collada_files_have_their_unit_and_keep_their_axes() {
             &expected,
         );
         // A unit from the user replaces the unit of the file.
-        let file = MeshFormat::Collada.read(
-            "m",
-            Some(LengthUnit::Millimetre),
-            &SizeLimits::ANY,
-            text.as_bytes(),
-        );
+        let unit = Some(LengthUnit::Millimetre);
+        let file = MeshFormat::Collada.read("m", unit, &SizeLimits::ANY, text.as_bytes());
         let expected: Vec<DVec3> = cube.iter().map(|corner| *corner * 1e-3).collect();
         assert_same(&file.unwrap().into_mesh("m").unwrap(), &expected);
     }
@@ -97,15 +86,8 @@ fn collada_files_have_their_unit_and_keep_their_axes() {
 #[test]
 fn collada_polygons_of_all_kinds_are_one_mesh() {
     let input = r##"<input semantic="VERTEX" source="#vertices" offset="0"/>"##;
-    let quads = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
-    let all = quads.map(|quad| quad.map(|corner| corner.to_string()).join(" "));
+    let quads = "0 4 6 2, 1 3 7 5, 0 1 5 4, 2 6 7 3, 0 2 3 1, 4 5 7 6";
+    let all: Vec<&str> = quads.split(", ").collect();
     let lists: String = all.iter().map(|quad| format!("<p>{quad}</p>")).collect();
     let quad_list = format!(
         "<polylist count=\"6\">{input}<vcount>4 4 4 4 4 4</vcount><p>{}</p></polylist>",
@@ -113,10 +95,9 @@ fn collada_polygons_of_all_kinds_are_one_mesh() {
     );
     let fans =
         format!("<lines count=\"1\">{input}<p>0 1</p></lines><trifans>{input}{lists}</trifans>");
-    let strips: String = quads
-        .iter()
-        .map(|[a, b, c, d]| format!("<p>{a} {b} {d} {c}</p>"))
-        .collect();
+    // The last two corners of a strip have the opposite order: the characters are `a b c d`.
+    let strip = |quad: &&str| format!("<p>{} {} {}</p>", &quad[..3], &quad[6..], &quad[4..5]);
+    let strips: String = all.iter().map(strip).collect();
     for primitives in [
         quad_list,
         fans,
@@ -126,12 +107,7 @@ fn collada_polygons_of_all_kinds_are_one_mesh() {
         let text = collada("", &primitives, NODE);
         let mesh = read(MeshFormat::Collada, text.as_bytes()).unwrap();
         assert_eq!(mesh.n_triangles(), 12);
-        let volume: f64 = (0..12)
-            .map(|t| {
-                let [a, b, c] = mesh.triangle(t).0;
-                a.dot(b.cross(c)) / 6.0
-            })
-            .sum();
+        let (volume, _) = mesh.volume_and_centroid();
         assert!((volume - 1.0).abs() < 1e-14, "{primitives}: {volume}");
     }
 }
@@ -151,22 +127,15 @@ fn transforms_of_collada_nodes_are_applied_and_mirrored_faces_stay_outward() {
     let by_matrix =
         format!("<node><matrix>0 -1 0 1 1 0 0 2 0 0 1 3 0 0 0 1</matrix>{inner}</node>");
     for nodes in [by_parts.clone(), by_matrix] {
-        let mesh = read(
-            MeshFormat::Collada,
-            collada("", &triangles(), &nodes).as_bytes(),
-        )
-        .unwrap();
-        check_placed(&mesh);
+        let text = collada("", &triangles(), &nodes);
+        check_placed(&read(MeshFormat::Collada, text.as_bytes()).unwrap());
     }
     // Two instances of one geometry, one of them through another node.
     let twice = format!(
         "{by_parts}<node id=\"n\"><instance_geometry url=\"#box\"/></node><node><translate>5 0 0</translate><instance_node url=\"#n\"/></node>"
     );
-    let mesh = read(
-        MeshFormat::Collada,
-        collada("", &triangles(), &twice).as_bytes(),
-    )
-    .unwrap();
+    let text = collada("", &triangles(), &twice);
+    let mesh = read(MeshFormat::Collada, text.as_bytes()).unwrap();
     assert_eq!(mesh.n_triangles(), 36);
     let last = mesh.moved(&Pose::from_translation(DVec3::new(-5.0, 0.0, 0.0)));
     assert_eq!(corners(&last)[72..], corners(&cuboid(SIDES)));
@@ -187,7 +156,7 @@ fn check_placed(mesh: &TriangleMesh) {
         let [a, b, c] = mesh.triangle(t).0;
         assert!(
             (b - a).cross(c - a).dot(a - center) > 0.0,
-            "triangle {t} faces inwards"
+            "{t} faces inwards"
         );
     }
     rounded(&mut own);
@@ -207,10 +176,8 @@ fn ids_that_meshes_repeat_mean_those_of_the_own_mesh() {
         .replacen("id=\"box\"", "id=\"other\"", 1)
         .replace("0.25", "0.125");
     let both = [&good[..start], &other, &good[start..]].concat();
-    assert_same(
-        &read(MeshFormat::Collada, both.as_bytes()).unwrap(),
-        &corners(&cuboid(SIDES)),
-    );
+    let mesh = read(MeshFormat::Collada, both.as_bytes()).unwrap();
+    assert_same(&mesh, &corners(&cuboid(SIDES)));
 }
 
 #[test]
@@ -221,60 +188,45 @@ fn wrong_collada_files_are_refused_with_the_line() {
         good.replacen(old, new, 1)
     };
     let circle = r##"<node id="a"><node><instance_node url="#a"/></node></node>"##;
-    for (text, said) in [
-        (good[..good.len() / 2].to_owned(), "well-formed XML"),
-        (String::new(), "well-formed XML"),
-        ("<mujoco/>".to_owned(), "<mujoco> as the root; a <COLLADA>"),
-        (
-            with("count=\"24\"", "count=\"30\""),
-            "line 4: <float_array> with `count` 30, but 24 numbers",
-        ),
-        (
-            with("count=\"8\"", "count=\"9\""),
-            "9 points with `stride` 3, but 24 numbers",
-        ),
-        (
-            with("-0.25", "nan"),
-            "line 4: <float_array>, number 1: \"nan\"; finite numbers",
-        ),
-        (with("-0.25", "1e999"), "finite numbers"),
-        (with("<p>0 0 4", "<p>0 0 99"), "vertex index 99; 0 to 7"),
-        (
-            with("<p>0 0 4", "<p>0 0 -4"),
-            "number 3: \"-4\"; whole numbers from 0",
-        ),
-        (with("<p>0 0 4 0", "<p>0 0 4"), "indices for 2 inputs"),
-        (
-            with("<triangles count=\"12\"", "<triangles count=\"11\""),
-            "`count` 11, but 12 faces",
-        ),
-        (
-            with("semantic=\"VERTEX\"", "semantic=\"NORMAL\""),
-            "without an <input semantic=\"VERTEX\">",
-        ),
-        (with("url=\"#box\"", "url=\"#bx\""), "`url` \"#bx\""),
-        (
-            with("<node>", "<node><matrix>1 0 0</matrix>"),
-            "<matrix> with 3 numbers",
-        ),
-        (
-            with("<node>", "<node><rotate>0 0 0 90</rotate>"),
-            "axis of length zero",
-        ),
-        (with("<node>", "<node><skew>0 0 0 0 0 0 0</skew>"), "<skew>"),
-        (collada("", &triangles(), circle), "nodes inside each other"),
-        (
-            collada("<unit meter=\"0\"/>", &triangles(), NODE),
-            "`meter` \"0\"; a positive number",
-        ),
-        (collada("", "", NODE), "no faces"),
-    ] {
+    let refuse = |text: &str, said: &str| {
         let error = read(MeshFormat::Collada, text.as_bytes()).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let error = error.to_string();
         assert!(
-            error.to_string().starts_with('m') && error.to_string().contains(said),
+            error.starts_with('m') && error.contains(said),
             "{said}: {error}"
         );
-        assert_eq!(error.exit_code(), 2);
+    };
+    refuse(&good[..good.len() / 2], "well-formed XML");
+    refuse("", "well-formed XML");
+    refuse("<mujoco/>", "<mujoco> as the root; a <COLLADA>");
+    refuse(
+        &collada("", &triangles(), circle),
+        "nodes inside each other",
+    );
+    let unit = collada("<unit meter=\"0\"/>", &triangles(), NODE);
+    refuse(&unit, "`meter` \"0\"; a positive number");
+    refuse(&collada("", "", NODE), "no faces");
+    // A text of the file, what replaces it, and a part of the error.
+    let changes = r##"count="24" | count="30" | line 4: <float_array> with `count` 30, but 24 numbers
+        count="8" | count="9" | 9 points with `stride` 3, but 24 numbers
+        -0.25 | nan | line 4: <float_array>, number 1: "nan"; finite numbers
+        -0.25 | 1e999 | finite numbers
+        <p>0 0 4 | <p>0 0 99 | vertex index 99; 0 to 7
+        <p>0 0 4 | <p>0 0 -4 | number 3: "-4"; whole numbers from 0
+        <p>0 0 4 0 | <p>0 0 4 | indices for 2 inputs
+        <triangles count="12" | <triangles count="11" | `count` 11, but 12 faces
+        semantic="VERTEX" | semantic="NORMAL" | without an <input semantic="VERTEX">
+        semantic="POSITION" | semantic="NORMAL" | <vertices> without an <input semantic="POSITION">
+        url="#box" | url="#bx" | `url` "#bx"
+        <node> | <node><matrix>1 0 0</matrix> | <matrix> with 3 numbers
+        <node> | <node><rotate>0 0 0 90</rotate> | axis of length zero
+        <node> | <node><skew>0 0 0 0 0 0 0</skew> | <skew>"##;
+    for change in changes.lines() {
+        let [old, new, said] = change.trim().split(" | ").collect::<Vec<_>>()[..] else {
+            panic!("{change}");
+        };
+        refuse(&with(old, new), said);
     }
 }
 
@@ -356,26 +308,15 @@ fn gltf_files_are_read_with_buffers_inside_beside_and_in_the_address() {
     let mut beside = description.clone();
     beside["buffers"][0]["uri"] = "my%20data.bin".into();
     let place = folder.path().join("m.gltf").display().to_string();
-    let file = MeshFormat::Gltf.read(
-        &place,
-        None,
-        &SizeLimits::ANY,
-        beside.to_string().as_bytes(),
-    );
-    check_placed(&file.unwrap().into_mesh("m").unwrap());
+    let read_there = |description: &Value| {
+        let text = description.to_string();
+        MeshFormat::Gltf.read(&place, None, &SizeLimits::ANY, text.as_bytes())
+    };
+    check_placed(&read_there(&beside).unwrap().into_mesh("m").unwrap());
     beside["buffers"][0]["uri"] = "none.bin".into();
-    let missing = MeshFormat::Gltf
-        .read(
-            &place,
-            None,
-            &SizeLimits::ANY,
-            beside.to_string().as_bytes(),
-        )
-        .unwrap_err();
-    assert!(
-        missing.to_string().contains("buffer 0: ") && missing.exit_code() == 2,
-        "{missing}"
-    );
+    let missing = read_there(&beside).unwrap_err();
+    assert_eq!(missing.exit_code(), 2);
+    assert!(missing.to_string().contains("buffer 0: "), "{missing}");
 }
 
 #[test]
@@ -395,69 +336,45 @@ fn wrong_gltf_files_are_refused_with_the_part() {
         *changed.pointer_mut(pointer).expect(pointer) = value;
         glb(&changed, &buffer)
     };
-    for (bytes, said) in [
-        (
-            glb(&description, &nan),
-            "accessor 0: element 0: NaN; finite numbers",
-        ),
-        (
-            glb(&description, &far),
-            "mesh 0, primitive 0: face 1: vertex index 999; 0 to 7",
-        ),
-        (
-            with("/accessors/0/count", json!(9)),
-            "accessor 0: 9 elements",
-        ),
-        (
-            with("/accessors/0/count", json!(0)),
-            "accessor 0: 0 elements",
-        ),
-        (with("/accessors/0/count", json!(u64::MAX)), "accessor 0: "),
-        (
-            with("/accessors/1/count", json!(35)),
-            "35 corners of triangles",
-        ),
-        (
-            with("/accessors/0/type", json!("VEC2")),
-            "accessor 0: `type` VEC2; VEC3",
-        ),
-        (
-            with("/accessors/1/componentType", json!(5126)),
-            "vertex indices with `componentType` 5126",
-        ),
-        (
-            with("/accessors/0/componentType", json!(7)),
-            "`componentType` 7",
-        ),
-        (
-            with("/bufferViews/1/byteOffset", json!(4000)),
-            "accessor 1: 36 elements",
-        ),
-        (with("/bufferViews/1/buffer", json!(3)), "buffer 3; 0 to 0"),
-        (
-            with("/buffers/0/byteLength", json!(4000)),
-            "buffer 0: 168 bytes; `byteLength` 4000",
-        ),
-        (with("/nodes/1/mesh", json!(1)), "mesh 1; 0 to 0"),
-        (with("/nodes/1/scale", json!([1.0, 1.0])), "invalid length"),
-        (
-            with("/nodes/0/rotation", json!([0.0, 0.0, 0.0, 0.0])),
-            "node 0: a transform that is not affine",
-        ),
-        (
-            with("/nodes/0/children", json!([0])),
-            "nodes inside each other",
-        ),
-        (with("/nodes/0/children", json!([7])), "node 7; 0 to 1"),
-        (with("/scene", json!(2)), "scene 2; 0 to 0"),
-        (with("/meshes/0/primitives/0/mode", json!(1)), "no faces"),
-    ] {
-        let error = read(MeshFormat::Gltf, &bytes).unwrap_err();
+    let refuse = |bytes: &[u8], said: &str| {
+        let error = read(MeshFormat::Gltf, bytes).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let error = error.to_string();
         assert!(
-            error.to_string().starts_with('m') && error.to_string().contains(said),
+            error.starts_with('m') && error.contains(said),
             "{said}: {error}"
         );
-        assert_eq!(error.exit_code(), 2);
+    };
+    refuse(
+        &glb(&description, &nan),
+        "accessor 0: element 0: NaN; finite numbers",
+    );
+    let said = "mesh 0, primitive 0: face 1: vertex index 999; 0 to 7";
+    refuse(&glb(&description, &far), said);
+    // The place of a value in the description, another value, and a part of the error.
+    let changes = r#"/accessors/0/count | 9 | accessor 0: 9 elements
+        /accessors/0/count | 0 | accessor 0: 0 elements
+        /accessors/0/count | 18446744073709551615 | accessor 0: 
+        /accessors/1/count | 35 | 35 corners of triangles
+        /accessors/0/type | "VEC2" | accessor 0: `type` VEC2; VEC3
+        /accessors/1/componentType | 5126 | vertex indices with `componentType` 5126
+        /accessors/0/componentType | 7 | `componentType` 7
+        /bufferViews/1/byteOffset | 4000 | accessor 1: 36 elements
+        /bufferViews/1/buffer | 3 | buffer 3; 0 to 0
+        /buffers/0/byteLength | 4000 | buffer 0: 168 bytes; `byteLength` 4000
+        /nodes/1/mesh | 1 | mesh 1; 0 to 0
+        /nodes/1/scale | [1.0, 1.0] | invalid length
+        /nodes/0/rotation | [0.0, 0.0, 0.0, 0.0] | node 0: a transform that is not affine
+        /nodes/0/children | [0] | nodes inside each other
+        /nodes/0/children | [7] | node 7; 0 to 1
+        /scene | 2 | scene 2; 0 to 0
+        /meshes/0/primitives/0/mode | 1 | no faces"#;
+    for change in changes.lines() {
+        let [pointer, value, said] = change.trim_start().split(" | ").collect::<Vec<_>>()[..]
+        else {
+            panic!("{change}");
+        };
+        refuse(&with(pointer, serde_json::from_str(value).unwrap()), said);
     }
     let mut packed = description.clone();
     packed["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);

@@ -5,7 +5,7 @@ use bubbletouch_sim::mesh::{Bvh, LengthUnit, MeshFeature, Surface, Triangle, Tri
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
-use crate::mesh_shapes::{cuboid, icosphere};
+use crate::mesh_shapes::{corners, cuboid, icosphere, with_triangles};
 use crate::random_scenes::{direction, rng};
 
 /// Creates random triangles of all sizes and shapes: slivers, points, and triangles with shared corners.
@@ -17,11 +17,8 @@ fn soup(rng: &mut impl Rng, n: usize) -> TriangleMesh {
         let thin = 10f64.powi(-rng.gen_range(0..12));
         let along = direction(rng);
         let across = direction(rng);
-        vertices.extend([
-            at,
-            at + size * along,
-            at + size * (0.4 * along + thin * across),
-        ]);
+        let top = size * (0.4 * along + thin * across);
+        vertices.extend([at, at + size * along, at + top]);
     }
     let count = vertices.len() as u32;
     let mut triangles: Vec<[u32; 3]> = (0..n as u32)
@@ -55,32 +52,26 @@ fn the_nearest_point_of_a_triangle_is_what_a_search_finds() {
         let point = triangle.0[0] + direction(&mut rng) * size * rng.gen_range(0.0..3.0);
         let (on, feature) = triangle.closest(point);
         let (found, searched) = (on.distance(point), distance_by_search(&triangle, point));
-        assert!(
-            found <= searched + 1e-12,
-            "case {case}: {found} {searched} {feature:?}"
-        );
         // The search has no local minimum, but its last digits are inaccurate where the distance is flat.
-        assert!(
-            found >= searched - 2e-8 * size,
-            "case {case}: {found} {searched} {feature:?}"
-        );
+        let (low, high) = (searched - 2e-8 * size, searched + 1e-12);
+        let what = format!("case {case}: {found} {searched} {feature:?}");
+        assert!((low..=high).contains(&found), "{what}");
     }
 }
 
 #[test]
 fn features_are_where_the_point_says() {
     let triangle = Triangle([DVec3::ZERO, DVec3::X, DVec3::Y]);
-    let cases = [
-        (DVec3::new(0.2, 0.2, 1.0), MeshFeature::Face),
-        (DVec3::new(0.5, -1.0, 1.0), MeshFeature::Edge(0)),
-        (DVec3::new(1.0, 1.0, 0.0), MeshFeature::Edge(1)),
-        (DVec3::new(-1.0, 0.5, 0.0), MeshFeature::Edge(2)),
-        (DVec3::new(-1.0, -1.0, 0.0), MeshFeature::Vertex(0)),
-        (DVec3::new(3.0, 0.0, 0.0), MeshFeature::Vertex(1)),
-        (DVec3::new(0.0, 3.0, -1.0), MeshFeature::Vertex(2)),
-    ];
-    for (point, feature) in cases {
-        assert_eq!(triangle.closest(point).1, feature, "{point}");
+    for (point, feature) in [
+        ([0.2, 0.2, 1.0], MeshFeature::Face),
+        ([0.5, -1.0, 1.0], MeshFeature::Edge(0)),
+        ([1.0, 1.0, 0.0], MeshFeature::Edge(1)),
+        ([-1.0, 0.5, 0.0], MeshFeature::Edge(2)),
+        ([-1.0, -1.0, 0.0], MeshFeature::Vertex(0)),
+        ([3.0, 0.0, 0.0], MeshFeature::Vertex(1)),
+        ([0.0, 3.0, -1.0], MeshFeature::Vertex(2)),
+    ] {
+        assert_eq!(triangle.closest(point.into()).1, feature, "{point:?}");
     }
 }
 
@@ -99,19 +90,16 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
             let found = bvh.closest(point, f64::INFINITY).unwrap();
             assert_eq!(found.distance, nearest);
             assert_eq!(found.point.distance(point), nearest);
-            assert_eq!(
-                mesh.triangle(found.triangle).closest(point),
-                (found.point, found.feature)
-            );
+            let on_triangle = mesh.triangle(found.triangle).closest(point);
+            assert_eq!(on_triangle, (found.point, found.feature));
             assert!(bvh.closest(point, nearest * (1.0 - 1e-12)).is_none());
 
             let along = direction(&mut rng);
             let mut hits = Vec::new();
             bvh.each_hit(point, along, |hit| hits.push((hit.triangle, hit.along)));
             hits.sort_by_key(|hit| hit.0);
-            let expected: Vec<_> = every()
-                .filter_map(|(n, t)| Some((n, t.crossed_at(point, along)?)))
-                .collect();
+            let expected = every().filter_map(|(n, t)| Some((n, t.crossed_at(point, along)?)));
+            let expected: Vec<_> = expected.collect();
             assert_eq!(hits, expected);
             let ahead = expected.iter().map(|hit| hit.1).filter(|&s| s >= 0.0);
             let first = ahead.fold(f64::INFINITY, f64::min);
@@ -137,14 +125,9 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
 fn a_thousand_triangles_at_one_place_make_a_tree() {
     let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
     let mesh = TriangleMesh::new("pile", corners, vec![[0, 1, 2]; 1000]).unwrap();
-    assert_eq!(
-        Bvh::new(&mesh).closest(DVec3::Z, 2.0).unwrap().distance,
-        1.0
-    );
-    assert!(
-        Bvh::new(&mesh).closest(DVec3::Z, 1.0).is_none(),
-        "strictly closer"
-    );
+    let within = |limit: f64| Bvh::new(&mesh).closest(DVec3::Z, limit);
+    assert_eq!(within(2.0).unwrap().distance, 1.0);
+    assert!(within(1.0).is_none(), "strictly closer");
 }
 
 #[test]
@@ -197,7 +180,7 @@ fn winding_numbers_agree_with_the_sum_over_all_triangles_and_with_signs() {
     // A ball with a hole: the winding number is a fraction in the hole, and still nearly 1 in the middle.
     let mut rest = mesh.triangles().to_vec();
     rest.retain(|t| t.iter().any(|&v| mesh.vertices()[v as usize].z < 0.9));
-    let open = Surface::new(TriangleMesh::new("open", mesh.vertices().to_vec(), rest).unwrap());
+    let open = Surface::new(with_triangles(mesh, rest));
     assert!(!open.is_closed());
     assert!((0.3..0.7).contains(&open.winding_number(0.9 * DVec3::Z)));
     assert!(open.contains(DVec3::ZERO) && !open.contains(1.3 * DVec3::Z));
@@ -207,18 +190,14 @@ fn winding_numbers_agree_with_the_sum_over_all_triangles_and_with_signs() {
 #[test]
 fn a_rigid_motion_changes_no_distance() {
     let mesh = cuboid(DVec3::new(0.03, 0.02, 0.01));
-    let pose = Pose::new(
-        DQuat::from_scaled_axis(DVec3::new(0.4, -1.0, 2.0)),
-        DVec3::new(0.5, 2.0, -1.0),
-    );
+    let turn = DQuat::from_scaled_axis(DVec3::new(0.4, -1.0, 2.0));
+    let pose = Pose::new(turn, DVec3::new(0.5, 2.0, -1.0));
     let (still, moved) = (Surface::new(mesh.clone()), Surface::new(mesh.moved(&pose)));
     let mut rng = rng("motion", 0);
     for _ in 0..500 {
         let point = 0.05 * direction(&mut rng) * rng.gen_range(0.0..1.0);
-        let (a, b) = (
-            still.signed_distance(point),
-            moved.signed_distance(pose.transform_point(point)),
-        );
+        let a = still.signed_distance(point);
+        let b = moved.signed_distance(pose.transform_point(point));
         assert!((a - b).abs() < 1e-14, "{a} {b}");
     }
 }
@@ -226,9 +205,8 @@ fn a_rigid_motion_changes_no_distance() {
 #[test]
 fn corners_stored_once_a_face_close_a_mesh_all_the_same() {
     let shared = cuboid(DVec3::ONE);
-    let corners = (0..shared.n_triangles()).flat_map(|t| shared.triangle(t).0);
     let triangles = (0..shared.n_triangles() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
-    let split = TriangleMesh::new("split", corners.collect(), triangles.collect()).unwrap();
+    let split = TriangleMesh::new("split", corners(&shared), triangles.collect()).unwrap();
     let surface = Surface::new(split);
     assert!(surface.is_closed());
     assert_eq!(surface.signed_distance(DVec3::splat(1.5)), 0.75_f64.sqrt());
@@ -238,18 +216,12 @@ fn corners_stored_once_a_face_close_a_mesh_all_the_same() {
 fn meshes_that_are_none_are_refused() {
     let corners = || vec![DVec3::ZERO, DVec3::X, DVec3::Y];
     let error = |v, t| TriangleMesh::new("m.ply", v, t).unwrap_err().to_string();
-    assert_eq!(
-        error(vec![], vec![]),
-        "m.ply: no vertices; at least one vertex"
-    );
-    assert_eq!(
-        error(corners(), vec![]),
-        "m.ply: no triangles; at least one triangle"
-    );
-    assert_eq!(
-        error(corners(), vec![[0, 1, 2], [0, 1, 3]]),
-        "m.ply: face 2: vertex indices [0, 1, 3]; 0 to 2, the indices of the vertices"
-    );
+    let none = "m.ply: no vertices; at least one vertex";
+    assert_eq!(error(vec![], vec![]), none);
+    let none = "m.ply: no triangles; at least one triangle";
+    assert_eq!(error(corners(), vec![]), none);
+    let outside = "m.ply: face 2: vertex indices [0, 1, 3]; 0 to 2, the indices of the vertices";
+    assert_eq!(error(corners(), vec![[0, 1, 2], [0, 1, 3]]), outside);
     let mut broken = corners();
     broken[1].y = f64::NAN;
     assert!(error(broken, vec![[0, 1, 2]]).starts_with("m.ply: vertex 2: [1, NaN, 0]"));

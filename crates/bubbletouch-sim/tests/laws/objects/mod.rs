@@ -7,7 +7,6 @@ mod mesh_files;
 mod mesh_scene_files;
 mod mesh_surface;
 mod orientation;
-mod packing;
 mod packing_laws;
 mod primitives;
 mod solids;

@@ -1,31 +1,16 @@
 //! Orientation of meshes: closed parts are turned outwards, cavities stay, and rays decide about open parts.
 
-use crate::mesh_shapes::{cuboid, icosphere};
-use bubbletouch_sim::mesh::{LengthUnit, Orientation, Surface, TriangleMesh};
+use crate::mesh_shapes::{cuboid, icosphere, inside_out, joined, partly_turned, with_triangles};
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::{Orientation, Surface, TriangleMesh};
 use bubbletouch_sim::packing::{Body, pack_mesh};
 use glam::DVec3;
 
-/// Turns all triangles of a mesh.
-fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
-    let turned = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]);
-    TriangleMesh::in_unit(
-        "turned",
-        LengthUnit::Metre,
-        mesh.vertices().to_vec(),
-        turned.collect(),
-    )
-    .unwrap()
-}
-
 /// Joins several meshes, each moved by a vector.
-fn joined(parts: &[(TriangleMesh, DVec3)]) -> TriangleMesh {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for (part, shift) in parts {
-        let first = vertices.len() as u32;
-        vertices.extend(part.vertices().iter().map(|&v| v + *shift));
-        triangles.extend(part.triangles().iter().map(|t| t.map(|v| v + first)));
-    }
-    TriangleMesh::in_unit("joined", LengthUnit::Metre, vertices, triangles).unwrap()
+fn placed(parts: &[(TriangleMesh, DVec3)]) -> TriangleMesh {
+    let parts = parts.iter();
+    let moved = parts.map(|(part, shift)| part.moved(&Pose::from_translation(*shift)));
+    joined(&moved.collect::<Vec<_>>())
 }
 
 fn cube(half: f64) -> TriangleMesh {
@@ -60,20 +45,9 @@ fn a_closed_mesh_faces_outwards_whichever_of_its_triangles_were_turned() {
     assert_eq!(volume(&mirrored), -8.0);
     assert_eq!(volume(&turned(&mirrored, 12)), 8.0);
     for flips in [1_u32, 0b1010_0110_0001, 0b1111_1111_1110] {
-        let flipped = whole.triangles().iter().enumerate();
-        let flipped = flipped.map(|(k, &[a, b, c])| {
-            if flips >> k & 1 == 1 {
-                [a, c, b]
-            } else {
-                [a, b, c]
-            }
-        });
-        let flipped = TriangleMesh::new("f", whole.vertices().to_vec(), flipped.collect()).unwrap();
-        assert_eq!(
-            turned(&flipped, flips.count_ones() as usize),
-            whole,
-            "{flips:b}"
-        );
+        let flipped = partly_turned(&whole, |k| flips >> k & 1 == 1);
+        let outward = turned(&flipped, flips.count_ones() as usize);
+        assert_eq!(outward, whole, "{flips:b}");
     }
 }
 
@@ -81,15 +55,15 @@ fn a_closed_mesh_faces_outwards_whichever_of_its_triangles_were_turned() {
 fn cavities_stay_and_parts_are_turned_one_by_one() {
     let at = |x: f64| DVec3::new(x, 0.0, 0.0);
     let housing = |flip: bool| {
-        let parts = joined(&[(cube(1.0), at(0.0)), (inside_out(&cube(0.5)), at(0.1))]);
+        let parts = placed(&[(cube(1.0), at(0.0)), (inside_out(&cube(0.5)), at(0.1))]);
         if flip { inside_out(&parts) } else { parts }
     };
     assert!((volume(&turned(&housing(false), 0)) - 7.0).abs() < 1e-12);
     assert!((volume(&turned(&housing(true), 24)) - 7.0).abs() < 1e-12);
     // The order of the parts has no effect.
-    let first_inner = joined(&[(cube(0.5), at(0.1)), (inside_out(&cube(1.0)), at(0.0))]);
+    let first_inner = placed(&[(cube(0.5), at(0.1)), (inside_out(&cube(1.0)), at(0.0))]);
     assert!((volume(&turned(&first_inner, 24)) - 7.0).abs() < 1e-12);
-    let beside = joined(&[
+    let beside = placed(&[
         (housing(false), at(0.0)),
         (housing(true), at(5.0)),
         (cube(0.1), at(10.0)),
@@ -97,11 +71,11 @@ fn cavities_stay_and_parts_are_turned_one_by_one() {
     let outward = turned(&beside, 24);
     assert!((volume(&outward) - 14.008).abs() < 1e-12);
     // A solid in a cavity, and a hollow solid in a cavity.
-    let nested = |inner: TriangleMesh| joined(&[(housing(false), at(0.0)), (inner, at(0.1))]);
+    let nested = |inner: TriangleMesh| placed(&[(housing(false), at(0.0)), (inner, at(0.1))]);
     assert!((volume(&turned(&nested(cube(0.1)), 0)) - 7.008).abs() < 1e-12);
     assert!((volume(&turned(&nested(inside_out(&cube(0.1))), 12)) - 7.008).abs() < 1e-12);
     // Two parts that overlap and both face inwards.
-    let crossing = joined(&[(cube(1.0), at(0.0)), (cube(1.0), at(0.5))]);
+    let crossing = placed(&[(cube(1.0), at(0.0)), (cube(1.0), at(0.5))]);
     assert_eq!(turned(&inside_out(&crossing), 24), crossing);
 }
 
@@ -109,17 +83,15 @@ fn cavities_stay_and_parts_are_turned_one_by_one() {
 fn open_ball(is_turned: impl Fn(usize) -> bool) -> TriangleMesh {
     let ball = icosphere(1.0, 2);
     let is_low = |t: &&[u32; 3]| t.iter().all(|&v| ball.vertices()[v as usize].z < 0.8);
-    let kept = ball.triangles().iter().filter(is_low).enumerate();
-    let kept = kept.map(|(k, &[a, b, c])| if is_turned(k) { [a, c, b] } else { [a, b, c] });
-    TriangleMesh::new("open", ball.vertices().to_vec(), kept.collect()).unwrap()
+    let kept = ball.triangles().iter().filter(is_low).copied().collect();
+    partly_turned(&with_triangles(&ball, kept), is_turned)
 }
 
 #[test]
 fn open_meshes_are_judged_by_rays_and_never_turned() {
     let without_top = |mesh: &TriangleMesh| {
         let low = |t: &&[u32; 3]| t.iter().any(|&v| mesh.vertices()[v as usize].z < 0.0);
-        let kept = mesh.triangles().iter().filter(low).copied().collect();
-        TriangleMesh::new("open", mesh.vertices().to_vec(), kept).unwrap()
+        with_triangles(mesh, mesh.triangles().iter().filter(low).copied().collect())
     };
     let open = without_top(&cube(1.0));
     let (same, orientation) = open.clone().turned_outwards();
@@ -134,32 +106,19 @@ fn open_meshes_are_judged_by_rays_and_never_turned() {
         "{error}"
     );
     // A mesh of ten triangles, two of them turned.
-    let mixed = open.triangles().iter().enumerate();
-    let mixed = mixed.map(|(k, &[a, b, c])| if k % 5 == 0 { [a, c, b] } else { [a, b, c] });
-    let mixed = TriangleMesh::new("mixed", open.vertices().to_vec(), mixed.collect()).unwrap();
-    let error = mixed
-        .turned_outwards()
-        .1
-        .require("mixed.obj")
-        .unwrap_err()
-        .to_string();
+    let (_, mixed) = partly_turned(&open, |k| k % 5 == 0).turned_outwards();
+    let error = mixed.require("mixed.obj").unwrap_err().to_string();
     assert!(error.contains("disagree"), "{error}");
     // Up to a twentieth of the area may be turned, as in a scan with faults.
     for (every, is_accepted) in [(100, true), (30, true), (10, false)] {
         let (_, orientation) = open_ball(|k| k % every == 0).turned_outwards();
-        assert_eq!(
-            orientation == Orientation::Outwards,
-            is_accepted,
-            "one of {every}"
-        );
+        let is_outwards = orientation == Orientation::Outwards;
+        assert_eq!(is_outwards, is_accepted, "one of {every}");
     }
     let corners = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
     let flat = TriangleMesh::new("flat", corners, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
-    assert_eq!(
-        flat.turned_outwards().1,
-        Orientation::Outwards,
-        "a sheet has two sides"
-    );
+    let (_, orientation) = flat.turned_outwards();
+    assert_eq!(orientation, Orientation::Outwards, "a sheet has two sides");
 }
 
 #[test]

@@ -2,13 +2,13 @@
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{MeshReport, Surface, TriangleMesh};
-use bubbletouch_sim::packing::{Body, DetailChain, pack_mesh, packing_error};
+use bubbletouch_sim::packing::{Body, DetailChain, PackingError, pack_mesh, packing_error};
 use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-use crate::mesh_shapes::{cuboid, icosphere};
-use crate::overlapping::{Judge, together, turned};
+use crate::mesh_shapes::{cuboid, icosphere, inside_out, joined, with_triangles};
+use crate::overlapping::{Judge, turned};
 use crate::scans::scan;
 
 const MM: f64 = 1e-3;
@@ -47,10 +47,8 @@ fn assert_packs(mesh: TriangleMesh, body: Body, tolerance: f64, what: &str) -> u
 
 #[test]
 fn a_ball_packs_to_one_sphere() {
-    assert_eq!(
-        assert_packs(icosphere(10.0 * MM, 2), Body::Solid, 0.5 * MM, "ball"),
-        1
-    );
+    let n = assert_packs(icosphere(10.0 * MM, 2), Body::Solid, 0.5 * MM, "ball");
+    assert_eq!(n, 1);
 }
 
 #[test]
@@ -96,12 +94,12 @@ fn a_smaller_tolerance_never_gives_a_larger_error() {
         .map(|packing| packing_error(&surface, Body::Solid, &packing.spheres, 20_000))
         .collect();
     for pair in errors.windows(2) {
-        assert!(pair[1].gap.max <= pair[0].gap.max, "{errors:?}");
-        assert!(
-            pair[1].protrusion.max <= pair[0].protrusion.max,
-            "{errors:?}"
-        );
-        assert!(pair[1].gap.mean <= pair[0].gap.mean, "{errors:?}");
+        let numbers = |k: usize| {
+            let error: &PackingError = &pair[k];
+            [error.gap.max, error.protrusion.max, error.gap.mean]
+        };
+        let (coarse, fine) = (numbers(0), numbers(1));
+        assert!((0..3).all(|k| fine[k] <= coarse[k]), "{errors:?}");
     }
 }
 
@@ -112,12 +110,8 @@ fn a_chain_gives_the_coarsest_packing_that_is_fine_enough() {
     assert_eq!(chain.coarsest_within(1.0 * MM).unwrap().tolerance, 1.0 * MM);
     assert_eq!(chain.coarsest_within(0.9 * MM).unwrap().tolerance, 0.5 * MM);
     assert_eq!(chain.coarsest_within(0.1 * MM).unwrap_err().exit_code(), 2);
-    assert_eq!(
-        DetailChain::pack(&surface, Body::Solid, &[])
-            .unwrap_err()
-            .exit_code(),
-        2
-    );
+    let none = DetailChain::pack(&surface, Body::Solid, &[]);
+    assert_eq!(none.unwrap_err().exit_code(), 2);
 }
 
 #[test]
@@ -138,16 +132,8 @@ fn a_rigid_motion_changes_the_number_of_spheres_little() {
         DVec3::splat(0.2),
     );
     let here = assert_packs(tube(), Body::Solid, 0.8 * MM, "tube");
-    let there = assert_packs(
-        tube().moved(&motion),
-        Body::Solid,
-        0.8 * MM,
-        "tube elsewhere",
-    );
-    assert!(
-        here.abs_diff(there) * 10 <= here,
-        "{here} and {there} spheres"
-    );
+    let there = assert_packs(tube().moved(&motion), Body::Solid, 0.8 * MM, "moved tube");
+    assert!(here.abs_diff(there) * 10 <= here, "{here} and {there}");
 }
 
 #[test]
@@ -155,41 +141,26 @@ fn faces_inside_other_parts_take_no_spheres() {
     let large = cuboid(DVec3::splat(5.0 * MM));
     let inside = cuboid(DVec3::splat(3.0 * MM));
     let alone = assert_packs(large.clone(), Body::Solid, MM, "box");
-    let both = together(&[large.clone(), inside]);
-    let error = packing_error(
-        &Surface::new(both.clone()),
-        Body::Solid,
-        &pack_mesh(&Surface::new(large), Body::Solid, MM)
-            .unwrap()
-            .spheres,
-        10_000,
-    );
-    assert!((error.buried_share - 9.0 / 34.0).abs() < 1e-3, "{error:?}");
+    let both = joined(&[large.clone(), inside]);
     let surface = Surface::new(both);
+    let of_large = pack_mesh(&Surface::new(large), Body::Solid, MM).unwrap();
+    let error = packing_error(&surface, Body::Solid, &of_large.spheres, 10_000);
+    assert!((error.buried_share - 9.0 / 34.0).abs() < 1e-3, "{error:?}");
     let packing = pack_mesh(&surface, Body::Solid, MM).unwrap();
     // The inner box still limits the size of balls.
     assert!(packing.spheres.n_spheres() < 2 * alone);
-    assert!(
-        packing
-            .spheres
-            .spheres()
-            .iter()
-            .all(|s| s.center.abs().max_element() < 5.0 * MM)
-    );
+    let mut spheres = packing.spheres.spheres().iter();
+    assert!(spheres.all(|s| s.center.abs().max_element() < 5.0 * MM));
 }
 
 #[test]
 fn a_mesh_with_a_hole_is_packed_only_as_a_sheet() {
     let closed = cuboid(DVec3::splat(4.0 * MM));
-    let open = closed.triangles()[2..].to_vec();
-    let open = TriangleMesh::new("open", closed.vertices().to_vec(), open).unwrap();
+    let open = with_triangles(&closed, closed.triangles()[2..].to_vec());
     let surface = Surface::new(open.clone());
     let error = pack_mesh(&surface, Body::Solid, 0.5 * MM).unwrap_err();
     assert_eq!(error.exit_code(), 2);
-    assert!(
-        error.to_string().contains("a hole 11.31 mm wide"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("a hole 11.31 mm wide"));
     assert_packs(open, Body::Sheet, 0.5 * MM, "open box");
 }
 
@@ -200,14 +171,7 @@ fn what_cannot_be_packed_is_an_error() {
         let error = pack_mesh(&surface, Body::Solid, tolerance).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{tolerance}");
     }
-    let turned: Vec<_> = surface
-        .mesh()
-        .triangles()
-        .iter()
-        .map(|&[a, b, c]| [a, c, b])
-        .collect();
-    let vertices = surface.mesh().vertices().to_vec();
-    let inside_out = Surface::new(TriangleMesh::new("turned", vertices, turned).unwrap());
+    let inside_out = Surface::new(inside_out(surface.mesh()));
     let error = pack_mesh(&inside_out, Body::Solid, MM).unwrap_err();
     assert!(error.to_string().contains("volume"), "{error}");
 }
@@ -257,7 +221,7 @@ fn small_holes_are_closed_on_request_and_wide_ones_stay() {
     let without = |gone: &[usize]| {
         let kept = whole.triangles().iter().enumerate();
         let kept = kept.filter(|(t, _)| !gone.contains(t)).map(|(_, t)| *t);
-        TriangleMesh::new("open", whole.vertices().to_vec(), kept.collect()).unwrap()
+        with_triangles(&whole, kept.collect())
     };
     let edge = whole.triangle(100).longest_edge_squared().sqrt();
     let open = without(&[100]);

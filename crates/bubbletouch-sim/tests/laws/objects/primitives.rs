@@ -12,35 +12,28 @@ type OnSurface = fn(&mut dyn FnMut() -> f64, DVec3) -> DVec3;
 /// Returns the name, the mesh, the volume and the round surface of each shape with the given sizes: radius and length, or radii.
 fn shapes(sizes: DVec3, tolerance: f64) -> [(&'static str, TriangleMesh, f64, OnSurface); 3] {
     let DVec3 { x, y, z } = sizes;
-    let cylinder = TriangleMesh::cylinder("cylinder", x, y, tolerance);
-    let ellipsoid = TriangleMesh::ellipsoid("ellipsoid", sizes, tolerance);
-    let capsule = TriangleMesh::capsule("capsule", x, y, tolerance);
+    let cylinder = TriangleMesh::cylinder("cylinder", x, y, tolerance).unwrap();
+    let ellipsoid = TriangleMesh::ellipsoid("ellipsoid", sizes, tolerance).unwrap();
+    let capsule = TriangleMesh::capsule("capsule", x, y, tolerance).unwrap();
+    let on_cylinder: OnSurface = |random, sizes| {
+        let around = sizes.x * DVec2::from_angle(PI * random());
+        around.extend(0.5 * sizes.y * random())
+    };
+    let on_ellipsoid: OnSurface = |random, sizes| sizes * unit(random);
+    let on_capsule: OnSurface = |random, sizes| {
+        let out = sizes.x * unit(random);
+        out + 0.5 * sizes.y * out.z.signum() * DVec3::Z
+    };
+    let [ball, disc] = [4.0 / 3.0 * PI, PI * x * x];
     [
-        (
-            "cylinder",
-            cylinder.unwrap(),
-            PI * x * x * y,
-            |random, sizes| {
-                let around = sizes.x * DVec2::from_angle(PI * random());
-                around.extend(0.5 * sizes.y * random())
-            },
-        ),
-        (
-            "ellipsoid",
-            ellipsoid.unwrap(),
-            4.0 / 3.0 * PI * x * y * z,
-            |random, sizes| sizes * DVec3::new(random(), random(), random()).normalize_or(DVec3::X),
-        ),
-        (
-            "capsule",
-            capsule.unwrap(),
-            PI * x * x * (y + 4.0 / 3.0 * x),
-            |random, sizes| {
-                let out = sizes.x * DVec3::new(random(), random(), random()).normalize_or(DVec3::X);
-                out + 0.5 * sizes.y * out.z.signum() * DVec3::Z
-            },
-        ),
+        ("cylinder", cylinder, disc * y, on_cylinder),
+        ("ellipsoid", ellipsoid, ball * x * y * z, on_ellipsoid),
+        ("capsule", capsule, disc * (y + 4.0 / 3.0 * x), on_capsule),
     ]
+}
+
+fn unit(random: &mut dyn FnMut() -> f64) -> DVec3 {
+    DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
 }
 
 #[test]
@@ -53,10 +46,8 @@ fn facets_of_round_shapes_are_within_the_tolerance() {
             assert!(Welded::new(&mesh).is_closed(), "{name}");
             let enclosed = mesh.volume_and_centroid().0;
             let within = 1.0 - 4.0 * tolerance / sizes.min_element();
-            assert!(
-                enclosed < volume && enclosed > within * volume,
-                "{name}: {enclosed} {volume}"
-            );
+            let is_inside = enclosed < volume && enclosed > within * volume;
+            assert!(is_inside, "{name}: {enclosed} {volume}");
             let surface = Surface::new(mesh);
             let mut largest = 0.0_f64;
             for _ in 0..300 {
@@ -66,14 +57,9 @@ fn facets_of_round_shapes_are_within_the_tolerance() {
                 assert!(distance > -1e-12, "{name}: {distance}");
                 largest = largest.max(distance);
             }
-            assert!(
-                largest <= tolerance * (1.0 + 1e-9),
-                "{name}: {largest} {tolerance}"
-            );
-            assert!(
-                largest > 0.1 * tolerance,
-                "{name} is not needlessly fine: {largest}"
-            );
+            // The mesh is not needlessly fine.
+            let share = largest / tolerance;
+            assert!(share > 0.1 && share <= 1.0 + 1e-9, "{name}: {share}");
         }
     }
 }
@@ -108,20 +94,15 @@ fn a_mirrored_mesh_is_the_mirror_image_and_faces_outwards() {
 fn sizes_of_no_shape_are_refused() {
     let allowed = "a positive finite number of metres";
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let radii = DVec3::new(1.0, bad, 1.0);
         for (mesh, place) in [
             (TriangleMesh::cylinder("c", bad, 1.0, 1e-3), "c: radius"),
             (TriangleMesh::cylinder("c", 1.0, bad, 1e-3), "c: length"),
             (TriangleMesh::capsule("c", bad, 1.0, 1e-3), "c: radius"),
-            (
-                TriangleMesh::ellipsoid("c", DVec3::new(1.0, bad, 1.0), 1e-3),
-                "c: radius",
-            ),
+            (TriangleMesh::ellipsoid("c", radii, 1e-3), "c: radius"),
         ] {
             let error = mesh.unwrap_err().to_string();
-            assert!(
-                error.starts_with(place) && error.contains(allowed),
-                "{error}"
-            );
+            assert!(error.starts_with(place) && error.contains(allowed));
         }
     }
     for tolerance in [0.0, -1.0, 1e-9, f64::NAN] {

@@ -1,89 +1,25 @@
-//! Distances, boxes and packings of solids, compared with slow and simple computations.
+//! Distances, boxes and packings of solids, compared with slow and simple computations; tolerances of packings, measured on every kind of solid.
 
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{Part, Shape, Solid, pack, surface_error};
+use bubbletouch_sim::objects::{Part, Solid, SphereUnion, pack, surface_error};
 use bubbletouch_sim::random::Seed;
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 
+use crate::shapes::{one_of_each, part, shape, solid};
+
 const MM: f64 = 1e-3;
 
-/// Returns one shape of each kind, about 10 to 60 mm large. The balls of the sphere sweep are far enough apart for its inside distance to be exact.
-fn one_of_each() -> Vec<Shape> {
-    let corner = |&[x, y]: &[f64; 2]| DVec2::new(x, y) * MM;
-    vec![
-        Shape::Ball { diameter: 30. * MM },
-        Shape::Box {
-            size: DVec3::new(20., 40., 10.) * MM,
-            rounding: 0.,
-        },
-        Shape::Box {
-            size: DVec3::new(20., 40., 10.) * MM,
-            rounding: 3. * MM,
-        },
-        Shape::Cylinder {
-            diameter: 30. * MM,
-            height: 20. * MM,
-        },
-        Shape::Capsule {
-            diameter: 10. * MM,
-            length: 40. * MM,
-        },
-        Shape::ConeFrustum {
-            bottom_diameter: 30. * MM,
-            top_diameter: 10. * MM,
-            height: 25. * MM,
-        },
-        Shape::ConeFrustum {
-            bottom_diameter: 0.,
-            top_diameter: 20. * MM,
-            height: 25. * MM,
-        },
-        Shape::Torus {
-            ring_diameter: 30. * MM,
-            tube_diameter: 8. * MM,
-        },
-        Shape::Tube {
-            outer_diameter: 40. * MM,
-            inner_diameter: 30. * MM,
-            height: 12. * MM,
-        },
-        Shape::Lathe {
-            profile: [
-                [0., 0.],
-                [10., 0.],
-                [20., 15.],
-                [17., 15.],
-                [9., 3.],
-                [0., 3.],
-            ]
-            .iter()
-            .map(corner)
-            .collect(),
-        },
-        Shape::Prism {
-            outline: [
-                [0., 0.],
-                [30., 0.],
-                [30., 5.],
-                [8., 5.],
-                [8., 20.],
-                [0., 20.],
-            ]
-            .iter()
-            .map(corner)
-            .collect(),
-            thickness: 6. * MM,
-        },
-        Shape::HexagonalPrism {
-            across_flats: 13. * MM,
-            height: 6.5 * MM,
-        },
-        Shape::SphereSweep {
-            points: vec![DVec3::ZERO, DVec3::new(30., 0., 0.) * MM],
-            diameters: vec![12. * MM, 6. * MM],
-        },
-    ]
+/// Packs a solid; the measured distances between the surfaces must be within the tolerance.
+fn assert_packs(solid: &Solid, tolerance: f64, spacing: f64, what: &str) -> SphereUnion {
+    let union = pack(solid, tolerance).unwrap();
+    let error = surface_error(solid, &union, spacing);
+    assert!(
+        error.protrusion <= 0.5 * tolerance && error.gap <= tolerance,
+        "{what} at {tolerance}: {error:?}, {} spheres",
+        union.n_spheres()
+    );
+    union
 }
 
 fn random_pose(rng: &mut impl Rng) -> Pose {
@@ -118,11 +54,8 @@ fn the_distance_is_the_distance_to_the_nearest_surface_point() {
                 nearest >= distance.abs() - 1e-12 && nearest <= distance.abs() + spacing,
                 "{shape:?}: distance {distance}, nearest sample {nearest}"
             );
-            *(if distance < 0.0 {
-                &mut n_inside
-            } else {
-                &mut n_outside
-            }) += 1;
+            n_inside += usize::from(distance < 0.0);
+            n_outside += usize::from(distance >= 0.0);
         }
     }
 }
@@ -159,28 +92,15 @@ fn a_union_of_posed_parts_packs_within_the_tolerance() {
             Part::new(shape, random_pose(&mut rng)).unwrap()
         });
         let solid = Solid::new(parts.collect()).unwrap();
-        let tolerance = 0.3 * MM;
-        let union = pack(&solid, tolerance).unwrap();
-        let error = surface_error(&solid, &union, 1. * MM);
-        assert!(
-            error.protrusion <= 0.5 * tolerance && error.gap <= tolerance,
-            "case {case}: {error:?}"
-        );
+        assert_packs(&solid, 0.3 * MM, MM, &format!("case {case}"));
     }
 }
 
 /// Creates an M8 nut whose hole ends exactly at the nut's faces or extends beyond them.
 fn nut(hole: f64) -> Solid {
-    let prism = Shape::HexagonalPrism {
-        across_flats: 13. * MM,
-        height: 6.5 * MM,
-    };
-    let hole = Shape::Cylinder {
-        diameter: 8. * MM,
-        height: hole,
-    };
-    let hole = Part::new(hole, Pose::IDENTITY).unwrap();
-    Solid::from_shape(prism).unwrap().less(vec![hole]).unwrap()
+    let hole = part(&format!("cylinder diameter=0.008 height={hole}"), [0.0; 3]);
+    let nut = solid("hexagonal_prism across_flats=0.013 height=0.0065");
+    nut.less(vec![hole]).unwrap()
 }
 
 #[test]
@@ -190,31 +110,19 @@ fn a_nut_has_a_hole_that_no_sphere_closes() {
         // No membrane closes the hole.
         assert!(solid.distance(DVec3::new(1., 0., 3.25) * MM) > 0.0);
         for tolerance in [0.5 * MM, 0.1 * MM] {
-            let union = pack(&solid, tolerance).unwrap();
-            let error = surface_error(&solid, &union, 0.1 * MM);
-            assert!(
-                error.protrusion <= 0.5 * tolerance && error.gap <= tolerance,
-                "{error:?} at {tolerance}"
-            );
+            let union = assert_packs(&solid, tolerance, 0.1 * MM, "nut");
+            let spheres = || union.spheres().iter();
             // Only points in the hole, up to the spheres' share of the tolerance from its wall.
             let free = (4. * MM) - 0.5 * tolerance;
             for k in 0..200 {
                 let height = MM * (0.04 * f64::from(k) - 4.0);
                 let at = DVec2::from_angle(f64::from(k)) * free * f64::from(k % 11) / 10.0;
                 let point = at.extend(height);
-                let outside = union
-                    .spheres()
-                    .iter()
-                    .all(|s| s.center.distance(point) >= s.radius - 1e-12);
+                let outside = spheres().all(|s| s.center.distance(point) >= s.radius - 1e-12);
                 assert!(outside, "{point} is in a sphere");
             }
             let wall = DVec3::new(5.25 * MM, 0.0, 0.0);
-            assert!(
-                union
-                    .spheres()
-                    .iter()
-                    .any(|s| s.center.distance(wall) < s.radius)
-            );
+            assert!(spheres().any(|s| s.center.distance(wall) < s.radius));
         }
     }
 }
@@ -236,13 +144,7 @@ fn whatever_is_subtracted_the_rest_packs_within_the_tolerance() {
         let Ok(solid) = whole.less(parts(2)) else {
             continue;
         };
-        let tolerance = 0.4 * MM;
-        let union = pack(&solid, tolerance).unwrap();
-        let error = surface_error(&solid, &union, 0.7 * MM);
-        assert!(
-            error.protrusion <= 0.5 * tolerance && error.gap <= tolerance,
-            "case {case}: {error:?}"
-        );
+        assert_packs(&solid, 0.4 * MM, 0.7 * MM, &format!("case {case}"));
         n_packed += 1;
     }
     assert!(n_packed > 20, "{n_packed}");
@@ -250,70 +152,38 @@ fn whatever_is_subtracted_the_rest_packs_within_the_tolerance() {
 
 #[test]
 fn a_shape_that_is_subtracted_from_itself_leaves_nothing_to_touch() {
-    let ball = Shape::Ball { diameter: 10. * MM };
-    let part = Part::new(ball.clone(), Pose::IDENTITY).unwrap();
-    let error = Solid::from_shape(ball)
-        .unwrap()
-        .less(vec![part])
-        .unwrap_err();
+    let ball = "ball diameter=0.01";
+    let error = solid(ball).less(vec![part(ball, [0.0; 3])]).unwrap_err();
     assert!(error.to_string().starts_with("subtract: "), "{error}");
 }
 
 #[test]
 fn the_measured_surface_error_sees_a_sphere_that_is_missing_or_too_large() {
-    let solid = Solid::from_shape(Shape::Cylinder {
-        diameter: 30. * MM,
-        height: 20. * MM,
-    })
-    .unwrap();
+    let solid = solid("cylinder diameter=0.03 height=0.02");
     let union = pack(&solid, 0.2 * MM).unwrap();
     let mut fewer = union.spheres().to_vec();
     fewer.remove(0);
-    let fewer = bubbletouch_sim::objects::SphereUnion::new(fewer).unwrap();
+    let fewer = SphereUnion::new(fewer).unwrap();
     assert!(surface_error(&solid, &fewer, 0.2 * MM).gap > 0.2 * MM);
     let mut larger = union.spheres().to_vec();
     larger[0].radius += 0.3 * MM;
-    let larger = bubbletouch_sim::objects::SphereUnion::new(larger).unwrap();
+    let larger = SphereUnion::new(larger).unwrap();
     assert!(surface_error(&solid, &larger, 0.2 * MM).protrusion > 0.29 * MM);
 }
 
 #[test]
 fn simple_shapes_take_few_spheres() {
-    let count = |shape: Shape, tolerance: f64| {
-        pack(&Solid::from_shape(shape).unwrap(), tolerance)
-            .unwrap()
-            .n_spheres()
-    };
-    assert_eq!(count(Shape::Ball { diameter: 65. * MM }, 0.1 * MM), 1);
+    let count = |text: &str, tolerance: f64| pack(&solid(text), tolerance).unwrap().n_spheres();
+    assert_eq!(count("ball diameter=0.065", 0.1 * MM), 1);
     // Each ball of the row covers 2 · sqrt(0.375 · 10.375) = 3.9 mm of the 90 mm between the ends, which cover 1.6 mm each.
-    assert_eq!(
-        count(
-            Shape::Capsule {
-                diameter: 10. * MM,
-                length: 100. * MM
-            },
-            0.25 * MM
-        ),
-        25
-    );
-    let torus = Shape::Torus {
-        ring_diameter: 60. * MM,
-        tube_diameter: 10. * MM,
-    };
+    assert_eq!(count("capsule diameter=0.01 length=0.1", 0.25 * MM), 25);
+    let torus = "torus ring_diameter=0.06 tube_diameter=0.01";
     assert_eq!(count(torus, 0.25 * MM), 52);
     // The rims have balls of about 1.2 mm, one ball per slice of the barrel.
-    assert!(
-        count(
-            Shape::Cylinder {
-                diameter: 19. * MM,
-                height: 121. * MM
-            },
-            0.25 * MM
-        ) <= 290
-    );
+    let barrel = "cylinder diameter=0.019 height=0.121";
+    assert!(count(barrel, 0.25 * MM) <= 290);
     // Expected spheres: 12 edges at 5.66 e, then about 4 A / 8er spheres on 2 · 158 · 210 mm² and the four sides.
-    let size = DVec3::new(158., 60., 210.) * MM;
-    assert!(count(Shape::Box { size, rounding: 0. }, 0.5 * MM) <= 3_700);
+    assert!(count("box size=[0.158,0.06,0.21]", 0.5 * MM) <= 3_700);
 }
 
 #[test]
@@ -329,112 +199,82 @@ fn packing_twice_gives_the_same_bits() {
 
 #[test]
 fn spheres_deep_inside_another_part_are_left_out() {
-    let rod = Shape::Cylinder {
-        diameter: 4. * MM,
-        height: 100. * MM,
-    };
-    let ball = Shape::Ball { diameter: 60. * MM };
-    let part = |shape: &Shape| Part::new(shape.clone(), Pose::IDENTITY).unwrap();
-    let alone = pack(&Solid::from_shape(rod.clone()).unwrap(), 0.2 * MM)
-        .unwrap()
-        .n_spheres();
-    let both = Solid::new(vec![part(&ball), part(&rod)]).unwrap();
+    let rod = "cylinder diameter=0.004 height=0.1";
+    let alone = pack(&solid(rod), 0.2 * MM).unwrap().n_spheres();
+    let parts = ["ball diameter=0.06", rod].map(|text| part(text, [0.0; 3]));
+    let both = Solid::new(parts.to_vec()).unwrap();
     let packed = pack(&both, 0.2 * MM).unwrap();
-    let inside = packed.spheres()[1..]
-        .iter()
-        .filter(|s| s.center.length() < 25. * MM)
-        .count();
-    assert_eq!(inside, 0);
+    let mut others = packed.spheres()[1..].iter();
+    assert!(others.all(|s| s.center.length() >= 25. * MM));
     assert!(packed.n_spheres() < alone);
 }
 
 #[test]
 fn dimensions_out_of_range_are_refused_by_name() {
-    let cases = [
-        (Shape::Ball { diameter: f64::NAN }, "diameter: NaN m"),
-        (
-            Shape::Box {
-                size: DVec3::new(1., -2., 3.),
-                rounding: 0.,
-            },
-            "size: -2 m",
-        ),
-        (
-            Shape::Box {
-                size: DVec3::ONE,
-                rounding: 0.6,
-            },
-            "rounding: 0.6 m; 0 m to 0.5 m",
-        ),
-        (
-            Shape::Capsule {
-                diameter: 2.,
-                length: 1.,
-            },
-            "length: 1 m; 2 m or more",
-        ),
-        (
-            Shape::ConeFrustum {
-                bottom_diameter: 0.,
-                top_diameter: 0.,
-                height: 1.,
-            },
-            "top_diameter: 0 m; a finite positive length",
-        ),
-        (
-            Shape::Torus {
-                ring_diameter: 1.,
-                tube_diameter: 2.,
-            },
-            "ring_diameter: 1 m; 2 m or more",
-        ),
-        (
-            Shape::Tube {
-                outer_diameter: 1.,
-                inner_diameter: 1.,
-                height: 1.,
-            },
-            "inner_diameter: 1 m; less than the outer diameter of 1 m",
-        ),
-        (
-            Shape::Lathe {
-                profile: vec![DVec2::ZERO, DVec2::X],
-            },
-            "profile: 2 corners",
-        ),
-        (
-            Shape::Lathe {
-                profile: vec![DVec2::ZERO, DVec2::NEG_X, DVec2::Y],
-            },
-            "profile: corner 2 left of the axis",
-        ),
-        (
-            Shape::Prism {
-                outline: vec![DVec2::ZERO, DVec2::X, DVec2::NAN],
-                thickness: 1.,
-            },
-            "outline: corner 3, which is not finite",
-        ),
-        (
-            Shape::SphereSweep {
-                points: vec![DVec3::ZERO],
-                diameters: vec![],
-            },
-            "diameters: 1 points and 0 diameters",
-        ),
-        (
-            Shape::SphereSweep {
-                points: vec![DVec3::ZERO; 2],
-                diameters: vec![1.; 2],
-            },
-            "points: point 2 as the one before",
-        ),
-    ];
-    for (shape, expected) in cases {
-        let error = Solid::from_shape(shape).unwrap_err().to_string();
+    let cases = "ball diameter=nan | diameter: NaN m
+        box size=[1,-2,3] | size: -2 m
+        box size=[1,1,1] rounding=0.6 | rounding: 0.6 m; 0 m to 0.5 m
+        capsule diameter=2 length=1 | length: 1 m; 2 m or more
+        cone_frustum bottom_diameter=0 top_diameter=0 height=1 | top_diameter: 0 m; a finite positive length
+        torus ring_diameter=1 tube_diameter=2 | ring_diameter: 1 m; 2 m or more
+        tube outer_diameter=1 inner_diameter=1 height=1 | inner_diameter: 1 m; less than the outer diameter of 1 m
+        lathe profile=[[0,0],[1,0]] | profile: 2 corners
+        lathe profile=[[0,0],[-1,0],[0,1]] | profile: corner 2 left of the axis
+        prism outline=[[0,0],[1,0],[nan,nan]] thickness=1 | outline: corner 3, which is not finite
+        strand points=[[0,0,0]] diameters=[] | diameters: 1 points and 0 diameters
+        strand points=[[0,0,0],[0,0,0]] diameters=[1,1] | points: point 2 as the one before";
+    for case in cases.lines() {
+        let (text, expected) = case.trim().split_once(" | ").unwrap();
+        let error = Solid::from_shape(shape(text)).unwrap_err().to_string();
         assert!(
             error.starts_with(expected),
             "expected `{expected}` in: {error}"
         );
+    }
+}
+
+/// Returns a random shape with lengths over four decades, for thin plates, needles, tiny and huge solids.
+fn random_shape(rng: &mut impl Rng) -> String {
+    let mut length = || MM * 10f64.powf(rng.gen_range(-1.0..2.5));
+    let (a, b, c) = (length(), length(), length());
+    let sum = a + b;
+    match rng.gen_range(0..10) {
+        0 => format!("ball diameter={a}"),
+        1 => format!("box size=[{a},{b},{c}]"),
+        2 => {
+            let rounding = rng.gen_range(0.0..=0.5) * a.min(b).min(c);
+            format!("box size=[{a},{b},{c}] rounding={rounding}")
+        }
+        3 => format!("cylinder diameter={a} height={b}"),
+        4 => format!("capsule diameter={a} length={sum}"),
+        5 => {
+            let top = if rng.gen_bool(0.3) { 0.0 } else { b };
+            format!("cone_frustum bottom_diameter={a} top_diameter={top} height={c}")
+        }
+        6 => format!("torus ring_diameter={sum} tube_diameter={a}"),
+        7 => format!("tube outer_diameter={sum} inner_diameter={a} height={c}"),
+        8 => {
+            format!("strand points=[[0,0,0],[{a},{b},{c}],[-{b},{c},{a}]] diameters=[{c},{a},{b}]")
+        }
+        _ => format!(
+            "prism outline=[[0,0],[{a},{}],[{},{}],[{},{b}]] thickness={c}",
+            0.1 * b,
+            0.5 * a,
+            0.3 * b,
+            0.6 * a
+        ),
+    }
+}
+
+#[test]
+fn random_solids_pack_within_the_tolerance() {
+    for case in 0..600 {
+        let mut rng = Seed::new(2).named("packing").numbered(case).rng();
+        let text = random_shape(&mut rng);
+        let solid = solid(&text);
+        let size = solid.bounds().size().max_element();
+        let tolerance = size * 10f64.powf(rng.gen_range(-2.7..0.7));
+        let spacing = (solid.bounds().size().length() / 60.0).min(20.0 * tolerance);
+        assert_packs(&solid, tolerance, spacing, &format!("case {case}: {text}"));
     }
 }
