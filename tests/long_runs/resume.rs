@@ -7,15 +7,29 @@ use crate::kinds::Kind;
 use crate::pieces::Faults;
 use bubbletouch::study::write_integers;
 use std::fs;
+use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Study with two arrays that trains 64 classifiers in less than a second.
 const STUDY: &str = include_str!("../fixtures/kinds/recognition.toml");
 
-/// Runs the study into the folder `whole`.
+/// Paths and contents of the results of the study, which all tests share.
+static WHOLE: LazyLock<Vec<(String, Vec<u8>)>> = LazyLock::new(|| {
+    let case = Faults::new(Kind::named("recognition")).case;
+    let paths = case.names_in("whole").into_iter();
+    let paths = paths.map(|name| format!("whole/{name}"));
+    paths.map(|path| (path.clone(), case.bytes(&path))).collect()
+});
+
+/// Returns the study with its results in the folder `whole`.
 fn whole() -> Faults {
-    Faults::new(Kind::named("recognition"))
+    let kind = Kind::named("recognition");
+    let case = kind.case();
+    for (path, content) in WHOLE.iter() {
+        case.file(path, content);
+    }
+    Faults { kind, case }
 }
 
 #[test]
