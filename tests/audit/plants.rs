@@ -1,7 +1,7 @@
 //! Planted faults: each is found under its own name in all of five seeds.
 
 use crate::sets::*;
-use bubbletouch::audit::{Finding, Verdict};
+use bubbletouch::audit::Verdict;
 use ndarray::{Axis, concatenate};
 use rand::Rng;
 use rand::seq::SliceRandom;
@@ -175,25 +175,18 @@ const PLANTS: [Plant; 29] = [
         }
         set
     }),
-    note(
-        "missing_readings",
-        "missing readings that are −1",
-        |seed| {
-            let mut set = channels(seed, 16);
-            set.frames.mapv_inplace(|x| 500.0 + 20.0 * x);
-            (0..12).for_each(|k| set.frames[(19 * k, 5)] = -1.0);
-            set
-        },
-    ),
+    note("missing_readings", "missing readings as −1", |seed| {
+        let mut set = channels(seed, 16);
+        set.frames.mapv_inplace(|x| 500.0 + 20.0 * x);
+        (0..12).for_each(|k| set.frames[(19 * k, 5)] = -1.0);
+        set
+    }),
     fault("padding", "padding by class", |seed| {
         Set::of("padding", seed, [4, 50], 30, |_, class, rng| {
             let end = rng.gen_range(14..18) + 3 * class;
-            row(30 * 6, |k| {
-                if k / 6 < end {
-                    1.0 + 0.3 * normal(rng)
-                } else {
-                    0.0
-                }
+            row(30 * 6, |k| match k / 6 < end {
+                true => 1.0 + 0.3 * normal(rng),
+                false => 0.0,
             })
         })
     }),
@@ -204,47 +197,34 @@ const PLANTS: [Plant; 29] = [
     }),
     fault("session", "classes in sessions of their own", |seed| {
         let mut set = Set::discs(seed);
-        let sessions = set.labels.clone().into_iter().map(|class| {
-            if set.rng.gen_bool(0.6) {
-                class
-            } else {
-                set.rng.gen_range(0..5)
-            }
+        let classes = set.labels.clone().into_iter();
+        let sessions = classes.map(|class| match set.rng.gen_bool(0.6) {
+            true => class,
+            false => set.rng.gen_range(0..5),
         });
         set.sessions = Some(sessions.collect());
         set
     }),
-    fault(
-        "split group",
-        "classes that share groups unevenly",
-        |seed| {
-            // Each of 20 subjects has mostly one class, and a style of its own.
-            let mut rng = rng("uneven", seed);
-            let subjects: Vec<usize> = (0..300).map(|k| k % 20).collect();
-            let class = |subject: usize, rng: &mut ChaCha8Rng| match rng.gen_bool(0.8) {
-                true => subject % 5,
-                false => rng.gen_range(0..5),
-            };
-            let labels = subjects
-                .iter()
-                .map(|&subject| class(subject, &mut rng))
-                .collect();
-            let mut set = Set::new(rng, labels, 1, |_, _, rng| row(24, |_| 0.4 * normal(rng)));
-            set.add_styles(&subjects, 1.0);
-            let labels = set.labels.clone();
-            set.add_styles(&labels, 0.15);
-            set.groups(subjects)
-        },
-    ),
-    fault(
-        "shared groups",
-        "a test set of groups of one class",
-        |seed| {
-            let mut set = instances(seed, 8);
-            set.is_test = Some((0..set.n()).map(|k| k % 4 == 0).collect());
-            set
-        },
-    ),
+    fault("split group", "classes in groups unevenly", |seed| {
+        // Each of 20 subjects has mostly one class, and a style of its own.
+        let mut rng = rng("uneven", seed);
+        let subjects: Vec<usize> = (0..300).map(|k| k % 20).collect();
+        let class = |&subject: &usize| match rng.gen_bool(0.8) {
+            true => subject % 5,
+            false => rng.gen_range(0..5),
+        };
+        let labels = subjects.iter().map(class).collect();
+        let mut set = Set::new(rng, labels, 1, |_, _, rng| row(24, |_| 0.4 * normal(rng)));
+        set.add_styles(&subjects, 1.0);
+        let labels = set.labels.clone();
+        set.add_styles(&labels, 0.15);
+        set.groups(subjects)
+    }),
+    fault("shared groups", "a test set of groups", |seed| {
+        let mut set = instances(seed, 8);
+        set.is_test = Some((0..set.n()).map(|k| k % 4 == 0).collect());
+        set
+    }),
     note("split group", "two days of alike touches", |seed| {
         let mut set = Set::of("two days", seed, [5, 40], 1, |_, _, rng| {
             row(24, |_| 0.3 * normal(rng))
@@ -321,15 +301,11 @@ fn each_plant_is_found_under_its_own_name_in_five_seeds() {
         .flat_map(|plant| (0..5).into_par_iter().map(move |seed| (plant, seed)));
     let missed = sets.filter_map(|(plant, seed)| {
         let findings = (plant.make)(seed).findings();
-        let is_own = |finding: &&Finding| {
-            plant.name == format!("{} {}", finding.check, finding.subject).trim_end()
-        };
-        let mut own = findings
-            .iter()
-            .filter(is_own)
-            .map(|finding| finding.verdict);
-        let is_found =
-            own.any(|verdict| verdict <= plant.verdict && verdict != Verdict::NotChecked);
+        let is_found = findings.iter().any(|finding| {
+            let name = format!("{} {}", finding.check, finding.subject);
+            let is_own = plant.name == name.trim_end();
+            is_own && finding.verdict <= plant.verdict && finding.verdict != Verdict::NotChecked
+        });
         let others = faults(&findings);
         (!is_found).then(|| format!("{} ({}), seed {seed}: {others:#?}", plant.name, plant.about))
     });

@@ -169,15 +169,13 @@ impl Set {
     }
 
     pub fn findings(self) -> Vec<Finding> {
-        let n_classes = self.labels.iter().max().unwrap() + 1;
+        let classes = 0..*self.labels.iter().max().unwrap() + 1;
         let data = AuditData {
             frames: self.frames,
             n_frames: self.n_frames,
             grid: self.grid,
             labels: Some(self.labels),
-            classes: (0..n_classes)
-                .map(|class| format!("class {class}"))
-                .collect(),
+            classes: classes.map(|class| format!("class {class}")).collect(),
             groups: self.groups,
             sessions: self.sessions,
             is_test: self.is_test,
@@ -190,18 +188,11 @@ impl Set {
 
 /// Returns the faults, with their sentences.
 pub fn faults(findings: &[Finding]) -> Vec<String> {
-    let faults = findings
-        .iter()
-        .filter(|finding| finding.verdict == Verdict::Fault);
-    faults
-        .map(|fault| {
-            format!(
-                "{} {}: {} {}",
-                fault.check,
-                fault.subject,
-                fault.p_text(),
-                fault.sentence
-            )
-        })
-        .collect()
+    let words = |fault: &Finding| {
+        let (place, p_value) = (format!("{} {}", fault.check, fault.subject), fault.p_text());
+        format!("{place}: {p_value} {}", fault.sentence)
+    };
+    let findings = findings.iter();
+    let faults = findings.filter(|finding| finding.verdict == Verdict::Fault);
+    faults.map(words).collect()
 }

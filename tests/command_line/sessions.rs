@@ -152,9 +152,8 @@ impl Step {
 fn every_session_ends_as_written() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/sessions");
     let paths = fs::read_dir(folder).unwrap();
-    let mut all: Vec<Session> = paths
-        .flat_map(|path| sessions(&path.unwrap().path()))
-        .collect();
+    let sessions = paths.flat_map(|path| sessions(&path.unwrap().path()));
+    let mut all: Vec<Session> = sessions.collect();
     if let Ok(name) = std::env::var("SESSION") {
         all.retain(|session| session.title.contains(&name));
     }
@@ -162,12 +161,8 @@ fn every_session_ends_as_written() {
         let case = Case::new();
         for step in &session.steps {
             let failures = failures_of(&[step], |step| step.check(&case));
-            let Session { title, .. } = session;
-            assert!(
-                failures.is_empty(),
-                "{title}\n$ {}\n{failures:?}",
-                step.command
-            );
+            let place = format!("{}\n$ {}", session.title, step.command);
+            assert!(failures.is_empty(), "{place}\n{failures:?}");
         }
     });
     assert!(failures.is_empty(), "{}", failures.join("\n"));

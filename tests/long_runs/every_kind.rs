@@ -72,11 +72,9 @@ impl Faults {
     /// Compares three shards at 1, 2 and 7 threads, merged, with one run at all threads.
     fn has_the_same_tables_in_shards_at_any_number_of_threads(&self) {
         for (shard, threads) in [("2/3", "1"), ("1/3", "2"), ("3/3", "7")] {
-            self.case
-                .refuses(&["merge", "study.toml", "--out", "parts"]);
-            let run = ["run", "study.toml", "--out", "parts", "--shard", shard];
-            self.case
-                .succeeds(&[&run[..], &["--threads", threads]].concat());
+            self.case.refuses("merge study.toml --out parts");
+            let run = format!("run study.toml --out parts --shard {shard}");
+            self.case.succeeds(&format!("{run} --threads {threads}"));
         }
         self.case.succeeds("merge study.toml --out parts");
         self.assert_same_tables("parts");
@@ -133,10 +131,10 @@ impl Faults {
 
     fn is_verified_until_a_number_is_changed(&self) {
         let n = self.n_pieces();
-        let (output, _) =
-            self.case
-                .succeeds(&["verify", "whole", "--configurations", &n.min(5).to_string()]);
-        let expected = format!("{} of {n} work items ran again", n.min(5));
+        let few = n.min(5);
+        let verify = format!("verify whole --configurations {few}");
+        let (output, _) = self.case.succeeds(&verify);
+        let expected = format!("{few} of {n} work items ran again");
         says(&output, &[&expected]);
         let path = self.case.path("whole").join(&self.kind.repeatable[0]);
         let manifest = self.case.path("whole/manifest.json");
@@ -165,10 +163,7 @@ fn is_advised(case: &Case, choices: &[String; 3]) {
     let [file, value, cost] = choices.each_ref().map(String::as_str);
     let columns = ["--value", value, "--cost", cost];
     let all = advice(case, &[&columns[..], &["--budget", "1e12"]].concat());
-    assert_eq!(
-        (&all["table"], &all["value"]),
-        (&file.into(), &value.into())
-    );
+    assert_eq!([&all["table"], &all["value"]], [file, value]);
     let cost_column = all["cost"].as_str().unwrap().to_owned();
     let (_, tables) = read_tables(&case.path("whole")).unwrap();
     let table = tables.iter().find(|table| table.file == file).unwrap();
@@ -303,10 +298,8 @@ fn check_sorted(file: &str, sort: &Value, rows: Option<&[Row]>) {
                 true => pair[0] <= pair[1],
                 false => pair[1] <= pair[0],
             };
-            assert!(
-                is_in_order || pair[1].is_nan(),
-                "{file}, {column}: {numbers:?}"
-            );
+            let is_right = is_in_order || pair[1].is_nan();
+            assert!(is_right, "{file}, {column}: {numbers:?}");
         }
     }
 }

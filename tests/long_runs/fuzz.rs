@@ -37,13 +37,10 @@ fn files(name: &str, ending: &str, longest: usize) -> Vec<Vec<u8>> {
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let is_it = |path: &PathBuf| path.extension().is_some_and(|e| e == ending);
-    let contents = paths
-        .into_iter()
-        .filter(is_it)
-        .map(|path| fs::read(path).unwrap());
-    let found: Vec<_> = contents
-        .filter(|content| content.len() <= longest)
-        .collect();
+    paths.retain(is_it);
+    let contents = paths.iter().map(|path| fs::read(path).unwrap());
+    let mut found: Vec<Vec<u8>> = contents.collect();
+    found.retain(|content| content.len() <= longest);
     assert!(!found.is_empty(), "{name}");
     found
 }
@@ -237,11 +234,8 @@ fn tables_of_results() {
 fn journals() {
     let at = folder_in_memory();
     let path = at.path().join("journal.jsonl");
-    let identity = Identity::new(
-        "seed = 1\n[skin]\npitch_mm = 2.0\n".to_owned(),
-        Default::default(),
-        Default::default(),
-    );
+    let study = "seed = 1\n[skin]\npitch_mm = 2.0\n".to_owned();
+    let identity = Identity::new(study, Default::default(), Default::default());
     let journal = Journal::open(&path, &identity).unwrap();
     journal.keep("cell 0, trial 0", &vec![0.5, 1.5]).unwrap();
     journal.keep("cell 1, trial 0", &"failed: \"so\"").unwrap();
@@ -265,19 +259,15 @@ fn journals() {
 fn with_checksums(input: &[u8]) -> Vec<u8> {
     let mut first = None;
     let line = |line: &[u8]| -> Vec<u8> {
-        let json = line
-            .splitn(2, |&byte| byte == b' ')
-            .nth(1)
-            .unwrap_or_default();
+        let json = line.splitn(2, |&byte| byte == b' ').nth(1);
+        let json = json.unwrap_or_default();
         let whole = json.strip_suffix(b"\n").unwrap_or(json);
         let sum = crc32(first.unwrap_or(0), whole);
         first.get_or_insert(sum);
         [format!("{sum:08x} ").as_bytes(), json].concat()
     };
-    input
-        .split_inclusive(|&byte| byte == b'\n')
-        .flat_map(line)
-        .collect()
+    let lines = input.split_inclusive(|&byte| byte == b'\n');
+    lines.flat_map(line).collect()
 }
 
 /// Creates a folder in memory if the system has one.

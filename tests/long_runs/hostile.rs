@@ -133,12 +133,9 @@ fn visit(file: &File, value: &Value, path: &mut Vec<String>, found: &mut Vec<(St
         _ => return,
     }
     for step in steps {
-        let inner = match value {
-            Value::Array(values) => step
-                .parse()
-                .ok()
-                .and_then(|number: usize| values.get(number)),
-            value => value.get(&step),
+        let inner = match (value, step.parse::<usize>()) {
+            (Value::Array(values), Ok(number)) => values.get(number),
+            (value, _) => value.get(&step),
         };
         path.push(step);
         for hostile in values() {
@@ -221,11 +218,8 @@ fn answer(case: &Case, line: &(impl CommandLine + ?Sized)) -> Answer {
 
 /// Returns what is wrong with a result; `None` if the input was accepted, or refused correctly.
 fn wrong(answer: &Answer, is_unchanged: bool) -> Option<String> {
-    let n_sentences = answer
-        .said
-        .lines()
-        .filter(|l| l.starts_with("error:"))
-        .count();
+    let sentences = answer.said.lines().filter(|l| l.starts_with("error:"));
+    let n_sentences = sentences.count();
     // Other tests run at the same time; alone, the limit is two seconds.
     let most = Duration::from_secs(if is_long() { 2 } else { 10 });
     let said = answer.said.trim();
@@ -329,10 +323,8 @@ fn place(value: &Value, names: &[&str]) -> Option<Vec<String>> {
 fn every_number_outside_the_range_of_its_key_is_refused_with_the_key() {
     let case = case();
     let (mut tried, mut faults) = (BTreeSet::new(), Vec::new());
-    for file in files()
-        .iter()
-        .filter(|file| file.command.starts_with("plan"))
-    {
+    let is_study = |file: &&File| file.command.starts_with("plan");
+    for file in files().iter().filter(is_study) {
         let table: Table = file.text.parse().unwrap();
         let kind = kinds::about(&file.text).map_or("recognition", |about| about.table);
         for key in kinds::keys(kind).unwrap() {
@@ -342,9 +334,8 @@ fn every_number_outside_the_range_of_its_key_is_refused_with_the_key() {
             };
             for number in outside(key.range) {
                 let text = replaced(&table, &path, &number).unwrap();
-                let given = text
-                    .lines()
-                    .position(|line| line == format!("{} = {number}", key.name()));
+                let written = format!("{} = {number}", key.name());
+                let given = text.lines().position(|line| line == written);
                 let line = given.map_or("no line".to_owned(), |line| format!(":{}:", line + 1));
                 let said = planned(&case, &text).err().map(|error| error.to_string());
                 let names_it = |said: &String| said.contains(key.name()) || said.contains(&line);
@@ -411,24 +402,17 @@ fn every_file_that_is_broken_is_refused_in_one_sentence_or_read() {
     case.succeeds("simulate scene.toml --out moved --quiet");
     let commands: BTreeMap<String, Vec<String>> =
         toml::from_str(include_str!("hostile/commands.toml")).unwrap();
-    let ways = [
-        "missing",
-        "empty",
-        "truncated",
-        "wrong kind",
-        "a folder",
-        "unreadable",
-    ];
+    let ways = "missing, empty, truncated, wrong kind, a folder, unreadable";
     let (mut n, mut faults) = (0, Vec::new());
     for (number, (name, commands)) in commands.iter().enumerate() {
         let path = case.path(name);
         let whole = fs::read(&path).unwrap();
-        for (way, how) in ways.iter().enumerate() {
+        for (way, how) in ways.split(", ").enumerate() {
             if !is_long() && (number + way) % 4 != 0 {
                 continue;
             }
             fs::remove_file(&path).unwrap();
-            match *how {
+            match how {
                 "missing" => {}
                 "empty" => fs::write(&path, []).unwrap(),
                 "truncated" => fs::write(&path, &whole[..whole.len() / 2]).unwrap(),

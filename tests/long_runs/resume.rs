@@ -17,9 +17,12 @@ const STUDY: &str = include_str!("../fixtures/kinds/recognition.toml");
 /// Paths and contents of the results of the study, which all tests share.
 static WHOLE: LazyLock<Vec<(String, Vec<u8>)>> = LazyLock::new(|| {
     let case = Faults::new(Kind::named("recognition")).case;
-    let paths = case.names_in("whole").into_iter();
-    let paths = paths.map(|name| format!("whole/{name}"));
-    paths.map(|path| (path.clone(), case.bytes(&path))).collect()
+    let file = |name: String| {
+        let path = format!("whole/{name}");
+        let content = case.bytes(&path);
+        (path, content)
+    };
+    case.names_in("whole").into_iter().map(file).collect()
 });
 
 /// Returns the study with its results in the folder `whole`.
@@ -106,10 +109,8 @@ fn forged(line: &str, old: &str, new: &str) -> String {
 #[test]
 fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_it_is() {
     let case = whole().case;
-    case.file(
-        "other.toml",
-        STUDY.replace("stroke_mm = 5.0", "stroke_mm = 4.0"),
-    );
+    let other = STUDY.replace("stroke_mm = 5.0", "stroke_mm = 4.0");
+    case.file("other.toml", other);
     case.succeeds("run other.toml --out other");
     let (ours, theirs) = (lines_of(&case, "whole"), lines_of(&case, "other"));
     let header = forged(&ours[0], "stroke_mm = 5.0", "stroke_mm = 4.0");
@@ -207,10 +208,9 @@ const FAILING: &str = include_str!("../fixtures/texts/resume_failing.toml");
 fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
     let case = Case::with("failing.toml", FAILING);
     // Twenty rows of 17 numbers have 2,720 bytes.
-    case.file(
-        "many.sh",
-        "[ $(wc -c < $1) -gt 5000 ] || { echo too few rows >&2; exit 1; }\ncp first.npy $3\n",
-    );
+    let many =
+        "[ $(wc -c < $1) -gt 5000 ] || { echo too few rows >&2; exit 1; }\ncp first.npy $3\n";
+    case.file("many.sh", many);
     write_integers(&case.path("first.npy"), [0; 60]).unwrap();
     let run = ["run", "failing.toml", "--out", "failing"];
     let output = case.run(&run);
@@ -260,9 +260,8 @@ fn a_program_that_starts_a_run_reads_json_lines_and_nothing_else() {
     assert_eq!(error, "");
     let events = output
         .lines()
-        .map(|line| serde_json::from_str(line).unwrap());
-    let events: Vec<serde_json::Value> = events.collect();
-    let last = events.last().unwrap();
+        .map(serde_json::from_str::<serde_json::Value>);
+    let last = events.map(Result::unwrap).last().unwrap();
     assert_eq!(last["event"], "finished");
     for field in ["work_items", "finished_before"] {
         assert_eq!(last[field], 66);

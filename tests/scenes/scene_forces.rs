@@ -85,10 +85,7 @@ fn tips_are_dragged_from_step_to_step_as_by_hand() {
         n_sticking = n_sticking.max(counts.n_sticking);
         n_slipping = n_slipping.max(counts.n_slipping);
     }
-    assert!(
-        n_sticking > 20 && n_slipping > 20,
-        "{n_sticking} {n_slipping}"
-    );
+    assert!(n_sticking.min(n_slipping) > 20, "{n_sticking} {n_slipping}");
 }
 
 #[test]
@@ -106,11 +103,9 @@ fn forces_of_the_tips_are_the_wrench_and_stay_in_their_cones() {
         }
         let pressed: f64 = reading.force.iter().sum();
         assert!(friction.shear.length() <= 0.7 * pressed * (1.0 + 1e-12));
-        assert_eq!(
-            friction.n_sticking + friction.n_slipping,
-            reading.n_touched,
-            "each tip that is pressed sticks or slips"
-        );
+        // Each tip that is pressed sticks or slips.
+        let n_tips = friction.n_sticking + friction.n_slipping;
+        assert_eq!(n_tips, reading.n_touched);
         most = most.max(friction.shear.length() / pressed.max(1e-9));
     }
     assert!(most > 0.4, "{most}");
@@ -136,13 +131,8 @@ fn a_drawn_object_and_a_patch_drawn_the_other_way_feel_the_same_friction() {
     assert!(text != drawn(ROUGH) && object.n_frames > 40);
     let object = frames(&plan(&text));
     for (a, b) in frames(&patch).iter().zip(&object) {
-        let [a, b] = [a, b].map(|frame| frame.patches[0].friction.as_ref().unwrap());
-        assert!(
-            (a.shear - b.shear).length() < 1e-9,
-            "{} {}",
-            a.shear,
-            b.shear
-        );
+        let [a, b] = [a, b].map(|frame| frame.patches[0].friction.as_ref().unwrap().shear);
+        assert!((a - b).length() < 1e-9, "{a} {b}");
     }
     let held = object[44].patches[0].friction.as_ref().unwrap();
     assert!(held.shear.x > 1.0, "drawn along x: {}", held.shear);
@@ -207,10 +197,8 @@ fn a_skin_with_friction_carries_a_free_object_along_and_on_a_slope() {
     let slope = last.patches[0].pose.rotation * DVec3::X;
     let shear = last.patches[0].friction.as_ref().unwrap().shear.x;
     let pull = -weight * slope.z;
-    assert!(
-        pull > 0.2 * weight && shear > 0.5 * pull,
-        "{shear} of {pull}"
-    );
+    let is_held = pull > 0.2 * weight && shear > 0.5 * pull;
+    assert!(is_held, "{shear} of {pull}");
 
     let frames = on_a_tray(folder.path(), 0.02);
     let last = frames.last().unwrap();
@@ -238,10 +226,8 @@ fn taxels_that_differ_are_the_same_from_a_list_from_a_file_and_alone() {
     assert_eq!(frames(&resolved(&from_file)), from_list);
     // Each taxel behaves as in a patch of equal taxels.
     for (taxel, damped) in [(147, "0.0"), (148, "1.5")] {
-        let alone = format!(
-            "stiffness_n_per_m = {}\ndamping_n_s_per_m = {damped}",
-            stiffness(taxel)
-        );
+        let own = stiffness(taxel);
+        let alone = format!("stiffness_n_per_m = {own}\ndamping_n_s_per_m = {damped}");
         assert_eq!(damping(taxel) > 0.0, damped == "1.5");
         let alone = frames(&plan(&drawn(&alone)));
         let mut felt: f64 = 0.0;
@@ -320,10 +306,8 @@ fn a_damped_skin_feels_more_on_the_way_in_and_the_force_at_rest() {
     let (springs, all) = at(0.15);
     assert!(all > 1.02 * springs, "{springs} {all}");
     let (springs, all) = at(1.9);
-    assert!(
-        (springs - 3.0).abs() < 1e-9 && (all - 3.0).abs() < 1e-9,
-        "{springs} {all}"
-    );
+    let off = (springs - 3.0).abs().max((all - 3.0).abs());
+    assert!(off < 1e-9, "{springs} {all}");
 }
 
 #[test]
@@ -333,10 +317,9 @@ fn a_pushed_object_keeps_to_its_speed_and_its_travel_and_says_what_it_reached() 
     let Press { travel, force, .. } = pressed(&frames(&plan(&text))[0], 0);
     assert_eq!(travel, 6e-3);
     assert!(force > 0.5 && force < 50.0, "{force}");
-    let text = pushed(
-        "time_s = [0.0, 0.001], force_n = [0.0, 50.0], speed_mm_per_s = 20.0, travel_mm = 6.0",
-        "",
-    );
+    let step =
+        "time_s = [0.0, 0.001], force_n = [0.0, 50.0], speed_mm_per_s = 20.0, travel_mm = 6.0";
+    let text = pushed(step, "");
     let (frames, mut before) = (frames(&plan(&text)), 0.0);
     let mut summary = Summary::default();
     for frame in &frames {
@@ -372,13 +355,10 @@ fn an_object_that_is_pushed_too_hard_stays_felt_however_far_it_goes() {
 
 #[test]
 fn a_force_is_held_by_one_object_among_those_that_stand_there() {
-    let text = pushed(
-        &format!("{CURVE}, speed_mm_per_s = 200.0, travel_mm = 20.0"),
-        "",
-    );
-    let text = format!(
-        "{text}\n[[objects]]\nname = \"other\"\nobject = \"golf\"\nat = {{ position_mm = [25.0, 5.0, 0.7] }}"
-    );
+    let press = format!("{CURVE}, speed_mm_per_s = 200.0, travel_mm = 20.0");
+    let other =
+        "[[objects]]\nname = \"other\"\nobject = \"golf\"\nat = { position_mm = [25.0, 5.0, 0.7] }";
+    let text = format!("{}\n{other}", pushed(&press, ""));
     let frames = frames(&plan(&text));
     let alone = total(&frames[0].patches[0]);
     assert!(alone > 0.1 && alone < 1.0, "{alone}");

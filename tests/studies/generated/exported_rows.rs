@@ -11,15 +11,11 @@ fn n_correct_of_nearest_centroid(set: &FeatureSet) -> usize {
     let test = set.test().unwrap();
     let distances = centroid_distances(&set.training(None).unwrap(), &test.records);
     let nearest = distances.outer_iter().map(|row| {
-        let classes = row.iter().enumerate();
-        classes
-            .min_by(|a, b| a.1.total_cmp(b.1))
-            .map(|(class, _)| class)
+        let nearest = row.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
+        nearest.map(|(class, _)| class)
     });
-    nearest
-        .zip(&test.targets)
-        .filter(|(a, b)| *a == Some(**b))
-        .count()
+    let pairs = nearest.zip(&test.targets);
+    pairs.filter(|(a, b)| *a == Some(**b)).count()
 }
 
 #[test]
