@@ -101,6 +101,7 @@
 //! | [`world`] | taxels, layouts, resting poses → touches; robots and hands and their motion → poses |
 //! | [`contact`] | a scene and poses → deflections; free objects → poses at rest |
 //! | [`dynamics`] | taxels and objects with mass, over time: the reference for the quasi-static model |
+//! | [`skin`] | patches and bodies of a simulator: poses or contact forces → deflections and wrenches |
 //! | [`whole_body`] | millions of taxels, objects and poses → the touched taxels and their deflections |
 //! | [`signal`] | deflections → frames |
 //! | [`sensing`] | frames → measurements, and back |
@@ -204,5 +205,5 @@ pub(crate) use bubbletouch_sim::text::{
 };
 pub use bubbletouch_sim::{
     Error, Result, calibration, contact, dynamics, error, files, geometry, mesh, objects, packing,
-    random, sensing, signal, whole_body, world,
+    random, sensing, signal, skin, whole_body, world,
 };

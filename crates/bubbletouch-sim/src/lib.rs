@@ -8,6 +8,7 @@
 //! | [`world`] | taxels, layouts, resting poses → touches; robots and their motion → poses |
 //! | [`contact`] | a scene and poses → deflections and forces; free objects → poses at rest |
 //! | [`dynamics`] | a scene with masses → motion over time: a reference for the quasi-static model |
+//! | [`skin`] | patches and bodies of a simulator: poses or contact forces → deflections and wrenches |
 //! | [`whole_body`] | millions of taxels, objects and poses → the taxels that are touched |
 //! | [`signal`] | deflections → frames, as the electronics report them |
 //! | [`calibration`] | recorded frames → the parameters of the signal chain |
@@ -115,6 +116,7 @@ pub mod random;
 pub mod raster;
 pub mod sensing;
 pub mod signal;
+pub mod skin;
 pub mod statistics;
 #[doc(hidden)]
 pub mod text;

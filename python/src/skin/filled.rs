@@ -46,18 +46,21 @@ impl<'py, T: Element + Copy> Target<'py, T> {
         })
     }
 
-    /// Writes the results into the array, if there is one.
+    /// Writes the results, as many numbers as the array has, into the array, if there is one.
     ///
     /// # Errors
     /// If the array is in use elsewhere; the message begins with the place of the array.
-    pub fn fill(&self, numbers: &[T]) -> PyResult<()> {
+    pub fn fill_with<I: Iterator<Item = T>>(&self, numbers: impl FnOnce() -> I) -> PyResult<()> {
         let Some(array) = &self.array else {
             return Ok(());
         };
         let mut array = array
             .try_readwrite()
             .map_err(|error| bad_input(self.place, error, "a writeable array"))?;
-        array.as_slice_mut()?.copy_from_slice(numbers);
+        let targets = array.as_slice_mut()?.iter_mut();
+        targets
+            .zip(numbers())
+            .for_each(|(target, number)| *target = number);
         Ok(())
     }
 }

@@ -33,7 +33,6 @@
 //! **Friction** is optional. With [`Shear`](crate::world::Shear) springs the objects drag the taxels sideways until they slip. With friction each taxel
 //! measures a three-axis force ([`FrictionState`] has the equations). Without friction, and also with μ = 0, the forces are bitwise equal to `spring_load`.
 
-mod assigned_loads;
 mod damper;
 pub mod equilibrium;
 mod force_goal;
@@ -44,7 +43,6 @@ mod instructions;
 mod lanes_below;
 pub(crate) mod law;
 mod mesh;
-mod point_loads;
 mod press;
 mod press_summary;
 mod root_search;
@@ -54,7 +52,6 @@ mod tree;
 mod workspace;
 mod wrench;
 
-pub use assigned_loads::{AssignedLoads, LoadRange, LoadedPatch, assign_loads};
 pub(crate) use damper::Relaxation;
 pub use damper::{DamperState, relaxation_factor};
 pub use friction::{ContactMode, ContactModeCounts, FrictionLoad, FrictionState, NormalForce};
@@ -68,10 +65,6 @@ pub(crate) use lanes_below::LanesBelow;
 pub use law::saturation_limit;
 #[doc(hidden)]
 pub use law::triangle::stopping_height;
-pub use point_loads::{
-    CarriedLoad, LoadPart, LoadWorkspace, PointLoad, carry_loads, is_flat, share_friction,
-    travel_direction,
-};
 pub use press::{Press, Record, Until};
 pub use press_summary::Contact;
 pub(crate) use root_search::{Sample, crossing};

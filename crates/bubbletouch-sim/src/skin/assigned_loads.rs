@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Distances from the taxels of a patch within which contacts act on the patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoadRange {
+pub(super) struct LoadRange {
     /// Largest height above the nearest taxel, metres: the largest stroke plus the largest diameter of a taxel. Points of deep contacts are up to twice as far
     /// behind the taxel.
     pub reach: f64,
@@ -48,9 +48,20 @@ impl LoadRange {
     }
 }
 
+/// Contact force of a simulator on a rigid body that carries patches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyLoad {
+    /// Index of the carrier on which the force acts.
+    pub carrier: usize,
+    /// Index of the rigid object that touches the carrier.
+    pub object: usize,
+    /// Force in the world.
+    pub load: PointLoad,
+}
+
 /// Patch of a skin on its carrier.
 #[derive(Clone, Copy, Debug)]
-pub struct LoadedPatch<'a> {
+pub(super) struct LoadedPatch<'a> {
     /// Patch on which contacts act.
     pub patch: &'a Patch,
     /// Range within which contacts act on the patch; `reach` may be larger than the patch's own.
@@ -63,23 +74,24 @@ pub struct LoadedPatch<'a> {
 
 /// Contact forces by the patch and the object between which they act.
 #[derive(Clone, Debug, Default)]
-pub struct AssignedLoads {
+pub(super) struct AssignedLoads {
     /// Patch, object and load in the patch frame, sorted by patch and object.
     pub loads: Vec<(usize, usize, PointLoad)>,
     /// Patch, object and normal force, newtons, of contacts that act on no patch, at the nearest patch.
     pub beside: Vec<(usize, usize, f64)>,
 }
 
-/// Assigns contacts to patches. A contact has the index of the carrier on which its force acts, the index of the object that touches the carrier, and the force
-/// in the world.
-pub fn assign_loads(
-    patches: &[LoadedPatch],
-    contacts: impl IntoIterator<Item = (usize, usize, PointLoad)>,
-) -> AssignedLoads {
+/// Assigns contacts to patches.
+pub(super) fn assign_loads(patches: &[LoadedPatch], contacts: &[BodyLoad]) -> AssignedLoads {
     let mut found = AssignedLoads::default();
     let patch_from_world = patches.iter().map(|patch| patch.pose.inverse());
     let patch_from_world: Vec<Pose> = patch_from_world.collect();
-    for (carrier, object, load) in contacts {
+    for &BodyLoad {
+        carrier,
+        object,
+        load,
+    } in contacts
+    {
         let own = patches.iter().zip(&patch_from_world).enumerate();
         let own = own.filter(|(_, (patch, _))| patch.carrier == carrier);
         let places = own.map(|(number, (patch, patch_from_world))| {
@@ -179,6 +191,14 @@ mod tests {
         load.transformed(pose)
     }
 
+    fn on_body(carrier: usize, object: usize, load: PointLoad) -> BodyLoad {
+        BodyLoad {
+            carrier,
+            object,
+            load,
+        }
+    }
+
     fn wrench(load: &PointLoad) -> Wrench {
         let wrench = Wrench::at(load.point, load.normal + load.friction);
         Wrench {
@@ -209,10 +229,11 @@ mod tests {
                     (number % 3, number / 4, load)
                 })
                 .collect();
-            let contacts = expected
-                .iter()
-                .map(|(patch, object, load)| (3, *object, load.transformed(&patches[*patch].pose)));
-            let found = assign_loads(&patches, contacts);
+            let contacts = expected.iter().map(|(patch, object, load)| {
+                let pose = &patches[*patch].pose;
+                on_body(3, *object, load.transformed(pose))
+            });
+            let found = assign_loads(&patches, &contacts.collect::<Vec<_>>());
             assert_eq!((found.loads.len(), found.beside.len()), (12, 0));
             for patch in 0..3 {
                 for object in 0..3 {
@@ -262,7 +283,7 @@ mod tests {
             ([1e-3, 0.0, 0.0], tilted(59.99), [1, 0]),
             ([1e-3, 0.0, 0.0], tilted(60.01), [0, 1]),
         ] {
-            let found = assign_loads(&patches, [(0, 5, push(&pose, point, normal))]);
+            let found = assign_loads(&patches, &[on_body(0, 5, push(&pose, point, normal))]);
             assert_eq!(found.loads.len(), acting, "{point:?} {normal:?}");
             assert_eq!(found.beside.len(), beside, "{point:?} {normal:?}");
             for (patch, object, force) in found.beside {
@@ -275,7 +296,7 @@ mod tests {
         assert!((2.0 * range.ball.1 - diameter).abs() < 1e-15);
         let far = push(&pose, [4e-3 + outside * diameter, 2e-3, 0.0], tilted(0.0));
         let other = push(&pose, [0.0, 0.0, 0.0], tilted(0.0));
-        let found = assign_loads(&patches, [(0, 5, far), (1, 5, other)]);
+        let found = assign_loads(&patches, &[on_body(0, 5, far), on_body(1, 5, other)]);
         assert!(found.loads.is_empty() && found.beside.is_empty());
     }
 
@@ -287,7 +308,7 @@ mod tests {
         let patches = [on(&pad, 0, Pose::IDENTITY), on(&pad, 0, beside)];
         // 1 mm from the last column of the first patch, and from the first column of the second one.
         let between = push(&Pose::IDENTITY, [5e-3, 0.0, 0.0], [0.0, 0.0, -2.0]);
-        let found = assign_loads(&patches, [(0, 0, between)]);
+        let found = assign_loads(&patches, &[on_body(0, 0, between)]);
         assert_eq!((found.loads.len(), found.loads[0].0), (1, 0));
 
         // A plate of 1 mm with a patch on each side.
@@ -297,7 +318,7 @@ mod tests {
         for (z, force, patch) in [(-9e-4, -2.0, 0), (-1e-4, 2.0, 1)] {
             // The point is nearer to the patch of the other side.
             let contact = push(&Pose::IDENTITY, [1e-3, 0.0, z], [0.0, 0.0, force]);
-            let found = assign_loads(&patches, [(0, 0, contact)]);
+            let found = assign_loads(&patches, &[on_body(0, 0, contact)]);
             assert_eq!((found.loads.len(), found.loads[0].0), (1, patch));
             near(found.loads[0].2.normal, -2.0 * DVec3::Z);
         }

@@ -1,15 +1,18 @@
 //! Patches and bodies of a skin, and the press of a patch under a body at its pose.
 
-use bubbletouch::contact::{LoadRange, Press, Until, Workspace, Wrench, is_flat};
-use bubbletouch::geometry::{Aabb, Pose};
-use bubbletouch::objects::Model;
-use bubbletouch::world::{self, Taxels};
+use super::assigned_loads::LoadRange;
+use super::point_loads::is_flat;
+use crate::contact::{Press, Until, Workspace, Wrench};
+use crate::geometry::{Aabb, Pose};
+use crate::objects::Model;
+use crate::world::{Patch, Taxel, Taxels};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// Patch of a skin, with a ball that contains all its taxels.
-pub struct SkinPatch {
-    /// Patch of the Rust library.
-    pub patch: world::Patch,
+#[derive(Clone, Debug)]
+pub(super) struct SkinPatch {
+    pub patch: Patch,
     /// Index of the patch's first taxel in a frame of the skin.
     pub first: usize,
     /// Whether all taxels point along z.
@@ -21,19 +24,20 @@ pub struct SkinPatch {
     /// Largest stroke of a taxel, metres.
     pub stroke: f64,
     /// The same taxels with a stroke that is larger by `reach`.
-    deep: world::Patch,
+    deep: Patch,
 }
 
 /// Body that may touch the skin.
-pub struct Body {
+#[derive(Clone, Debug)]
+pub(super) struct Body {
     /// Contact model in the body's frame.
     pub model: Model,
     bounds: Aabb,
 }
 
 /// Bodies that move together as one rigid object.
-#[derive(Default)]
-pub struct RigidObject {
+#[derive(Clone, Debug, Default)]
+pub(super) struct RigidObject {
     /// Indices of the bodies.
     pub members: Vec<usize>,
     /// Contact models of the bodies, in the order of `members`.
@@ -63,7 +67,7 @@ impl Body {
 
 impl SkinPatch {
     /// Creates the part of a skin whose first taxel has the index `first` in a frame.
-    pub fn new(patch: world::Patch, first: usize) -> Self {
+    pub fn new(patch: Patch, first: usize) -> Self {
         let (layout, taxels) = (patch.layout(), patch.taxels().all());
         let stroke = taxels.iter().map(|taxel| taxel.stroke).fold(0.0, f64::max);
         let centers = layout.centers();
@@ -84,6 +88,11 @@ impl SkinPatch {
         }
     }
 
+    /// Returns the indices of the patch's taxels in a frame of the skin.
+    pub fn taxels(&self) -> Range<usize> {
+        self.first..self.first + self.patch.n_taxels()
+    }
+
     /// Returns whether a body may be closer to the patch than `margin`, metres. The test uses the bounding box of the body in its own frame and the ball
     /// around the patch.
     pub fn is_near(&self, body: &Body, patch_from_body: &Pose, margin: f64) -> bool {
@@ -95,7 +104,7 @@ impl SkinPatch {
     }
 
     /// Returns the patch with a stroke that is larger by `reach`, metres.
-    pub fn deep(&self, reach: f64) -> Cow<'_, world::Patch> {
+    pub fn deep(&self, reach: f64) -> Cow<'_, Patch> {
         if reach == self.range.reach {
             Cow::Borrowed(&self.deep)
         } else {
@@ -129,33 +138,22 @@ impl SkinPatch {
         }
     }
 
-    /// Adds the force and the torque of the normal forces on the patch, in its frame about its origin, N and N·m, to `wrench`.
-    pub fn add_normal_forces(&self, deflections: &[f64], wrench: &mut [f64]) {
+    /// Returns a wrench with the force and the torque of the normal forces on the patch added, in its frame about its origin.
+    pub fn with_normal_forces(&self, wrench: Wrench, deflections: &[f64]) -> Wrench {
         let (layout, taxels) = (self.patch.layout(), self.patch.taxels());
         let places = layout.centers().iter().zip(layout.axes());
         let touched = deflections.iter().zip(places).enumerate();
-        for (index, (deflection, (center, axis))) in touched.filter(|(_, (d, _))| **d > 0.0) {
+        let touched = touched.filter(|(_, (deflection, _))| **deflection > 0.0);
+        touched.fold(wrench, |sum, (index, (deflection, (center, axis)))| {
             let force = -(taxels.at(index).stiffness * deflection) * *axis;
-            add_wrench(wrench, Wrench::at(*center, force));
-        }
-    }
-
-    /// Returns the numbers of touched taxels and of taxels at their stroke.
-    pub fn count(&self, deflections: &[f64]) -> [i64; 2] {
-        let mut counts = [0, 0];
-        for (index, deflection) in deflections.iter().enumerate() {
-            if *deflection > 0.0 {
-                counts[0] += 1;
-                counts[1] += i64::from(*deflection >= self.patch.taxels().at(index).stroke);
-            }
-        }
-        counts
+            sum + Wrench::at(*center, force)
+        })
     }
 }
 
 /// Returns a patch with a stroke that is larger by `reach`, metres.
-fn deepened(patch: &world::Patch, reach: f64) -> world::Patch {
-    let deeper = |taxel: &world::Taxel| world::Taxel {
+fn deepened(patch: &Patch, reach: f64) -> Patch {
+    let deeper = |taxel: &Taxel| Taxel {
         stroke: taxel.stroke + reach,
         ..*taxel
     };
@@ -163,18 +161,11 @@ fn deepened(patch: &world::Patch, reach: f64) -> world::Patch {
         Taxels::Equal(taxel) => Taxels::Equal(deeper(taxel)),
         Taxels::Each(taxels) => Taxels::Each(taxels.iter().map(deeper).collect()),
     };
-    world::Patch::new(patch.name(), patch.layout().clone(), taxels)
-        .expect("a larger stroke is valid")
-}
-
-/// Adds a wrench to a row of six numbers: force, N, and torque, N·m.
-pub fn add_wrench(row: &mut [f64], Wrench { force, torque }: Wrench) {
-    let six = force.to_array().into_iter().chain(torque.to_array());
-    row.iter_mut().zip(six).for_each(|(sum, term)| *sum += term);
+    Patch::new(patch.name(), patch.layout().clone(), taxels).expect("a larger stroke is valid")
 }
 
 /// Replaces each deflection of a frame by the given one, if that is larger.
-pub fn take_maximum(frame: &mut [f64], deflections: &[f64]) {
+pub(super) fn take_maximum(frame: &mut [f64], deflections: &[f64]) {
     for (taxel, deflection) in frame.iter_mut().zip(deflections) {
         *taxel = taxel.max(*deflection);
     }

@@ -1,13 +1,13 @@
 //! Press of a patch on one rigid object to a given normal force, near the object's pose.
 
 use super::parts::{RigidObject, SkinPatch};
-use bubbletouch::contact::{HeldForce, MovedObject, Press, Until, Workspace};
-use bubbletouch::geometry::Pose;
+use crate::contact::{HeldForce, MovedObject, Press, Until, Workspace};
+use crate::geometry::Pose;
 use glam::DVec3;
 
 /// Requested normal force of a pair of patch and object, and the path on which the patch travels to reach this force.
 #[derive(Clone, Copy, Debug)]
-pub struct WantedForce {
+pub(super) struct WantedForce {
     /// Sum of the forces of the patch's taxels along their axes, newtons, positive.
     pub force: f64,
     /// Direction in which the patch travels, unit vector, in the patch frame.
@@ -23,7 +23,7 @@ const FARTHEST: f64 = 100.0;
 /// reach, the patch ends there, or before the object is behind the substrate. Returns the travel of the patch and the force at its end.
 ///
 /// `placed` contains the poses of all bodies in the patch frame, and `poses` is scratch memory.
-pub fn press_pair(
+pub(super) fn press_pair(
     part: &SkinPatch,
     object: &RigidObject,
     (placed, poses): (&[Pose], &mut Vec<Pose>),

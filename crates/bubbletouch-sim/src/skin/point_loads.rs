@@ -15,8 +15,7 @@
 //! The remaining force and moment are tangential: `τ_i = f_i P_i (u + ω × r_i)` with P_i = 1 − n_i n_iᵀ. The vectors u and ω solve six linear equations, so
 //! friction is shared in proportion to the normal forces.
 
-use super::root_search::{Sample, crossing};
-use super::wrench::Wrench;
+use crate::contact::{Sample, Wrench, crossing};
 use crate::geometry::Pose;
 use crate::world::Patch;
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
@@ -57,7 +56,7 @@ pub enum LoadPart {
 
 /// Result of [`carry_loads`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CarriedLoad {
+pub(super) struct CarriedLoad {
     /// Sum of the taxels' forces along their axes, newtons.
     pub force: f64,
     /// Sum of these forces that the contact forces require, newtons; larger than `force` if taxels are saturated or no taxel is within reach.
@@ -68,7 +67,7 @@ pub struct CarriedLoad {
 
 /// Memory for [`carry_loads`]: the taxels that an object can touch within the reach of a patch.
 #[derive(Clone, Debug, Default)]
-pub struct LoadWorkspace {
+pub(super) struct LoadWorkspace {
     springs: Vec<Spring>,
 }
 
@@ -96,13 +95,13 @@ impl Spring {
 }
 
 /// Returns the direction, a unit vector in the patch frame, in which a curved patch travels under its loads: against the mean force. A flat patch travels along z.
-pub fn travel_direction(loads: &[PointLoad]) -> DVec3 {
+pub(super) fn travel_direction(loads: &[PointLoad]) -> DVec3 {
     let against: DVec3 = loads.iter().map(|load| -load.normal).sum();
     against.try_normalize().unwrap_or(DVec3::Z)
 }
 
 /// Returns whether all taxels point along z.
-pub fn is_flat(patch: &Patch) -> bool {
+pub(super) fn is_flat(patch: &Patch) -> bool {
     patch.layout().axes().iter().all(|axis| *axis == DVec3::Z)
 }
 
@@ -113,7 +112,7 @@ pub fn is_flat(patch: &Patch) -> bool {
 ///
 /// # Panics
 /// If the lengths of the slices differ from the number of taxels.
-pub fn carry_loads(
+pub(super) fn carry_loads(
     patch: &Patch,
     (deep, reach): (&[f64], f64),
     (loads, part): (&[PointLoad], LoadPart),
@@ -166,7 +165,7 @@ pub fn carry_loads(
 /// contacts at the rim, which are up to one spacing outside all taxels, or of a single touched taxel.
 ///
 /// With [`LoadPart::Normal`], no forces are added, and the returned wrench is the one of the axial forces of a flat patch.
-pub fn share_friction(
+pub(super) fn share_friction(
     patch: &Patch,
     (loads, part): (&[PointLoad], LoadPart),
     deflections: &[f64],
