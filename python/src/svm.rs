@@ -120,7 +120,6 @@ impl SvmArguments {
         let kernel = match &self.kernel[..] {
             "linear" => Kernel::Linear,
             "rbf" => Kernel::Rbf { gamma },
-            "laplacian" => Kernel::Laplacian { gamma },
             "poly" => Kernel::Polynomial {
                 gamma,
                 coef0: self.coef0,
@@ -130,7 +129,7 @@ impl SvmArguments {
                 return Err(bad_input(
                     "kernel",
                     format!("`{other}`"),
-                    "laplacian, linear, poly or rbf",
+                    "linear, poly or rbf",
                 ));
             }
         };

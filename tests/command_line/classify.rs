@@ -390,7 +390,7 @@ fn a_saved_classifier_predicts_what_it_predicted_before() {
         dataset(values, labels).unwrap()
     };
     let (training, tested) = (rows(120, 0.0), rows(700, 0.4));
-    let kinds = "linear_svm rbf_svm laplacian_svm polynomial_svm nearest_centroid naive_bayes \
+    let kinds = "linear_svm rbf_svm polynomial_svm nearest_centroid naive_bayes \
                  logistic_regression k_nearest random_forest";
     let kinds = kinds.split_whitespace();
     let usual = kinds.map(|kind| Classifier::new(toml::Value::from(kind).try_into().unwrap()));

@@ -60,7 +60,7 @@ fn found(case: &Case, emulated: Option<(&Path, &str)>) -> Found {
     let gammas = scores.iter_mut();
     let gammas = gammas.filter_map(|score| score.gamma_used.take()).collect();
     let (mut duals, mut labels) = (Vec::new(), Vec::new());
-    for classifier in ["linear_svm", "rbf_svm", "polynomial_svm", "laplacian_svm"] {
+    for classifier in ["linear_svm", "rbf_svm", "polynomial_svm"] {
         let train = format!("classify features --classifier {classifier} --json");
         let train = train + " --threads 1 --predictions labels.npy";
         let said = succeeds(case, emulated, &train);

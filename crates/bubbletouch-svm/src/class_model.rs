@@ -1,14 +1,15 @@
-//! Common interface of all trained classifiers that compute one score per class (all except the kernel SVM).
+//! Common interface of all trained classifiers, which compute scores of rows.
 
 use std::fmt::Debug;
 
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 
 use crate::Result;
+use crate::predict::svm_model::SvmModel;
 use crate::predict::voting::first_maximum;
 use crate::saved::SavedModel;
 
-/// Trained classifier that computes one score per class.
+/// Trained classifier that computes one score per class; a [kernel SVM](SvmModel) computes one score per binary problem.
 ///
 /// Scores are additive: the sum of the scores of k touches of one object is the score of all k touches together. A probabilistic model therefore returns `ln
 /// p(x | class)` up to a constant per row x. The log-prior `ln p(class)` is separate and is added once for all summed touches.
@@ -18,10 +19,16 @@ pub trait ClassModel: Debug + Send + Sync {
         None
     }
 
+    /// Returns the model if it is a kernel SVM; `None` for other kinds.
+    fn svm(&self) -> Option<&SvmModel> {
+        None
+    }
+
     /// Returns the class labels of the training rows, ascending. Every predicted label is one of them.
     fn classes(&self) -> &[usize];
 
-    /// Returns the scores of all classes (n_rows × n_classes), in ascending order of the labels. Larger scores favour the class.
+    /// Returns the scores of all rows (n_rows × n_classes), in ascending order of the labels. Larger scores favour the class. For a kernel SVM, the scores are
+    /// decision values (n_rows × n_problems).
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.
@@ -53,14 +60,15 @@ pub trait ClassModel: Debug + Send + Sync {
         false
     }
 
-    /// Returns for each row of scores the label with the largest sum of score and log-prior; if several are equal, the lowest label.
+    /// Returns for each row of scores the label with the largest sum of score and log-prior; if several are equal, the lowest label. The decision values of a
+    /// kernel SVM are combined by votes.
     fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         let scores = self.class_scores(scores);
         let rows = scores.rows().into_iter();
         rows.map(|row| self.classes()[first_maximum(row)]).collect()
     }
 
-    /// Returns the sum of score and log-prior of each class (n_rows × n_classes).
+    /// Returns one value per class (n_rows × n_classes): the sum of score and log-prior.
     fn class_scores(&self, scores: ArrayView2<f64>) -> Array2<f64> {
         match self.log_prior() {
             Some(prior) => &scores + &prior,

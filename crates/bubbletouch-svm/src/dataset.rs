@@ -25,20 +25,28 @@ pub fn dataset(features: Array2<f64>, labels: Array1<usize>) -> Result<Dataset> 
 /// If an index is beyond the last row.
 #[doc(hidden)]
 pub fn rows(data: &Dataset, indices: &[usize]) -> Result<Dataset> {
-    if let Some(&row) = indices.iter().find(|&&row| row >= data.records.nrows()) {
-        let last = data.records.nrows();
-        return Err(Error::input(
-            "rows",
-            row,
-            format!("an index below {last} is allowed"),
-        ));
-    }
+    check_rows(data, indices)?;
     let features = data.records.select(Axis(0), indices);
     let selected = dataset(features, data.targets.select(Axis(0), indices))?;
     Ok(match data.weights() {
         Some(weights) => selected.with_weights(indices.iter().map(|&row| weights[row]).collect()),
         None => selected,
     })
+}
+
+/// Checks that a data set contains the rows at the given indices.
+///
+/// # Errors
+/// If an index is beyond the last row.
+pub(crate) fn check_rows(data: &Dataset, indices: &[usize]) -> Result<()> {
+    let n_rows = data.records.nrows();
+    match indices.iter().find(|&&row| row >= n_rows) {
+        None => Ok(()),
+        Some(row) => {
+            let allowed = format!("an index below {n_rows} is allowed");
+            Err(Error::input("rows", row, allowed))
+        }
+    }
 }
 
 /// Training rows whose classes are numbered from 0.
@@ -230,15 +238,24 @@ pub fn checked_classes(data: &Dataset) -> Result<Vec<usize>> {
     check_features(data.records.view())?;
     check_labels(data.records.nrows(), data.targets.view())?;
     let classes = distinct(data.targets.view());
-    if classes.len() < 2 {
-        let given = format!("the single class {}", classes[0]);
-        return Err(Error::input(
-            "labels",
-            given,
-            "at least two classes are needed",
-        ));
-    }
+    check_two_classes(&classes)?;
     Ok(classes)
+}
+
+/// Checks that a classifier has at least two classes.
+///
+/// # Errors
+/// If there is a single class.
+pub(crate) fn check_two_classes<L: std::fmt::Debug>(classes: &[L]) -> Result<()> {
+    if classes.len() > 1 {
+        return Ok(());
+    }
+    let given = format!("the single class {:?}", classes[0]);
+    Err(Error::input(
+        "labels",
+        given,
+        "at least two classes are needed",
+    ))
 }
 
 /// Returns the position of each row's label in the ascending list `classes`, which contains all labels.

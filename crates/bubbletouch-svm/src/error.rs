@@ -29,6 +29,21 @@ impl Error {
     }
 }
 
+/// Checks that a parameter is a finite number above 0.
+///
+/// # Errors
+/// If the value is 0, negative, NaN or infinite.
+pub(crate) fn check_above_zero(place: &str, value: f64) -> Result<()> {
+    match value > 0.0 && value.is_finite() {
+        true => Ok(()),
+        false => Err(Error::input(
+            place,
+            value,
+            "a finite number above 0 is allowed",
+        )),
+    }
+}
+
 /// Converts any error of a classifier from outside of this crate.
 impl From<Box<dyn std::error::Error + Send + Sync>> for Error {
     fn from(error: Box<dyn std::error::Error + Send + Sync>) -> Self {

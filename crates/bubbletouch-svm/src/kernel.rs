@@ -1,13 +1,10 @@
 //! Kernels of the support vector machines. A new kernel is added as a case of each `match` in this file.
 //!
-//! A kernel value is computed from a pairwise product or distance and from the squared norms of both rows. The pairwise product is x·z for most kernels and
-//! the L1 distance for the Laplacian kernel; it does not depend on γ.
+//! A kernel value is computed from the inner product of two rows and from their squared norms.
 
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2};
+use ndarray::{Array1, ArrayView1, ArrayView2};
 use serde::{Deserialize, Serialize};
 
-use crate::linalg::products::{multiply, with_each_other};
-use crate::linalg::row_products;
 use crate::linalg::scalar::Scalar;
 use crate::row_statistics::RowStatistics;
 use crate::{Error, Result};
@@ -16,12 +13,11 @@ use crate::{Error, Result};
 /// error of the kernel value.
 const SINGLE_EXPONENT: f64 = 1e4;
 
-/// Width parameter γ of a kernel, in inverse squared feature units; for a Laplacian kernel, in inverse feature units.
+/// Width parameter γ of a kernel, in inverse squared feature units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gamma {
-    /// scikit-learn's default `1 / (m · var(X))`, where the variance is taken over all training features; 1 if the variance is 0. For a Laplacian kernel, γ is
-    /// `1 / (m · √var(X))`.
+    /// scikit-learn's default `1 / (m · var(X))`, where the variance is taken over all training features; 1 if the variance is 0.
     Scale,
     /// Given value of γ, above 0.
     Value(f64),
@@ -34,12 +30,6 @@ pub enum Kernel {
     Linear,
     /// Gaussian kernel `exp(−γ|x − z|²)`.
     Rbf {
-        /// Width parameter γ.
-        gamma: Gamma,
-    },
-    /// Laplacian kernel `exp(−γ|x − z|₁)`, where |x − z|₁ is the sum of absolute differences. Outlying features have less influence than with the Gaussian
-    /// kernel. The kernel is slower, because L1 distances are not computed by matrix products.
-    Laplacian {
         /// Width parameter γ.
         gamma: Gamma,
     },
@@ -60,7 +50,6 @@ impl Kernel {
         match self {
             Self::Linear => Self::Linear,
             Self::Rbf { .. } => Self::Rbf { gamma },
-            Self::Laplacian { .. } => Self::Laplacian { gamma },
             Self::Polynomial { coef0, degree, .. } => Self::Polynomial {
                 gamma,
                 coef0,
@@ -73,20 +62,13 @@ impl Kernel {
     pub fn gamma(&self) -> Option<Gamma> {
         match *self {
             Self::Linear => None,
-            Self::Rbf { gamma } | Self::Laplacian { gamma } | Self::Polynomial { gamma, .. } => {
-                Some(gamma)
-            }
+            Self::Rbf { gamma } | Self::Polynomial { gamma, .. } => Some(gamma),
         }
     }
 
     /// Returns the default γ of the kernel ('scale') for the training features (n_rows × m).
     pub fn gamma_scale(&self, features: ArrayView2<f64>) -> f64 {
-        let variance = variance(features);
-        let spread = match self {
-            Self::Laplacian { .. } => variance.sqrt(),
-            _ => variance,
-        };
-        let scale = features.ncols() as f64 * spread;
+        let scale = features.ncols() as f64 * variance(features);
         if scale > 0.0 { 1.0 / scale } else { 1.0 }
     }
 
@@ -107,9 +89,6 @@ impl Kernel {
         let function = match *self {
             Self::Linear => KernelFunction::Linear,
             Self::Rbf { gamma } => KernelFunction::Rbf {
-                gamma: number(gamma)?,
-            },
-            Self::Laplacian { gamma } => KernelFunction::Laplacian {
                 gamma: number(gamma)?,
             },
             Self::Polynomial {
@@ -167,7 +146,6 @@ fn squares_about(mean: f64, values: &[f64]) -> f64 {
 pub(crate) enum KernelFunction {
     Linear,
     Rbf { gamma: f64 },
-    Laplacian { gamma: f64 },
     Polynomial { gamma: f64, coef0: f64, degree: u32 },
 }
 
@@ -176,7 +154,7 @@ impl KernelFunction {
     /// row x with the largest norm, and no squared distance exceeds four times this norm.
     fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
-            Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => 4.0 * norm,
+            Self::Linear | Self::Rbf { .. } => 4.0 * norm,
             Self::Polynomial {
                 gamma,
                 coef0,
@@ -197,9 +175,7 @@ impl KernelFunction {
     pub fn gamma(&self) -> Option<f64> {
         match *self {
             Self::Linear => None,
-            Self::Rbf { gamma } | Self::Laplacian { gamma } | Self::Polynomial { gamma, .. } => {
-                Some(gamma)
-            }
+            Self::Rbf { gamma } | Self::Polynomial { gamma, .. } => Some(gamma),
         }
     }
 
@@ -207,7 +183,7 @@ impl KernelFunction {
     /// the rows, otherwise the origin. Products of rows about the mean are small and lose fewer digits.
     pub fn centre(&self, statistics: &RowStatistics) -> Array1<f64> {
         match self {
-            Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => statistics.mean.clone(),
+            Self::Linear | Self::Rbf { .. } => statistics.mean.clone(),
             Self::Polynomial { .. } => Array1::zeros(statistics.mean.len()),
         }
     }
@@ -220,7 +196,6 @@ impl KernelFunction {
             // If exponents are large, K is nearly the identity and coefficients are near 1 for any C.
             Self::Rbf { gamma } if 4.0 * gamma * farthest > SINGLE_EXPONENT => None,
             Self::Rbf { .. } => Some(1.0),
-            Self::Laplacian { .. } => None,
             // Each multiplication of a power adds a rounding error. Most centred products are far below the maximum; powers about the origin are not.
             // Example: for a cubic kernel at C K = 4e3, the violation of the optimality conditions is three times the tolerance of 1e-3.
             Self::Polynomial { degree, .. } => {
@@ -229,42 +204,11 @@ impl KernelFunction {
         }
     }
 
-    /// Writes the pairwise products (or L1 distances) between rows (n_left × m) and other rows (n × m) into an array of shape n_left × n. Kernel values are
-    /// computed from them.
-    pub fn pairwise<T: Scalar>(
-        &self,
-        left: ArrayView2<T>,
-        right: ArrayView2<T>,
-        to: ArrayViewMut2<T>,
-    ) {
-        match self {
-            Self::Laplacian { .. } => absolute_differences(left, right, to),
-            _ => multiply(left, right, to),
-        }
-    }
-
-    /// Writes the pairwise products (or L1 distances) between one row (m) and other rows, each a contiguous slice of m values.
-    pub fn pairwise_of_row<T: Scalar>(&self, row: &[T], others: &[&[T]], to: &mut [T]) {
-        match self {
-            Self::Laplacian { .. } => {
-                for (to, other) in to.chunks_exact_mut(1).zip(others) {
-                    absolute_differences_of(row, other, to);
-                }
-            }
-            _ => row_products::multiply(&[row], others, to),
-        }
-    }
-
-    /// Returns the pairwise products (or L1 distances) between all rows (n × m): shape n × n.
-    pub fn own_pairwise<T: Scalar>(&self, rows: ArrayView2<T>) -> Array2<T> {
-        with_each_other(rows, |left, right, to| self.pairwise(left, right, to))
-    }
-
     /// Returns the kernel value `K(x, x)` of a row x with itself, given the squared norm of x.
     pub fn of_norm<T: Scalar>(&self, norm: T) -> T {
         match *self {
             Self::Linear => norm,
-            Self::Rbf { .. } | Self::Laplacian { .. } => T::one(),
+            Self::Rbf { .. } => T::one(),
             Self::Polynomial {
                 gamma,
                 coef0,
@@ -277,20 +221,19 @@ impl KernelFunction {
         }
     }
 
-    /// Converts the inner products (or L1 distances) of one row with other rows to kernel values, given the squared norms of the rows.
-    pub fn of_pairwise<T: Scalar>(&self, pairwise: &mut [T], norm: T, norms: &[T]) {
+    /// Converts the inner products of one row with other rows to kernel values, given the squared norms of the rows.
+    pub fn of_products<T: Scalar>(&self, products: &mut [T], norm: T, norms: &[T]) {
         match *self {
             Self::Linear => {}
             Self::Rbf { gamma } => {
-                distances(pairwise, norm, norms);
-                T::exponentials(pairwise, gamma);
+                distances(products, norm, norms);
+                T::exponentials(products, gamma);
             }
-            Self::Laplacian { gamma } => T::exponentials(pairwise, gamma),
             Self::Polynomial {
                 gamma,
                 coef0,
                 degree,
-            } => polynomials(pairwise, (T::from_f64(gamma), T::from_f64(coef0)), degree),
+            } => polynomials(products, (T::from_f64(gamma), T::from_f64(coef0)), degree),
         }
     }
 }
@@ -343,45 +286,6 @@ fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
     }
 }
 
-/// Writes the L1 distance `|x − z|₁` between each row x and each row z. The result is bitwise equal for both orders of the arguments and on all processors.
-fn absolute_differences<T: Scalar>(
-    left: ArrayView2<T>,
-    right: ArrayView2<T>,
-    mut to: ArrayViewMut2<T>,
-) {
-    let (left, right) = (left.as_standard_layout(), right.as_standard_layout());
-    let all = right.as_slice().expect("it is in standard layout");
-    for (mut to, left) in to.rows_mut().into_iter().zip(left.rows()) {
-        let to = to.as_slice_mut().expect("rows of values are contiguous");
-        let left = left.as_slice().expect("it is in standard layout");
-        absolute_differences_of(left, all, to);
-    }
-}
-
-/// Writes the L1 distance `|x − z|₁` between a row x and each of several consecutive rows z.
-#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn absolute_differences_of<T: Scalar>(left: &[T], rows: &[T], to: &mut [T]) {
-    let (left_lanes, left_last) = left.as_chunks::<16>();
-    for at in 0..to.len() {
-        let row = &rows[at * left.len()..][..left.len()];
-        let (lanes, last) = row.as_chunks::<16>();
-        let mut sums = [T::zero(); 16];
-        for block in 0..left_lanes.len() {
-            for lane in 0..16 {
-                sums[lane] += (left_lanes[block][lane] - lanes[block][lane]).abs();
-            }
-        }
-        let mut sum = T::zero();
-        for value in sums {
-            sum += value;
-        }
-        for column in 0..last.len() {
-            sum += (left_last[column] - last[column]).abs();
-        }
-        to[at] = sum;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -391,12 +295,8 @@ mod tests {
     fn gamma_scale_is_the_inverse_of_columns_times_variance() {
         let features = array![[1.0, 3.0], [5.0, 7.0]];
         let gamma = Gamma::Scale;
-        let (rbf, laplacian) = (Kernel::Rbf { gamma }, Kernel::Laplacian { gamma });
+        let rbf = Kernel::Rbf { gamma };
         assert_eq!(rbf.gamma_scale(features.view()), 1.0 / (2.0 * 5.0));
-        assert_eq!(
-            laplacian.gamma_scale(features.view()),
-            1.0 / (2.0 * 5_f64.sqrt())
-        );
         assert_eq!(rbf.gamma_scale(Array2::ones((3, 2)).view()), 1.0);
     }
 
@@ -429,9 +329,8 @@ mod tests {
         for gamma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let gamma = Gamma::Value(gamma);
             let statistics = RowStatistics::new(features.view()).unwrap();
-            for kernel in [Kernel::Rbf { gamma }, Kernel::Laplacian { gamma }] {
-                assert!(kernel.resolve(features.view(), &statistics).is_err());
-            }
+            let kernel = Kernel::Rbf { gamma };
+            assert!(kernel.resolve(features.view(), &statistics).is_err());
         }
         for (coef0, degree) in [(-1.0, 2), (f64::NAN, 2), (0.0, 0), (0.0, 21)] {
             let gamma = Gamma::Scale;

@@ -16,7 +16,6 @@ use crate::classifiers::logistic_regression::Logistic;
 use crate::classifiers::naive_bayes::NaiveBayes;
 use crate::classifiers::nearest_centroid::NearestCentroid;
 use crate::classifiers::random_forest::RandomForest;
-use crate::classifiers::trained_classifier::Model;
 use crate::linalg::scalar::Scalar;
 use crate::linear_svm::LinearSvm;
 use crate::predict::svm_model::SvmModel;
@@ -66,30 +65,29 @@ pub enum SavedModel {
     RandomForest(RandomForest),
 }
 
-impl Serialize for Model {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let saved = match self {
-            Self::Svm(model) => Some(SavedModel::Svm(model.clone())),
-            Self::Classes(model) => model.saved(),
-        };
-        let refused = || S::Error::custom("the kind of classifier cannot be saved");
-        saved.ok_or_else(refused)?.serialize(serializer)
-    }
+/// Writes a model of a kind that can be saved.
+pub(crate) fn serialize_model<S: Serializer>(
+    model: &Arc<dyn ClassModel>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let refused = || S::Error::custom("the kind of classifier cannot be saved");
+    let saved = model.saved().ok_or_else(refused)?;
+    saved.serialize(serializer)
 }
 
-impl<'de> Deserialize<'de> for Model {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let model: Arc<dyn ClassModel> = match SavedModel::deserialize(deserializer)? {
-            SavedModel::Svm(model) => return Ok(Self::Svm(model)),
-            SavedModel::LinearSvm(model) => Arc::new(model),
-            SavedModel::LogisticRegression(model) => Arc::new(model),
-            SavedModel::NaiveBayes(model) => Arc::new(model),
-            SavedModel::NearestCentroid(model) => Arc::new(model),
-            SavedModel::KNearest(model) => Arc::new(model),
-            SavedModel::RandomForest(model) => Arc::new(model),
-        };
-        Ok(Self::Classes(model))
-    }
+/// Reads a model that [`serialize_model`] wrote.
+pub(crate) fn deserialize_model<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Arc<dyn ClassModel>, D::Error> {
+    Ok(match SavedModel::deserialize(deserializer)? {
+        SavedModel::Svm(model) => Arc::new(*model),
+        SavedModel::LinearSvm(model) => Arc::new(model),
+        SavedModel::LogisticRegression(model) => Arc::new(model),
+        SavedModel::NaiveBayes(model) => Arc::new(model),
+        SavedModel::NearestCentroid(model) => Arc::new(model),
+        SavedModel::KNearest(model) => Arc::new(model),
+        SavedModel::RandomForest(model) => Arc::new(model),
+    })
 }
 
 /// Number of hexadecimal digits of an element.

@@ -9,7 +9,8 @@ use ndarray::{ArrayBase, ArrayView1, Data, Ix2};
 use serde::{Deserialize, Serialize};
 
 use crate::class_weight::ClassWeight;
-use crate::dataset::{Dataset, LabelledRows, numbered};
+use crate::dataset::{Dataset, LabelledRows, check_two_classes, numbered};
+use crate::error::check_above_zero;
 use crate::gram::sorted::Sorted;
 use crate::kernel::{Kernel, KernelFunction};
 use crate::multiclass::Multiclass;
@@ -118,13 +119,7 @@ impl SvmParams {
         self.check(path)?;
         let statistics = RowStatistics::new(rows.features)?;
         rows.check()?;
-        if classes.len() < 2 {
-            return Err(Error::input(
-                "labels",
-                format!("the single class {:?}", classes[0]),
-                "at least two classes are needed",
-            ));
-        }
+        check_two_classes(classes)?;
         let kernel = self.kernel.resolve(rows.features, &statistics)?;
         let mut ascending = path.to_vec();
         ascending.sort_by(f64::total_cmp);
@@ -183,11 +178,7 @@ impl SvmParams {
     where
         Decision: From<DecisionFunctions<T>>,
     {
-        let trained = match self.multiclass {
-            Multiclass::OneVsOne => sorted.one_vs_one(goal),
-            _ => sorted.one_vs_rest(goal),
-        };
-        let mut trained = trained.into_iter();
+        let mut trained = sorted.solve_all(self.multiclass, goal).into_iter();
         // The last model takes ownership of the rows.
         let last = trained.next_back();
         let mut models: Vec<SvmModel> = trained
@@ -242,17 +233,10 @@ impl SvmParams {
         if path.is_empty() {
             return Err(Error::input("C", "none", "at least one is needed"));
         }
-        let penalties = path.iter().map(|&c| ("C", c));
-        for (name, value) in penalties.chain([("tolerance", self.tolerance)]) {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::input(
-                    name,
-                    value,
-                    "a finite number above 0 is allowed",
-                ));
-            }
+        for &c in path {
+            check_above_zero("C", c)?;
         }
-        Ok(())
+        check_above_zero("tolerance", self.tolerance)
     }
 }
 

@@ -11,14 +11,10 @@ use ndarray::Array2;
 
 use crate::binary_problem::BinaryProblem;
 use crate::dual::DualSolution;
-use crate::gram::between::{Group, groups};
-use crate::gram::cached::Cached;
-use crate::gram::matrix::{Dense, Gram};
-use crate::gram::part::{Workspace, part_of_blocks};
-use crate::gram::sorted::Sorted;
-use crate::gram::sorted::pairs;
+use crate::gram::matrix::{Gram, GramMemory};
+use crate::gram::pairs::{Block, bytes_of_groups, gram_of_pair, groups};
+use crate::gram::sorted::{Sorted, pairs};
 use crate::kernel::KernelFunction;
-use crate::linalg::transposed::write_columns;
 use crate::multiclass::Multiclass;
 use crate::screening::first_rows::{PairsNearMargin, few_dimensions};
 use crate::screening::near_margin::NearMargin;
@@ -84,10 +80,10 @@ impl KernelStorage<'_> {
                     return Stored::NearMargin(most);
                 }
                 let largest = self.ranges.iter().map(Range::len).max().unwrap_or(0);
-                Group::<T>::bytes(self.ranges) + Dense::<T>::bytes(2 * largest)
+                bytes_of_groups::<T>(self.ranges) + Gram::<T>::bytes(2 * largest)
             }
             // Two copies are in memory: the matrix product, and the padded matrix of the solver.
-            Multiclass::OneVsRest => 2 * Dense::<T>::bytes(n_rows),
+            Multiclass::OneVsRest => 2 * Gram::<T>::bytes(n_rows),
         };
         match whole <= memory {
             true => Stored::Whole(whole),
@@ -96,42 +92,71 @@ impl KernelStorage<'_> {
     }
 }
 
+/// Classes of a binary problem: the positive class, and the negative class or `None` for all other classes.
+type Sides = (usize, Option<usize>);
+
 impl<T: SolverScalar> Sorted<T> {
-    fn storage(&self, multiclass: Multiclass) -> KernelStorage<'_> {
-        KernelStorage {
+    /// Solves the binary problems of all classes. Returns, for each C of the path, the problems in the order of their classes.
+    pub fn solve_all(&self, multiclass: Multiclass, goal: Goal) -> Vec<Trained<T>> {
+        let storage = KernelStorage {
             multiclass,
-            is_linear: self.kernel() == KernelFunction::Linear,
-            n_features: self.centre().len(),
+            is_linear: self.kernel == KernelFunction::Linear,
+            n_features: self.centre.len(),
             has_row_weights: self.has_row_weights(),
-            ranges: self.ranges(),
-        }
-    }
-
-    /// Solves the binary problem of every pair of classes. Returns, for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
-    pub fn one_vs_one(&self, goal: Goal) -> Vec<Trained<T>> {
+            ranges: &self.ranges,
+        };
         let mut problems = vec![Vec::new(); goal.path.len()];
-        match self.storage(Multiclass::OneVsOne).within::<T>(goal.memory) {
-            Stored::NearMargin(_) => return self.pairs_near_margin(goal),
-            Stored::Whole(_) => self.pairs_from_blocks(goal, &mut problems),
-            Stored::Rows => self.pairs_from_rows(goal, &mut problems),
+        let normals = match (multiclass, storage.within::<T>(goal.memory)) {
+            (Multiclass::OneVsOne, Stored::NearMargin(_)) => {
+                Some(self.pairs_near_margin(goal, &mut problems))
+            }
+            (Multiclass::OneVsOne, Stored::Whole(_)) => {
+                self.pairs_from_blocks(goal, &mut problems);
+                None
+            }
+            (Multiclass::OneVsOne, Stored::Rows) => {
+                for (a, b) in self.all_pairs() {
+                    let points = self.points.select(&self.pair_rows(a, b));
+                    let mut gram = Gram::of_points(&points, self.kernel, goal.memory);
+                    self.solve(&mut gram, (a, Some(b)), goal, &mut problems);
+                }
+                None
+            }
+            (Multiclass::OneVsRest, stored) => {
+                let mut gram = match stored {
+                    Stored::Rows => Gram::of_points(&self.points, self.kernel, goal.memory),
+                    _ => Gram::whole(self.points.all().own_kernel(&self.kernel).view()),
+                };
+                for class in 0..self.ranges.len() {
+                    self.solve(&mut gram, (class, None), goal, &mut problems);
+                }
+                None
+            }
+        };
+        for problems in &mut problems {
+            problems.sort_by_key(|problem| (problem.positive, problem.negative));
         }
-        without_normals(problems)
+        let mut normals = normals.map(Vec::into_iter);
+        let trained = problems.into_iter().map(|problems| Trained {
+            problems,
+            normals: normals.as_mut().and_then(Iterator::next),
+        });
+        trained.collect()
     }
 
-    fn pairs_near_margin(&self, goal: Goal) -> Vec<Trained<T>> {
+    /// Solves the problems of all pairs on the rows near their decision boundaries. Returns the normals of the hyperplanes for each C.
+    fn pairs_near_margin(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) -> Vec<Array2<T>> {
         let few = few_dimensions(self);
         let all = PairsNearMargin::new(self, &few);
-        let n_classes = self.classes().len();
-        let mut problems = vec![Vec::new(); goal.path.len()];
-        let shape = (n_classes * (n_classes - 1) / 2, self.centre().len());
+        let n_classes = self.ranges.len();
+        let shape = (n_classes * (n_classes - 1) / 2, self.centre.len());
         let mut normals = vec![Array2::zeros(shape); goal.path.len()];
         for pairs in all.blocks() {
             let mut near_margin = all.near(&pairs, goal.path[0]);
             for (at, &c) in goal.path.iter().enumerate() {
                 let solutions = near_margin.solve(c, goal.tolerance);
                 for (&(a, b), (solution, normal)) in pairs.iter().zip(solutions) {
-                    let sides = (self.classes()[a], Some(self.classes()[b]));
-                    problems[at].push(self.problem(&self.pair_rows(a, b), sides, solution));
+                    problems[at].push(self.problem(&self.pair_rows(a, b), (a, Some(b)), solution));
                     // The number of pairs of the preceding classes, plus the pairs of the first class with preceding others.
                     let number = a * (2 * n_classes - a - 1) / 2 + (b - a - 1);
                     let to = normals[at].row_mut(number).into_slice();
@@ -140,159 +165,91 @@ impl<T: SolverScalar> Sorted<T> {
                 }
             }
         }
-        in_order(&mut problems);
-        let with_normals = |(problems, normals)| Trained {
-            problems,
-            normals: Some(normals),
-        };
-        problems
-            .into_iter()
-            .zip(normals)
-            .map(with_normals)
-            .collect()
+        normals
     }
 
+    /// Solves the problems of all pairs on blocks of kernel values, which are computed for groups of classes.
     fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        let classes = groups(self.ranges());
-        let groups: Vec<Group<T>> = classes.iter().map(|own| Group::new(self, own)).collect();
-        let (mut between, mut above, mut workspace) = (Vec::new(), Vec::new(), Workspace::new());
-        for (at, own) in groups.iter().enumerate() {
+        let groups = groups(&self.ranges);
+        let points = |group: &Range<usize>| self.points.range(self.rows_of(group));
+        let own = groups
+            .iter()
+            .map(|group| points(group).own_kernel(&self.kernel));
+        let own: Vec<Array2<T>> = own.collect();
+        let (mut above, mut memory) = (Vec::new(), GramMemory::default());
+        for (at, group) in groups.iter().enumerate() {
             for (number, other) in groups.iter().enumerate().skip(at) {
-                if number > at {
-                    own.with(other, &mut between);
-                }
-                for (a, b) in pairs(classes[at].clone(), classes[number].clone()) {
-                    let [first, second] = [a, b].map(|class| &self.ranges()[class]);
-                    let below = if number > at {
-                        own.part_with(other, &between, (second, first))
-                    } else {
-                        own.own_part(second, first)
-                    };
-                    above.resize(first.len() * second.len(), T::zero());
-                    write_columns(&below, &mut above, second.len());
-                    let across = [above.chunks_exact(second.len()).collect(), below];
-                    let within = [own.own_part(first, first), other.own_part(second, second)];
-                    let mut gram = part_of_blocks(&within, &across, &mut workspace);
-                    self.solve_pair(&mut gram, (a, b), goal, problems);
+                let computed;
+                let between = match number == at {
+                    true => &own[at],
+                    false => {
+                        computed = points(other).kernel(points(group), &self.kernel);
+                        &computed
+                    }
+                };
+                let starts = [group, other].map(|group| self.rows_of(group).start);
+                for (a, b) in pairs(group.clone(), other.clone()) {
+                    let blocks = [
+                        Block::new(&own[at], [starts[0], starts[0]]),
+                        Block::new(&own[number], [starts[1], starts[1]]),
+                        Block::new(between, [starts[1], starts[0]]),
+                    ];
+                    let classes = [a, b].map(|class| &self.ranges[class]);
+                    let mut gram = gram_of_pair(classes, blocks, &mut above, memory);
+                    self.solve(&mut gram, (a, Some(b)), goal, problems);
+                    memory = gram.into_memory();
                 }
             }
         }
-        in_order(problems);
     }
 
-    fn pairs_from_rows(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        for (a, b) in self.all_pairs() {
-            let points = self.points().select(&self.pair_rows(a, b));
-            let mut gram = Cached::new(&points, self.kernel(), goal.memory);
-            self.solve_pair(&mut gram, (a, b), goal, problems);
-        }
-    }
-
-    fn solve_pair<G: Gram<T>>(
+    /// Solves one binary problem for each value of the penalty C, given its Gram matrix.
+    fn solve(
         &self,
-        gram: &mut G,
-        (a, b): (usize, usize),
+        gram: &mut Gram<T>,
+        (positive, negative): Sides,
         goal: Goal,
         problems: &mut [Vec<BinaryProblem>],
     ) {
-        let n_first = self.ranges()[a].len();
-        let mut labels = vec![1.0; n_first];
-        labels.resize(gram.len(), -1.0);
-        let rows = self.pair_rows(a, b);
+        let rows = match negative {
+            Some(negative) => self.pair_rows(positive, negative),
+            None => (0..self.order.len()).collect(),
+        };
+        let is_positive = |row: &usize| self.ranges[positive].contains(row);
+        let labels = rows
+            .iter()
+            .map(|row| if is_positive(row) { 1.0 } else { -1.0 });
+        let labels: Vec<f64> = labels.collect();
         let limits = labels.iter().zip(&rows);
-        let limits: Vec<f64> = limits
-            .map(|(label, &row)| label * self.weights()[row])
-            .collect();
-        let sides = (self.classes()[a], Some(self.classes()[b]));
-        self.solve(gram, (&labels, &limits, &rows), sides, goal, problems);
-    }
-
-    /// Solves one binary problem for each class, which separates the class from all others. Returns, for each C of the path, one problem per class.
-    pub fn one_vs_rest(&self, goal: Goal) -> Vec<Trained<T>> {
-        let mut problems = vec![Vec::new(); goal.path.len()];
-        let storage = self.storage(Multiclass::OneVsRest);
-        if let Stored::Whole(_) = storage.within::<T>(goal.memory) {
-            let all = self.points().all();
-            let mut gram = Dense::default();
-            gram.of_whole(all.own_kernel(&self.kernel()).view());
-            self.against_rest(&mut gram, goal, &mut problems);
-        } else {
-            let mut gram = Cached::new(self.points(), self.kernel(), goal.memory);
-            self.against_rest(&mut gram, goal, &mut problems);
-        }
-        without_normals(problems)
-    }
-
-    fn against_rest<G: Gram<T>>(
-        &self,
-        gram: &mut G,
-        goal: Goal,
-        problems: &mut [Vec<BinaryProblem>],
-    ) {
-        let rows: Vec<usize> = (0..self.points().len()).collect();
-        for (range, &class) in self.ranges().iter().zip(self.classes()) {
-            let mut labels = vec![-1.0; rows.len()];
-            labels[range.clone()].fill(1.0);
-            let limits = labels.iter().zip(self.weights());
-            let limits: Vec<f64> = limits.map(|(label, weight)| label * weight).collect();
-            let sides = (class, None);
-            self.solve(gram, (&labels, &limits, &rows), sides, goal, problems);
-            // Restores the order of the training rows, which is common to all these problems.
-            for problem in problems.iter_mut().filter_map(|path| path.last_mut()) {
-                let mut coefficients = vec![0.0; rows.len()];
-                for (&row, &beta) in problem.rows.iter().zip(&problem.solution.coefficients) {
-                    coefficients[row] = beta;
-                }
-                problem.solution.coefficients = coefficients;
-                problem.rows.clone_from(&rows);
-            }
-        }
-    }
-
-    /// Solves one binary problem on the given sorted rows, with their labels and limits, for each value of the penalty C.
-    fn solve<G: Gram<T>>(
-        &self,
-        gram: &mut G,
-        (labels, limits, rows): (&[f64], &[f64], &[usize]),
-        sides: (usize, Option<usize>),
-        goal: Goal,
-        problems: &mut [Vec<BinaryProblem>],
-    ) {
-        let mut smo = Smo::new(gram, labels).with_limits(limits);
+        let limits = limits.map(|(label, &row)| label * self.weights[row]);
+        let limits: Vec<f64> = limits.collect();
+        let mut smo = Smo::new(gram, &labels).with_limits(&limits);
         for (&c, problems) in goal.path.iter().zip(problems) {
             let solution = smo.solve(c, goal.tolerance);
-            problems.push(self.problem(rows, sides, solution));
+            problems.push(self.problem(&rows, (positive, negative), solution));
         }
     }
 
-    /// Creates a binary problem with its solution, and converts the solution's offset from centred rows to original rows.
+    /// Creates a binary problem on the given sorted rows with its solution, and converts the solution's offset from centred rows to original rows.
     fn problem(
         &self,
         rows: &[usize],
-        (positive, negative): (usize, Option<usize>),
+        (positive, negative): Sides,
         mut solution: DualSolution,
     ) -> BinaryProblem {
         solution.rho += self.moved(rows.iter().copied(), &solution.coefficients);
+        let mut rows: Vec<usize> = rows.iter().map(|&row| self.order[row]).collect();
+        if negative.is_none() {
+            // All problems of one class against the rest have the order of the training rows.
+            let in_order = self.place.iter().map(|&at| solution.coefficients[at]);
+            solution.coefficients = in_order.collect();
+            rows = (0..rows.len()).collect();
+        }
         BinaryProblem {
             positive,
             negative,
-            rows: rows.iter().map(|&row| self.order()[row]).collect(),
+            rows,
             solution,
         }
-    }
-}
-
-fn without_normals<T>(problems: Vec<Vec<BinaryProblem>>) -> Vec<Trained<T>> {
-    let trained = |problems| Trained {
-        problems,
-        normals: None,
-    };
-    problems.into_iter().map(trained).collect()
-}
-
-/// Sorts the problems for each C in the order of their classes.
-fn in_order(problems: &mut [Vec<BinaryProblem>]) {
-    for problems in problems {
-        problems.sort_by_key(|problem| (problem.positive, problem.negative));
     }
 }

@@ -82,8 +82,8 @@ class SVC(_Classifier):
     """Support vector machine with a kernel.
 
     C: penalty per unit of margin violation, above 0.
-    kernel: rbf, laplacian (slower), linear or poly (with `degree` and `coef0`).
-    gamma: "scale" (1 / (n_features · var X), for laplacian 1 / (n_features · std X)), "auto" (1 / n_features) or a number above 0.
+    kernel: rbf, linear or poly (with `degree` and `coef0`).
+    gamma: "scale" (1 / (n_features · var X)), "auto" (1 / n_features) or a number above 0.
     tol: allowed violation of the optimality conditions, in units of the decision value, above 0.
     class_weight: "balanced" multiplies C for each row by n_rows / (n_classes · number of rows of its class), as in scikit-learn. Default: None.
     multi_class: "ovo" (one-vs-one: each pair of classes votes; the lowest class wins a tie, as in LIBSVM) or "ovr" (one-vs-rest).

@@ -16,10 +16,9 @@ use linfa::traits::Fit;
 use ndarray::{Array1, Array2, ArrayView1, Axis, array};
 use rand::Rng;
 
-const KINDS: [ClassifierKind; 8] = [
+const KINDS: [ClassifierKind; 7] = [
     ClassifierKind::LinearSvm,
     ClassifierKind::RbfSvm,
-    ClassifierKind::LaplacianSvm,
     ClassifierKind::PolynomialSvm,
     ClassifierKind::LogisticRegression,
     ClassifierKind::KNearest,

@@ -16,7 +16,6 @@ use crate::class_model::ClassModel;
 use crate::class_weight::ClassWeight;
 use crate::classifiers::ClassifierKind;
 use crate::classifiers::parameters::{Parameter, Parameters};
-use crate::classifiers::trained_classifier::Model;
 use crate::cross_validation::choice::{Candidates, Chosen, choose, choose_c};
 use crate::dataset::{Dataset, check_unweighted, rows};
 use crate::kernel::Gamma;
@@ -163,14 +162,14 @@ impl Classifier {
         match &self.c {
             Cost::Chosen(candidates) if self.kind.has_c() => {
                 let chosen = self.choose(training, folds, candidates, seed)?;
-                self.with_choice(&chosen).train_with_c(
-                    training,
-                    Some(chosen.best.c),
-                    Some(chosen),
-                    seed,
-                )
+                let c = Some(chosen.best.c);
+                let classifier = self.with_choice(&chosen);
+                classifier.train_with_c(training, c, Some(chosen), seed)
             }
-            _ => self.train_without_choice(training, seed),
+            Cost::Fixed(c) if self.kind.has_c() => {
+                self.train_with_c(training, Some(*c), None, seed)
+            }
+            _ => self.train_with_c(training, None, None, seed),
         }
     }
 
@@ -190,7 +189,7 @@ impl Classifier {
             return choose(&params, &scaled, folds, candidates);
         }
         let train = |fitting: &Dataset, c| {
-            let model = self.train_model(fitting, Some(c), seed)?;
+            let model = self.train_model(fitting, c, seed)?;
             let n_capped = model.n_capped();
             let predict = move |rows: &Dataset| model.labels(rows.records.view());
             Ok((predict, n_capped))
@@ -209,19 +208,6 @@ impl Classifier {
         }
     }
 
-    /// Trains the classifier with its fixed penalty C, or without C if this kind of classifier has none.
-    fn train_without_choice(
-        &self,
-        training: &Dataset,
-        seed: &dyn Streams,
-    ) -> Result<TrainedClassifier> {
-        let c = match self.c {
-            Cost::Fixed(c) if self.kind.has_c() => Some(c),
-            _ => None,
-        };
-        self.train_with_c(training, c, None, seed)
-    }
-
     /// Trains one classifier per value of C, in the order of `path`. Kernel SVMs share one Gram matrix.
     ///
     /// # Errors
@@ -237,16 +223,15 @@ impl Classifier {
             return Err(Error::input("C", given, "it has none"));
         }
         let (scaling, scaled) = self.scaled(training)?;
-        let models: Vec<Model> = match self.kernel_svm(1.0) {
-            Some(params) => params
-                .train_path(&scaled, path)?
-                .into_iter()
-                .map(|model| Model::Svm(Box::new(model)))
-                .collect(),
-            None => path
-                .iter()
-                .map(|&c| self.train_model(&scaled, Some(c), seed))
-                .collect::<Result<_>>()?,
+        let models: Vec<Arc<dyn ClassModel>> = match self.kernel_svm(1.0) {
+            Some(params) => {
+                let models = params.train_path(&scaled, path)?.into_iter();
+                models.map(|model| Arc::new(model) as _).collect()
+            }
+            None => {
+                let models = path.iter().map(|&c| self.train_model(&scaled, c, seed));
+                models.collect::<Result<_>>()?
+            }
         };
         let trained = models.into_iter().zip(path);
         Ok(trained
@@ -266,6 +251,7 @@ impl Classifier {
         Ok((scaling, Cow::Owned(scaled)))
     }
 
+    /// Trains the classifier with a penalty C, or without C if this kind of classifier has none.
     fn train_with_c(
         &self,
         training: &Dataset,
@@ -274,17 +260,21 @@ impl Classifier {
         seed: &dyn Streams,
     ) -> Result<TrainedClassifier> {
         let (scaling, scaled) = self.scaled(training)?;
-        let model = self.train_model(&scaled, c, seed)?;
+        let model = self.train_model(&scaled, c.unwrap_or(1.0), seed)?;
         Ok(TrainedClassifier::new(scaling, model, c, chosen))
     }
 
-    /// Trains the model on rows with scaled features; `c` is the penalty C, or `None` for classifiers without C.
-    fn train_model(&self, scaled: &Dataset, c: Option<f64>, seed: &dyn Streams) -> Result<Model> {
-        let c = c.unwrap_or(1.0);
-        Ok(match self.kernel_svm(c) {
-            Some(params) => Model::Svm(Box::new(params.train(scaled)?)),
-            None => Model::Classes((self.kind.about().train)(self, scaled, c, seed)?),
-        })
+    /// Trains the model on rows with scaled features. Classifiers without a penalty C ignore `c`.
+    fn train_model(
+        &self,
+        scaled: &Dataset,
+        c: f64,
+        seed: &dyn Streams,
+    ) -> Result<Arc<dyn ClassModel>> {
+        match self.kernel_svm(c) {
+            Some(params) => Ok(Arc::new(params.train(scaled)?)),
+            None => (self.kind.about().train)(self, scaled, c, seed),
+        }
     }
 
     /// Trains a linear SVM by coordinate descent, which needs no kernel matrix.

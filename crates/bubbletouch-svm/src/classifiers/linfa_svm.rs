@@ -7,6 +7,7 @@
 use crate::class_model::ClassModel;
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::dataset::{Dataset, check_width, checked_classes};
+use crate::error::check_above_zero;
 use crate::{Error, Result};
 use linfa::dataset::{DatasetBase, Pr};
 use linfa::traits::{Fit, PredictInplace};
@@ -39,15 +40,8 @@ impl LinfaSvm {
     /// finite, or the numbers of labels and rows differ.
     pub fn train(data: &Dataset, kernel: LinfaKernel, c: f64, tolerance: f64) -> Result<Self> {
         let classes = checked_classes(data)?;
-        for (name, value) in [("C", c), ("tolerance", tolerance)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::input(
-                    name,
-                    value,
-                    "a finite number above 0 is allowed",
-                ));
-            }
-        }
+        check_above_zero("C", c)?;
+        check_above_zero("tolerance", tolerance)?;
         let params: SvmParams<f64, Pr> = Svm::<f64, Pr>::params()
             .pos_neg_weights(c, c)
             .eps(tolerance);

@@ -13,13 +13,14 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+use crate::Result;
 use crate::class_model::{ClassModel, log_priors, normalise};
 use crate::class_weight::ClassWeight;
 use crate::classifiers::logistic_loss::LogisticLoss;
 use crate::dataset::{Dataset, checked_classes, positions, squared_norms};
+use crate::error::check_above_zero;
 use crate::linear_model::LinearModel;
 use crate::saved::SavedModel;
-use crate::{Error, Result};
 
 /// Default maximum number of Newton steps. Training usually takes 5 to 30 steps, also with C = 1e9.
 pub const MAX_ITERATIONS: usize = 200;
@@ -69,12 +70,8 @@ impl LogisticParams {
     /// If C or the tolerance is out of range, the data are empty, or a feature is NaN, infinite or too large to square. If the number of labels differs from
     /// the number of rows, or there is a single class.
     pub fn train(&self, data: &Dataset) -> Result<Logistic> {
-        for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
-            if !(value > 0.0 && value.is_finite()) {
-                let allowed = "a finite number above 0 is allowed";
-                return Err(Error::input(name, value, allowed));
-            }
-        }
+        check_above_zero("C", self.c)?;
+        check_above_zero("tolerance", self.tolerance)?;
         let classes = checked_classes(data)?;
         squared_norms(data.records.view())?;
         let label = positions(data.targets.view(), &classes);

@@ -23,7 +23,6 @@ pub use classifier_about::{ClassifierAbout, Train};
 classifiers! {
     LinearSvm linear_svm "Soft-margin SVM, linear kernel.";
     RbfSvm rbf_svm "Soft-margin SVM, Gaussian kernel `exp(−γ|x − z|²)`.";
-    LaplacianSvm laplacian_svm "Soft-margin SVM, Laplacian kernel `exp(−γ|x − z|₁)`.";
     PolynomialSvm polynomial_svm "Soft-margin SVM, polynomial kernel `(γ x·z + c₀)^d`.";
     LogisticRegression logistic_regression "Multinomial [logistic regression](logistic_regression).";
     KNearest k_nearest "[k nearest neighbours](k_nearest).";

@@ -40,12 +40,9 @@ pub enum DefaultValue {
 /// Declaration of the width parameter γ of a kernel. At the upper bound, a polynomial kernel of degree 20 over 10,000 features is finite in f64.
 pub(crate) const GAMMA: Parameter = Parameter::real(
     "gamma",
-    "kernel parameter γ (RBF, Laplacian, polynomial)",
+    "kernel parameter γ (RBF, polynomial)",
     [1e-12, 1e9],
-    DefaultValue::Rule(
-        "scale",
-        "1 / (m · variance) of m scaled features; the Laplacian kernel has the standard deviation instead of the variance",
-    ),
+    DefaultValue::Rule("scale", "1 / (m · variance) of m scaled features"),
 );
 
 impl Parameter {
@@ -264,7 +261,7 @@ mod tests {
         }
         assert_eq!(users("degree"), "polynomial_svm");
         assert_eq!(users("max_depth"), "random_forest");
-        assert!(users("gamma").starts_with("rbf_svm or laplacian_svm or polynomial_svm"));
+        assert!(users("gamma").starts_with("rbf_svm or polynomial_svm"));
         for kind in ClassifierKind::ALL {
             for parameter in kind.about().parameters {
                 let mut all = declared();

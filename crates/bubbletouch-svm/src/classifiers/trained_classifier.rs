@@ -11,48 +11,28 @@ use crate::class_model::{ClassModel, normalise};
 use crate::cross_validation::choice::Chosen;
 use crate::precision::Precision;
 use crate::predict::svm_model::SvmModel;
+use crate::saved::{deserialize_model, serialize_model};
 use crate::scaling::FittedScaling;
 
 /// Trained classifier: a fitted scaling and a model. The data of serde (see [`saved`](crate::saved)) do not contain how C was chosen.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TrainedClassifier {
     scaling: FittedScaling,
-    model: Model,
+    /// Model that was trained on scaled features.
+    #[serde(
+        serialize_with = "serialize_model",
+        deserialize_with = "deserialize_model"
+    )]
+    model: Arc<dyn ClassModel>,
     c: Option<f64>,
     #[serde(skip)]
     chosen: Option<Chosen>,
 }
 
-/// Model trained on scaled features.
-#[derive(Clone, Debug)]
-pub(crate) enum Model {
-    /// Kernel SVM; its scores are the decision values of the binary problems.
-    Svm(Box<SvmModel>),
-    /// Model that computes one score per class.
-    Classes(Arc<dyn ClassModel>),
-}
-
-impl Model {
-    pub(crate) fn labels(&self, scaled: ArrayView2<f64>) -> Result<Array1<usize>> {
-        match self {
-            Self::Svm(model) => Ok(model.labels(scaled)?),
-            Self::Classes(model) => Ok(model.labels(scaled)?),
-        }
-    }
-
-    /// Returns the number of optimisation problems in training that stopped at the maximum number of iterations.
-    pub(crate) fn n_capped(&self) -> usize {
-        match self {
-            Self::Svm(model) => model.n_capped(),
-            Self::Classes(model) => model.n_capped(),
-        }
-    }
-}
-
 impl TrainedClassifier {
     pub(crate) fn new(
         scaling: FittedScaling,
-        model: Model,
+        model: Arc<dyn ClassModel>,
         c: Option<f64>,
         chosen: Option<Chosen>,
     ) -> Self {
@@ -89,26 +69,17 @@ impl TrainedClassifier {
     /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         let scaled = self.scaling.apply(features)?;
-        match &self.model {
-            Model::Svm(model) => Ok(model.decision_values(scaled.view())?),
-            Model::Classes(model) => Ok(model.scores(scaled.view())?),
-        }
+        self.model.scores(scaled.view())
     }
 
     /// Returns the predicted label of each row of scores, by votes or by scores with log-priors, depending on the kind of classifier.
     pub fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
-        match &self.model {
-            Model::Svm(model) => model.labels_of_values(scores),
-            Model::Classes(model) => model.labels_of_scores(scores),
-        }
+        self.model.labels_of_scores(scores)
     }
 
     /// Returns the labels of the training rows, ascending.
     pub fn classes(&self) -> &[usize] {
-        match &self.model {
-            Model::Svm(model) => model.classes(),
-            Model::Classes(model) => model.classes(),
-        }
+        self.model.classes()
     }
 
     /// Converts scores, or sums of scores, to one value per class (n_rows × n_classes), in ascending order of the labels. Larger values favour the class.
@@ -119,12 +90,8 @@ impl TrainedClassifier {
     /// | one-vs-rest SVM, nearest centroid, votes of a foreign classifier | score of the class |
     /// | others | natural logarithm of the probability of the class |
     pub fn class_scores(&self, scores: ArrayView2<f64>) -> Array2<f64> {
-        let model = match &self.model {
-            Model::Svm(model) => return model.class_scores(scores),
-            Model::Classes(model) => model,
-        };
-        let mut values = model.class_scores(scores);
-        if model.is_probabilistic() {
+        let mut values = self.model.class_scores(scores);
+        if self.is_probabilistic() {
             normalise(&mut values);
         }
         values
@@ -132,10 +99,7 @@ impl TrainedClassifier {
 
     /// Returns whether [`class_scores`](Self::class_scores) are logarithms of probabilities.
     pub fn is_probabilistic(&self) -> bool {
-        match &self.model {
-            Model::Svm(_) => false,
-            Model::Classes(model) => model.is_probabilistic(),
-        }
+        self.model.is_probabilistic()
     }
 
     /// Returns the penalty C used in training; `None` for a kind of classifier without C.
@@ -155,26 +119,17 @@ impl TrainedClassifier {
 
     /// Returns whether `labels` may differ from `labels_of_scores` for single rows.
     pub fn has_own_labels(&self) -> bool {
-        match &self.model {
-            Model::Svm(_) => false,
-            Model::Classes(model) => model.has_own_labels(),
-        }
+        self.model.has_own_labels()
     }
 
     /// Returns whether the model is trained anew in each call that predicts.
     pub fn trains_in_predictions(&self) -> bool {
-        match &self.model {
-            Model::Svm(_) => false,
-            Model::Classes(model) => model.trains_in_predictions(),
-        }
+        self.model.trains_in_predictions()
     }
 
     /// Returns the trained kernel SVM; `None` for other kinds. The SVM expects scaled features.
     pub fn svm(&self) -> Option<&SvmModel> {
-        match &self.model {
-            Model::Svm(model) => Some(model),
-            Model::Classes(_) => None,
-        }
+        self.model.svm()
     }
 
     /// Returns the scaling fitted on the training rows.

@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use crate::gram::matrix::Gram;
 use crate::linalg::scalar::Scalar;
 
 /// Transfer of a solution from one cross-validation fold to the next, given the rows that differ (alpha seeding).
@@ -29,17 +30,13 @@ impl AlphaSeeding {
     }
 
     /// Returns the coefficients β after the values of removed rows were transferred to the most similar added rows. Returns `None` if a removed row has no
-    /// added row left. `similar` returns the kernel values of a row with all rows.
-    pub fn transfer<'k, T: Scalar>(
-        &self,
-        beta: &[f64],
-        similar: impl Fn(usize) -> &'k [T],
-    ) -> Option<Vec<f64>> {
+    /// added row left. The similarity of two rows is their kernel value.
+    pub fn transfer<T: Scalar>(&self, beta: &[f64], gram: &mut Gram<T>) -> Option<Vec<f64>> {
         let mut moved = beta.to_vec();
         for (lost, gained) in &self.sides {
             let mut gained = gained.clone();
             for &lost in lost.iter().filter(|&&at| beta[at] != 0.0) {
-                let similar = similar(lost);
+                let similar = gram.row(lost);
                 let mut nearest = (T::neg_infinity(), None);
                 for (number, &at) in gained.iter().enumerate() {
                     if similar[at] > nearest.0 {
@@ -69,9 +66,8 @@ mod tests {
             let label = |at: usize| if fold.contains(&at) { sign(at) } else { 0.0 };
             (0..8).map(label).collect::<Vec<f64>>()
         };
-        let row = |at: usize| &kernel.as_slice().unwrap()[at * 8..][..8];
         let seeding = AlphaSeeding::new((&labels(was), &labels(is)), &(0..4));
-        seeding.transfer(beta, row)
+        seeding.transfer(beta, &mut Gram::whole(kernel.view()))
     }
 
     #[test]

@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use crate::cross_validation::grid::Grid;
-use crate::dataset::{Dataset, LabelledRows, check_labels, check_unweighted, distinct, rows};
+use crate::dataset::{
+    Dataset, LabelledRows, check_labels, check_rows, check_unweighted, distinct, rows,
+};
 use crate::gram::sorted::Sorted;
 use crate::kernel::{Gamma, Kernel, KernelFunction};
 use crate::row_statistics::RowStatistics;
@@ -207,7 +209,7 @@ fn check_folds(training: &Dataset, folds: &[Split]) -> Result<()> {
     }
     for fold in folds {
         for part in [&fold.train, &fold.test] {
-            rows_exist(training, part)?;
+            check_rows(training, part)?;
         }
         let labels = fold.train.iter().map(|&row| training.targets[row]);
         let classes = distinct(labels.collect::<Array1<_>>().view());
@@ -220,18 +222,6 @@ fn check_folds(training: &Dataset, folds: &[Split]) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
-    let n_rows = training.records.nrows();
-    match part.iter().find(|&&row| row >= n_rows) {
-        None => Ok(()),
-        Some(&row) => Err(Error::input(
-            "rows",
-            row,
-            format!("an index below {n_rows} is allowed"),
-        )),
-    }
 }
 
 /// Returns the number of correctly classified validation rows for each kernel, C and fold (kernels.len() × path.len() × folds.len()). Also returns the number of
@@ -284,7 +274,7 @@ fn grid<T: SolverScalar>(
 ) -> Result<(Array3<usize>, usize)> {
     // Up to three matrices are in memory: the products, the kernel values, and the part of a fold's training rows.
     let most = (params.memory_bytes / (3 * size_of::<T>())).isqrt();
-    let n_rows = sorted.points().len();
+    let n_rows = sorted.points.len();
     if n_rows > most {
         return Err(Error::input(
             "training rows",

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::alpha_seeding::AlphaSeeding;
-use crate::gram::matrix::{Dense, Gram};
+use crate::gram::matrix::Gram;
 use crate::smo::{Smo, SolverScalar, are_within};
 use crate::training::Goal;
 
@@ -37,7 +37,7 @@ impl FoldPath {
     /// Solves the problem of a pair of classes on all cross-validation folds; passes each solved fold to a callback. The argument `folds` contains the
     /// labels of each fold, one per row of the Gram matrix, and `limits` the limits of the coefficients. Rows in the range `positive` have the label 1.
     pub fn of_pair<T: SolverScalar>(
-        gram: &mut Dense<T>,
+        gram: &mut Gram<T>,
         (folds, limits, positive): (Vec<Vec<f64>>, Vec<Vec<f64>>, &Range<usize>),
         goal: Goal,
         mut told: impl FnMut(&Self),
@@ -55,7 +55,7 @@ impl FoldPath {
                 (last, seeding)
             };
             let last_and_exchange = last.take().map(seeding);
-            let seed = |gram: &mut Dense<T>, number: usize| {
+            let seed = |gram: &mut Gram<'_, T>, number: usize| {
                 let (last, seeding) = last_and_exchange.as_ref()?;
                 let moved = last.moved(number, (&labels, seeding), gram);
                 moved.filter(|(beta, _)| are_within(beta, &limits, goal.path[number]))
@@ -69,7 +69,7 @@ impl FoldPath {
     /// from the rest, several decision values can be equal within the tolerance. The starting point then determines the predicted class, so each fold starts
     /// from zero, as in training.
     pub fn of_class<T: SolverScalar>(
-        gram: &mut Dense<T>,
+        gram: &mut Gram<T>,
         (folds, limits): (Vec<Vec<f64>>, Vec<Vec<f64>>),
         goal: Goal,
         mut told: impl FnMut(&Self),
@@ -86,11 +86,11 @@ impl FoldPath {
         &self,
         number: usize,
         (labels, seeding): (&[f64], &AlphaSeeding),
-        gram: &mut Dense<T>,
+        gram: &mut Gram<T>,
     ) -> Option<(Vec<f64>, Vec<f64>)> {
         let last = self.solutions.len() - 1;
         let FoldSolution { beta, f, .. } = &self.solutions[number.min(last)];
-        let moved = seeding.transfer(beta, |row| gram.row(row))?;
+        let moved = seeding.transfer(beta, gram)?;
         let mut moved_f = gram.times(&difference(&moved, beta));
         let both = labels.iter().zip(&self.labels);
         for ((moved, f), (label, before)) in moved_f.iter_mut().zip(f).zip(both) {
@@ -102,9 +102,9 @@ impl FoldPath {
 
 /// Solves the problem of one fold for each C in ascending order, until the solution no longer changes with C.
 fn along<T: SolverScalar>(
-    mut smo: Smo<Dense<T>>,
+    mut smo: Smo<T>,
     goal: Goal,
-    seed: impl Fn(&mut Dense<T>, usize) -> Option<(Vec<f64>, Vec<f64>)>,
+    seed: impl Fn(&mut Gram<T>, usize) -> Option<(Vec<f64>, Vec<f64>)>,
 ) -> Vec<FoldSolution> {
     let n_path = goal.path.len();
     let mut solutions = Vec::with_capacity(n_path);
@@ -130,7 +130,7 @@ fn along<T: SolverScalar>(
 
 /// Returns the product of the Gram matrix with the labels of each fold; held-out rows have the label 0.
 fn sums_of_folds<T: SolverScalar>(
-    gram: &mut Dense<T>,
+    gram: &mut Gram<T>,
     all: &[f64],
     folds: &[Vec<f64>],
 ) -> Vec<Vec<f64>> {
@@ -163,11 +163,9 @@ mod tests {
         (-gamma * (at(i) - at(j)).powi(2)).exp()
     }
 
-    fn gram(gamma: f64, rows: &[usize]) -> Dense<f64> {
+    fn gram(gamma: f64, rows: &[usize]) -> Gram<'static, f64> {
         let values = |(i, j): (usize, usize)| kernel(gamma, rows[i], rows[j]);
-        let mut gram = Dense::default();
-        gram.of_whole(Array2::from_shape_fn((rows.len(), rows.len()), values).view());
-        gram
+        Gram::whole(Array2::from_shape_fn((rows.len(), rows.len()), values).view())
     }
 
     fn label(at: usize, fold: usize) -> f64 {

@@ -6,15 +6,16 @@
 
 use std::ops::Range;
 
-use ndarray::{Array1, Array3};
+use ndarray::{Array1, Array2, Array3};
 
 use super::validation_scorer::ValidationScorer;
 use crate::class_weight::ClassWeight;
 use crate::cross_validation::fold_path::FoldPath;
-use crate::gram::matrix::Dense;
-use crate::gram::product_kernel::ProductKernel;
+use crate::gram::matrix::{Gram, GramMemory};
+use crate::gram::pairs::{Block, gram_of_pair};
 use crate::gram::sorted::Sorted;
 use crate::kernel::KernelFunction;
+use crate::linalg::products::own_products;
 use crate::multiclass::Multiclass;
 use crate::smo::SolverScalar;
 use crate::split::Split;
@@ -55,20 +56,21 @@ impl<T: SolverScalar> Grid<'_, T> {
     /// Returns the number of correctly classified validation rows for each kernel, C and fold (kernels.len() × path.len() × folds.len()). Also returns the number
     /// of solver runs that stopped at the iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array3<usize>, usize) {
-        let rows = (self.sorted.points(), self.sorted.ranges());
-        // The kernels differ only in γ, so they share the pairwise numbers.
-        let pairwise = kernels[0].own_pairwise(rows.0.all().values);
+        let points = self.sorted.points.all();
+        // The kernels differ only in γ, so they share the products of rows.
+        let products = own_products(points.values);
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
         let mut counts = Array3::zeros((kernels.len(), goal.path.len(), folds.len()));
         let mut n_capped = 0;
         for (&kernel, mut counts) in kernels.iter().zip(counts.outer_iter_mut()) {
-            let kernel = ProductKernel::new(rows, pairwise.view(), kernel);
+            let mut values = products.clone();
+            points.apply(values.view_mut(), points, &kernel);
             let mut counts = counts.columns_mut().into_iter();
             for folds in folds.chunks(FOLDS_AT_ONCE) {
-                for (scorer, mut counts) in self.score(folds, &kernel, goal).iter().zip(&mut counts)
-                {
+                let scorers = self.score(folds, &values, goal);
+                for (scorer, mut counts) in scorers.iter().zip(&mut counts) {
                     n_capped += scorer.n_capped();
-                    counts.assign(&Array1::from(scorer.n_correct(&kernel)));
+                    counts.assign(&Array1::from(scorer.n_correct(values.view())));
                 }
             }
         }
@@ -76,13 +78,13 @@ impl<T: SolverScalar> Grid<'_, T> {
     }
 
     fn fold(&self, split: &Split) -> Fold {
-        let place = self.sorted.place();
+        let place = &self.sorted.place;
         let mut is_training = vec![false; place.len()];
         split
             .train
             .iter()
             .for_each(|&row| is_training[place[row]] = true);
-        let ranges = self.sorted.ranges().iter();
+        let ranges = self.sorted.ranges.iter();
         let mut validation: Vec<usize> = split.test.iter().map(|&row| place[row]).collect();
         validation.sort_unstable();
         let n_training = |range: &Range<usize>| {
@@ -98,23 +100,14 @@ impl<T: SolverScalar> Grid<'_, T> {
         }
     }
 
-    /// Solves all binary problems of some folds and counts their correctly classified validation rows.
-    fn score(
-        &self,
-        folds: &[Fold],
-        kernel: &ProductKernel<T>,
-        goal: Goal,
-    ) -> Vec<ValidationScorer<T>> {
+    /// Solves all binary problems of some folds and counts their correctly classified validation rows, given the kernel values of all rows.
+    fn score(&self, folds: &[Fold], values: &Array2<T>, goal: Goal) -> Vec<ValidationScorer<T>> {
         let scorer = |fold| self.scorer(fold, goal.path.len());
         let mut scorers: Vec<ValidationScorer<T>> = folds.iter().map(scorer).collect();
-        let mut gram = Dense::default();
-        if self.multiclass == Multiclass::OneVsRest {
-            kernel.write_all(&mut gram);
-        }
+        let (mut above, mut memory) = (Vec::new(), GramMemory::default());
+        let is_rest = self.multiclass == Multiclass::OneVsRest;
+        let mut whole = is_rest.then(|| Gram::whole(values.view()));
         for (number, problem) in self.problems() {
-            if let (positive, Some(negative)) = problem {
-                kernel.write_pair((positive, negative), &mut gram);
-            }
             let takes_part = |fold: &Fold, class: usize| fold.is_class[class];
             let both = folds.iter().zip(&mut scorers).filter(|(fold, _)| {
                 takes_part(fold, problem.0) && problem.1.is_none_or(|class| takes_part(fold, class))
@@ -128,19 +121,22 @@ impl<T: SolverScalar> Grid<'_, T> {
                     .iter()
                     .for_each(|solution| scorer.take(number, solution));
             };
-            match problem.1 {
-                Some(_) => {
-                    let positive = 0..self.sorted.ranges()[problem.0].len();
-                    FoldPath::of_pair(&mut gram, (labels, limits, &positive), goal, score);
-                }
-                None => FoldPath::of_class(&mut gram, (labels, limits), goal, score),
+            if let Some(gram) = &mut whole {
+                FoldPath::of_class(gram, (labels, limits), goal, score);
+            } else if let (first, Some(second)) = problem {
+                let classes = [first, second].map(|class| &self.sorted.ranges[class]);
+                let blocks = [Block::new(values, [0, 0]); 3];
+                let mut gram = gram_of_pair(classes, blocks, &mut above, memory);
+                let positive = 0..classes[0].len();
+                FoldPath::of_pair(&mut gram, (labels, limits, &positive), goal, score);
+                memory = gram.into_memory();
             }
         }
         scorers
     }
 
     fn scorer(&self, fold: &Fold, n_path: usize) -> ValidationScorer<T> {
-        let ranges = self.sorted.ranges();
+        let ranges = &self.sorted.ranges;
         let of_class = |row: &usize| ranges.partition_point(|range| range.end <= *row);
         let rows = fold.validation.iter().map(|row| (*row, of_class(row)));
         let known = rows.filter(|(_, class)| fold.is_class[*class]).collect();
@@ -149,7 +145,7 @@ impl<T: SolverScalar> Grid<'_, T> {
 
     /// Returns the number and the classes of every binary problem, in an order in which neighbouring problems share cached kernel values.
     fn problems(&self) -> Vec<(usize, (usize, Option<usize>))> {
-        let problems = self.multiclass.problems(self.sorted.ranges().len());
+        let problems = self.multiclass.problems(self.sorted.ranges.len());
         let mut problems: Vec<_> = problems.into_iter().enumerate().collect();
         let group = |class: usize| class / CLASSES_AT_ONCE;
         problems.sort_by_key(|&(_, (a, b))| (group(a), b.map(group)));
@@ -162,7 +158,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         (positive, negative): (usize, Option<usize>),
         folds: &[&Fold],
     ) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
-        let ranges = self.sorted.ranges();
+        let ranges = &self.sorted.ranges;
         let classes = match negative {
             Some(negative) => vec![positive, negative],
             None => (0..ranges.len()).collect(),

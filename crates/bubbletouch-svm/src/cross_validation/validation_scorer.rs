@@ -8,11 +8,10 @@ use std::ops::Range;
 use ndarray::{Array2, ArrayView2, Axis};
 
 use crate::cross_validation::fold_path::FoldSolution;
-use crate::gram::product_kernel::ProductKernel;
 use crate::linalg::scalar::Scalar;
 use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
-use crate::predict::voting::VoteCounter;
+use crate::predict::voting::Voting;
 
 /// Number of validation rows that are classified together by votes; a larger number needs more memory for kernel values.
 const ROWS_AT_ONCE: usize = 512;
@@ -112,15 +111,15 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Returns the number of correctly classified validation rows for each value of the penalty C.
-    pub fn n_correct(&self, kernel: &ProductKernel<T>) -> Vec<usize> {
+    /// Returns the number of correctly classified validation rows for each value of the penalty C, given the kernel values of all rows.
+    pub fn n_correct(&self, kernel: ArrayView2<T>) -> Vec<usize> {
         let is_settled =
             |at: &usize| self.is_pairs() && !self.is_beaten.row(*at).iter().any(|x| *x);
         let (settled, open): (Vec<usize>, Vec<usize>) = (0..self.rows.len()).partition(is_settled);
         let mut n_correct = vec![settled.len(); self.weights.len()];
         for some in open.chunks(ROWS_AT_ONCE) {
             let rows: Vec<usize> = some.iter().map(|&at| self.rows[at].0).collect();
-            let values = kernel.rows(&rows);
+            let values = kernel.select(Axis(0), &rows);
             let mut n_elected = 0;
             for (number, n_correct) in n_correct.iter_mut().enumerate() {
                 if self.is_new[number] {
@@ -139,9 +138,11 @@ impl<T: Scalar> ValidationScorer<T> {
         let open: Vec<usize> = (0..some.len()).filter(is_open).collect();
         let values = values.select(Axis(0), &open);
         let sums = weighted_sums(&self.weights[number], values.view(), self.problems.len());
-        let between = (self.is_class.len(), self.multiclass);
-        let is_class = |class: usize| self.is_class[class];
-        let winners = VoteCounter::elect(&sums, self.rho.row(number), between, is_class);
+        let voting = Voting {
+            n_classes: self.is_class.len(),
+            multiclass: self.multiclass,
+        };
+        let winners = voting.elect(&sums, self.rho.row(number), |class| self.is_class[class]);
         let winners = winners.into_iter().zip(&open);
         let n_elected = winners.filter(|(winner, place)| *winner == self.rows[some[**place]].1);
         some.len() - open.len() + n_elected.count()
@@ -155,10 +156,8 @@ impl<T: Scalar> ValidationScorer<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gram::centered_rows::CenteredRows;
-    use crate::kernel::KernelFunction;
     use crate::predict::voting::first_maximum;
-    use ndarray::{Array1, Array2};
+    use ndarray::Array2;
 
     const N: usize = 60;
     const C: [f64; 4] = [0.1, 1.0, 10.0, 10.0];
@@ -187,9 +186,6 @@ mod tests {
         let is_training: Vec<bool> = (0..N).map(|at| at % 4 != 1).collect();
         let class = |at: usize| RANGES.iter().position(|range| range.contains(&at)).unwrap();
         let rows: Vec<(usize, usize)> = (1..N).step_by(4).map(|at| (at, class(at))).collect();
-        let points = CenteredRows::new(Array2::zeros((N, 1)).view(), Array1::zeros(1).view());
-        let kernel_function = KernelFunction::Linear;
-        let product_kernel = ProductKernel::new((&points, &RANGES), kernel.view(), kernel_function);
         for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
             let mut scorer =
                 ValidationScorer::new((rows.clone(), &[true; 4]), &RANGES, multiclass, C.len());
@@ -237,7 +233,7 @@ mod tests {
                         .count()
                 })
                 .collect();
-            let found = scorer.n_correct(&product_kernel);
+            let found = scorer.n_correct(kernel.view());
             assert_eq!(found, expected, "{multiclass:?}");
             assert!(
                 expected.iter().all(|&n| n > 3 && n < rows.len()),

@@ -18,7 +18,7 @@ fn smallest<T: Scalar>(diagonal: &[T]) -> T {
 }
 
 /// Inverse curvatures of the dual objective along all pairs of variables, row by row. If the Gram matrix has few rows, each row is stored at first use.
-#[derive(Clone, Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct InverseCurvatures<T> {
     values: Vec<T>,
     /// Whether each row of `values` has been computed. If this list is empty, `values` contains only the row that was requested last.
@@ -27,14 +27,6 @@ pub(crate) struct InverseCurvatures<T> {
 }
 
 impl<T: Scalar> InverseCurvatures<T> {
-    pub fn new() -> Self {
-        Self {
-            values: Vec::new(),
-            is_here: Vec::new(),
-            smallest: T::zero(),
-        }
-    }
-
     /// Prepares the storage for another Gram matrix with n rows and the given padded diagonal; reuses the allocated memory.
     pub fn renew(&mut self, n: usize, diagonal: &[T]) {
         let n_kept = if n <= MAX_KEPT { n } else { 0 };
@@ -48,6 +40,7 @@ impl<T: Scalar> InverseCurvatures<T> {
     }
 
     /// Returns the minimum curvature that pairwise steps use.
+    #[inline(always)]
     pub fn smallest(&self) -> T {
         self.smallest
     }
@@ -94,7 +87,7 @@ mod tests {
         let row = |i: usize| (0..16).map(move |j| ((i * 5 + j * 3) as f64 * 1.7).sin());
         let diagonal: Vec<f64> = (0..16).map(|i| 2.0 + f64::from(i)).collect();
         for n in [16, MAX_KEPT + 1] {
-            let mut inverses = InverseCurvatures::new();
+            let mut inverses = InverseCurvatures::default();
             inverses.renew(n, &diagonal);
             for i in [3, 0, 3, 15, 3] {
                 let row: Vec<f64> = row(i).collect();
@@ -105,7 +98,7 @@ mod tests {
             }
         }
         // Two equal rows.
-        let mut inverses = InverseCurvatures::new();
+        let mut inverses = InverseCurvatures::default();
         inverses.renew(2, &[1.0_f32; 16]);
         let found = inverses.of_row(0, &[1.0; 16], &[1.0; 16]);
         assert!(found.iter().all(|&found| found == 1.0 / 1e-12), "{found:?}");

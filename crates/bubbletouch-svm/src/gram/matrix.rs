@@ -1,175 +1,288 @@
-//! Interface of the solver to a Gram matrix: pairs of rows, the diagonal, weighted sums of rows, and submatrices.
+//! Gram matrix of a binary problem: a row is computed when it is first needed, and kept within a memory limit.
 
-use ndarray::{ArrayView1, ArrayView2, ArrayViewMut2, s};
+use ndarray::{ArrayView2, Axis};
 
 use super::curvatures::InverseCurvatures;
-use super::row_sums::weighted_sum;
+use super::row_sums::{support, weighted_sum};
+use crate::gram::centered_rows::CenteredRows;
+use crate::kernel::KernelFunction;
 use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
-use crate::linalg::transposed::write_columns;
+
+/// Number of rows that are computed together for a weighted sum of rows that exceed the memory limit.
+const BLOCK: usize = 256;
 
 /// Gram matrix K of a binary problem, n × n, symmetric and positive semidefinite. Rows are padded with zeros to whole lanes.
-pub(crate) trait Gram<T> {
-    /// Returns the number of rows n.
-    fn len(&self) -> usize;
-    /// Returns rows i and j of the Gram matrix.
-    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
-    /// Returns row i and the diagonal of the Gram matrix, both padded to whole lanes.
-    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
-    /// Returns the inverse curvatures `1 / (K_ii + K_jj − 2 K_ij)` of the pairs (i, j) of variables, for all j. Smaller curvatures are replaced by the minimum
-    /// curvature.
-    fn inverse_curvatures(&mut self, i: usize) -> &[T];
-    /// Returns the minimum curvature that a pairwise step assumes for a pair of variables.
-    fn smallest_curvature(&self) -> T;
-    /// Returns the product Kβ of the Gram matrix and the coefficients, summed in f64 (n values).
-    fn times(&mut self, beta: &[f64]) -> Vec<f64>;
-    /// Subtracts the product of the Gram matrix K with the coefficients β from the vector f.
-    fn take_times(&mut self, beta: &[f64], f: &mut [f64]) {
-        for (f, product) in f.iter_mut().zip(self.times(beta)) {
-            *f -= product;
-        }
-    }
-    /// Returns whether a Gram matrix of n rows fits into the memory limit.
-    fn fits(&self, n: usize) -> bool;
-    /// Returns the submatrix of the rows and columns with the given indices.
-    fn part(&mut self, indices: &[usize]) -> Dense<T>;
-}
-
-/// Gram matrix that is stored completely in memory.
-#[derive(Clone, Debug)]
-pub(crate) struct Dense<T> {
+pub(crate) struct Gram<'a, T> {
     n: usize,
     stride: usize,
-    /// Matrix values, row by row; each row is padded to `stride` values.
+    source: Source<'a, T>,
+    /// Maximum memory of the kept rows, and of a submatrix, bytes.
+    limit: usize,
+    memory: GramMemory<T>,
+}
+
+/// Origin of the rows of a Gram matrix.
+enum Source<'a, T> {
+    /// All rows are kept from the beginning.
+    Kept,
+    /// Function that writes the n values of a row, given its index.
+    Function(Box<dyn FnMut(usize, &mut [T]) + 'a>),
+    /// Points whose kernel values exceed the memory limit.
+    Points(&'a CenteredRows<T>, KernelFunction),
+}
+
+/// Memory of a Gram matrix, which successive matrices reuse.
+#[derive(Debug, Default)]
+pub(crate) struct GramMemory<T> {
+    /// Values of the kept rows.
     values: Vec<T>,
+    kept: Vec<KeptRow>,
+    /// Position of each row among the kept rows; `None` if the row is not kept.
+    place: Vec<Option<usize>>,
+    n_asked: u64,
     diagonal: Vec<T>,
     inverses: InverseCurvatures<T>,
 }
 
-impl<T: Scalar> Default for Dense<T> {
-    /// Creates an empty matrix.
-    fn default() -> Self {
-        Self {
-            n: 0,
-            stride: 0,
-            values: Vec::new(),
-            diagonal: Vec::new(),
-            inverses: InverseCurvatures::new(),
-        }
-    }
+/// Row at one position of the memory, with the number of the request that used it last.
+#[derive(Debug)]
+struct KeptRow {
+    row: usize,
+    last_asked: u64,
 }
 
-impl<T: Scalar> Dense<T> {
+impl<'a, T: Scalar> Gram<'a, T> {
     /// Returns the size in bytes of a matrix of n rows.
     pub fn bytes(n: usize) -> usize {
         n * padded(n) * size_of::<T>()
     }
 
-    /// Changes the number of rows to n, computes all entries by `fill`, and reuses the allocated memory. The function `fill` writes the n values of each row;
-    /// the caller must write the values that `fill` skips.
-    pub fn refill(&mut self, n: usize, mut fill: impl FnMut(usize, &mut [T])) {
-        self.n = n;
-        self.stride = padded(n);
-        self.values.resize(n * self.stride, T::zero());
-        for (i, row) in self.values.chunks_exact_mut(self.stride.max(1)).enumerate() {
-            fill(i, &mut row[..n]);
-            row[n..].fill(T::zero());
+    /// Creates a Gram matrix from its diagonal, whose length is the number of rows n, and a function that writes the n values of a row.
+    pub fn new(
+        diagonal: impl Iterator<Item = T>,
+        write: impl FnMut(usize, &mut [T]) + 'a,
+        memory: GramMemory<T>,
+    ) -> Self {
+        let source = Source::Function(Box::new(write));
+        Self::from_source(source, diagonal, usize::MAX, memory)
+    }
+
+    /// Creates the Gram matrix of the given points. The kept rows take at most `limit` bytes, but at least two rows are kept.
+    pub fn of_points(points: &'a CenteredRows<T>, kernel: KernelFunction, limit: usize) -> Self {
+        let diagonal = points.all().diagonal(&kernel).into_iter();
+        let source = Source::Points(points, kernel);
+        Self::from_source(source, diagonal, limit, GramMemory::default())
+    }
+
+    /// Creates a Gram matrix that contains all given kernel values, n × n.
+    pub fn whole(values: ArrayView2<T>) -> Self {
+        let write = |i: usize, to: &mut [T]| {
+            let row = to.iter_mut().zip(values.row(i));
+            row.for_each(|(to, &value)| *to = value);
+        };
+        Gram::new(values.diag().iter().copied(), write, GramMemory::default()).kept()
+    }
+
+    fn from_source(
+        source: Source<'a, T>,
+        diagonal: impl Iterator<Item = T>,
+        limit: usize,
+        mut memory: GramMemory<T>,
+    ) -> Self {
+        memory.diagonal.clear();
+        memory.diagonal.extend(diagonal);
+        let n = memory.diagonal.len();
+        let stride = padded(n);
+        memory.diagonal.resize(stride, T::zero());
+        memory.kept.clear();
+        memory.place.clear();
+        memory.place.resize(n, None);
+        // Without a memory limit, the inverse curvatures of all rows are kept, too.
+        let n_inverses = if limit == usize::MAX { n } else { usize::MAX };
+        memory.inverses.renew(n_inverses, &memory.diagonal);
+        let gram = Self {
+            n,
+            stride,
+            source,
+            limit,
+            memory,
+        };
+        gram.with_capacity()
+    }
+
+    /// Returns the matrix after all its rows were computed, so that their source is not needed any more.
+    fn kept<'b>(mut self) -> Gram<'b, T> {
+        for i in 0..self.n {
+            self.bring(i);
         }
-        self.diagonal.clear();
-        self.diagonal
-            .extend((0..n).map(|i| self.values[i * self.stride + i]));
-        self.diagonal.resize(self.stride, T::zero());
-        self.inverses.renew(n, &self.diagonal);
-    }
-
-    /// Copies all values of the given kernel matrix, n × n.
-    pub fn of_whole(&mut self, whole: ArrayView2<T>) {
-        self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
-    }
-
-    /// Builds the Gram matrix of two groups of rows from its four blocks. The blocks within the groups are given; `write` computes the block between the second
-    /// and the first group.
-    pub fn of_blocks(
-        &mut self,
-        [own, others]: [ArrayView2<T>; 2],
-        write: impl FnOnce(ArrayViewMut2<T>),
-    ) {
-        let n_first = own.nrows();
-        self.refill(n_first + others.nrows(), |at, to| {
-            let (left, right) = to.split_at_mut(n_first);
-            match at.checked_sub(n_first) {
-                None => copy(left, own.row(at)),
-                Some(at) => copy(right, others.row(at)),
-            }
-        });
-        let (above, below) =
-            self.values[..self.n * self.stride].split_at_mut(n_first * self.stride);
-        let shape = (others.nrows(), self.stride);
-        let both = ArrayViewMut2::from_shape(shape, &mut *below);
-        let both = both.expect("there is room for all rows");
-        write(both.slice_move(s![.., ..n_first]));
-        let rows = below.chunks_exact(self.stride.max(1));
-        let rows: Vec<&[T]> = rows.map(|row| &row[..n_first]).collect();
-        if n_first > 0 {
-            write_columns(&rows, &mut above[n_first..], self.stride);
+        Gram {
+            n: self.n,
+            stride: self.stride,
+            source: Source::Kept,
+            limit: self.limit,
+            memory: self.memory,
         }
     }
 
-    /// Returns a row of the matrix.
-    #[inline(always)]
-    pub fn row(&self, i: usize) -> &[T] {
-        &self.values[i * self.stride..(i + 1) * self.stride]
+    /// Returns the memory, for another matrix.
+    pub fn into_memory(self) -> GramMemory<T> {
+        self.memory
     }
-}
 
-/// Copies one row of a matrix into a slice.
-fn copy<T: Copy>(to: &mut [T], from: ArrayView1<T>) {
-    match from.as_slice() {
-        Some(from) => to.copy_from_slice(from),
-        None => to.iter_mut().zip(from).for_each(|(to, &from)| *to = from),
-    }
-}
-
-impl<T: Scalar> Gram<T> for Dense<T> {
-    fn len(&self) -> usize {
+    /// Returns the number of rows n.
+    pub fn len(&self) -> usize {
         self.n
     }
 
+    /// Returns the maximum number of rows that are kept.
+    fn capacity(&self) -> usize {
+        let bytes_per_row = (self.stride * size_of::<T>()).max(1);
+        (self.limit / bytes_per_row).max(2).min(self.n)
+    }
+
+    /// Allocates the memory of the rows that may be kept.
+    fn with_capacity(mut self) -> Self {
+        let n_values = self.capacity() * self.stride;
+        if self.memory.values.len() < n_values {
+            self.memory.values = vec![T::zero(); n_values];
+        }
+        self
+    }
+
+    /// Returns the position of row i among the kept rows; computes the row if it is not kept.
     #[inline(always)]
-    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
-        (self.row(i), self.row(j))
+    fn bring(&mut self, i: usize) -> usize {
+        let at = match self.memory.place[i] {
+            Some(at) => at,
+            None => self.compute(i),
+        };
+        self.memory.n_asked += 1;
+        self.memory.kept[at].last_asked = self.memory.n_asked;
+        at
     }
 
+    /// Computes row i at an empty position, or at the position of the least recently used row. Returns the position.
+    #[inline(never)]
+    fn compute(&mut self, i: usize) -> usize {
+        let capacity = self.capacity();
+        let memory = &mut self.memory;
+        let mut at = memory.kept.len();
+        let row = KeptRow {
+            row: i,
+            last_asked: 0,
+        };
+        if at < capacity {
+            memory.kept.push(row);
+        } else {
+            let kept = memory.kept.iter().enumerate();
+            let oldest = kept.min_by_key(|(_, kept)| kept.last_asked);
+            at = oldest.map_or(0, |(at, _)| at);
+            let replaced = std::mem::replace(&mut memory.kept[at], row);
+            memory.place[replaced.row] = None;
+        }
+        memory.place[i] = Some(at);
+        let to = &mut memory.values[at * self.stride..][..self.stride];
+        let (to, padding) = to.split_at_mut(self.n);
+        match &mut self.source {
+            Source::Kept => unreachable!("all rows are kept"),
+            Source::Function(write) => write(i, to),
+            Source::Points(points, kernel) => {
+                let values = points.range(i..i + 1).kernel(points.all(), kernel);
+                let values = to.iter_mut().zip(&values);
+                values.for_each(|(to, &value)| *to = value);
+            }
+        }
+        padding.fill(T::zero());
+        at
+    }
+
+    /// Returns the kept row at a position.
     #[inline(always)]
-    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
-        (self.row(i), &self.diagonal)
+    fn at(&self, at: usize) -> &[T] {
+        &self.memory.values[at * self.stride..][..self.stride]
     }
 
+    /// Returns row i of the Gram matrix, padded to whole lanes.
     #[inline(always)]
-    fn inverse_curvatures(&mut self, i: usize) -> &[T] {
-        let row = &self.values[i * self.stride..(i + 1) * self.stride];
-        self.inverses.of_row(i, row, &self.diagonal)
+    pub fn row(&mut self, i: usize) -> &[T] {
+        let at = self.bring(i);
+        self.at(at)
     }
 
+    /// Returns rows i and j of the Gram matrix.
     #[inline(always)]
-    fn smallest_curvature(&self) -> T {
-        self.inverses.smallest()
+    pub fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
+        // At least two rows are kept, so row j does not replace row i.
+        let (at_i, at_j) = (self.bring(i), self.bring(j));
+        (self.at(at_i), self.at(at_j))
     }
 
-    fn times(&mut self, beta: &[f64]) -> Vec<f64> {
-        weighted_sum(self.n, beta, |j| self.row(j))
+    /// Returns the entry K_ii of the diagonal.
+    #[inline(always)]
+    pub fn diagonal(&self, i: usize) -> T {
+        self.memory.diagonal[i]
     }
 
-    fn fits(&self, _: usize) -> bool {
-        true
+    /// Returns the curvature `K_ii + K_jj − 2 K_ij` of the dual objective along a pair of variables; at least the minimum curvature.
+    #[inline(always)]
+    pub fn curvature(&mut self, i: usize, j: usize) -> f64 {
+        let sum = (self.diagonal(i) + self.diagonal(j)).wide();
+        let curvature = sum - 2.0 * self.row(i)[j].wide();
+        curvature.max(self.memory.inverses.smallest().wide())
     }
 
-    fn part(&mut self, indices: &[usize]) -> Self {
-        let mut part = Self::default();
-        part.refill(indices.len(), |i, to| {
-            gather(to, self.row(indices[i]), indices)
-        });
-        part
+    /// Returns the inverse curvatures of the pairs (i, j) of variables, for all j.
+    #[inline(always)]
+    pub fn inverse_curvatures(&mut self, i: usize) -> &[T] {
+        let at = self.bring(i);
+        let memory = &mut self.memory;
+        let row = &memory.values[at * self.stride..][..self.stride];
+        memory.inverses.of_row(i, row, &memory.diagonal)
+    }
+
+    /// Returns the product Kβ of the Gram matrix and the coefficients, summed in f64 (n values).
+    pub fn times(&mut self, beta: &[f64]) -> Vec<f64> {
+        let support = support(beta);
+        if let Source::Points(points, kernel) = &self.source {
+            let mut sums = vec![0.0; self.n];
+            for block in support.chunks(BLOCK) {
+                let values = points.select(block).all().kernel(points.all(), kernel);
+                for (row, &j) in values.axis_iter(Axis(0)).zip(block) {
+                    for (sum, value) in sums.iter_mut().zip(row) {
+                        *sum += beta[j] * value.wide();
+                    }
+                }
+            }
+            return sums;
+        }
+        for &j in &support {
+            self.bring(j);
+        }
+        let row = |j: usize| self.at(self.memory.place[j].expect("the row was computed above"));
+        weighted_sum(self.n, (&support, beta), row)
+    }
+
+    /// Subtracts the product of the Gram matrix K with the coefficients β from the vector f.
+    pub fn take_times(&mut self, beta: &[f64], f: &mut [f64]) {
+        for (f, product) in f.iter_mut().zip(self.times(beta)) {
+            *f -= product;
+        }
+    }
+
+    /// Returns whether a submatrix of n rows fits into the memory limit.
+    pub fn fits(&self, n: usize) -> bool {
+        Self::bytes(n) <= self.limit
+    }
+
+    /// Returns the submatrix of the rows and columns with the given indices.
+    pub fn part<'b>(&mut self, indices: &[usize]) -> Gram<'b, T> {
+        if let Source::Points(points, kernel) = &self.source {
+            return Gram::whole(points.select(indices).all().own_kernel(kernel).view());
+        }
+        let diagonal: Vec<T> = indices.iter().map(|&i| self.diagonal(i)).collect();
+        let write = |i: usize, to: &mut [T]| gather(to, self.row(indices[i]), indices);
+        Gram::new(diagonal.into_iter(), write, GramMemory::default()).kept()
     }
 }
 

@@ -2,20 +2,25 @@
 
 use crate::linalg::scalar::Scalar;
 
-/// Returns a weighted sum of matrix rows: its first n values, summed in f64.
+/// Returns the indices of the coefficients that are not zero. The loop has no branches, because their pattern is unpredictable.
+pub(crate) fn support(beta: &[f64]) -> Vec<usize> {
+    let (mut support, mut n_support) = (vec![0; beta.len()], 0);
+    for (j, &beta) in beta.iter().enumerate() {
+        support[n_support] = j;
+        n_support += usize::from(beta != 0.0);
+    }
+    support.truncate(n_support);
+    support
+}
+
+/// Returns the sum of the rows in `support`, multiplied by their coefficients: its first n values, summed in f64.
 pub(crate) fn weighted_sum<'a, T: Scalar>(
     n: usize,
-    beta: &[f64],
+    (support, beta): (&[usize], &[f64]),
     row: impl Fn(usize) -> &'a [T],
 ) -> Vec<f64> {
     let mut sums = vec![0.0; n];
-    // The loop has no branches, because the pattern of non-zero β is unpredictable.
-    let (mut weighing, mut n_weighing) = (vec![0; beta.len()], 0);
-    for (j, &beta) in beta.iter().enumerate() {
-        weighing[n_weighing] = j;
-        n_weighing += usize::from(beta != 0.0);
-    }
-    let (fours, last) = weighing[..n_weighing].as_chunks::<4>();
+    let (fours, last) = support.as_chunks::<4>();
     for four in fours {
         add_four(&mut sums, &four.map(|j| (row(j), beta[j])));
     }

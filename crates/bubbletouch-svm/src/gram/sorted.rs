@@ -22,18 +22,20 @@ pub(crate) fn pairs(
 /// Training rows sorted by class and centred.
 #[derive(Clone)]
 pub(crate) struct Sorted<T> {
-    points: CenteredRows<T>,
+    /// Centred rows, sorted by class.
+    pub points: CenteredRows<T>,
     /// Original row number of each row in sorted order.
-    order: Vec<usize>,
+    pub order: Vec<usize>,
     /// Position of each original row in the sorted order.
-    place: Vec<usize>,
+    pub place: Vec<usize>,
     /// Range of each class's rows in the sorted order.
-    ranges: Vec<Range<usize>>,
-    classes: Vec<usize>,
+    pub ranges: Vec<Range<usize>>,
     /// Weight of each sorted row in training.
-    weights: Vec<f64>,
-    kernel: KernelFunction,
-    centre: Array1<f64>,
+    pub weights: Vec<f64>,
+    /// Kernel function that all binary problems use.
+    pub kernel: KernelFunction,
+    /// Centre that was subtracted from every row (m values).
+    pub centre: Array1<f64>,
     /// Largest squared distance between a row and the centre.
     farthest: f64,
     /// Product `(x − c)·c` of each sorted row x with the centre c, for a linear kernel. The product converts the offset ρ of decision functions about the
@@ -88,7 +90,6 @@ impl<T: Scalar> Sorted<T> {
             order,
             place,
             ranges,
-            classes: classes.to_vec(),
             kernel,
             centre: centre.to_owned(),
             centre_products,
@@ -120,43 +121,12 @@ impl<T: Scalar> Sorted<T> {
             order: self.order.clone(),
             place: self.place.clone(),
             ranges: self.ranges.clone(),
-            classes: self.classes.clone(),
             weights: self.weights.clone(),
             kernel: self.kernel,
             centre: Array1::zeros(directions.nrows()),
             farthest: self.farthest,
             centre_products: Vec::new(),
         }
-    }
-
-    /// Returns the centred rows, sorted by class.
-    pub fn points(&self) -> &CenteredRows<T> {
-        &self.points
-    }
-
-    /// Returns the centred rows without their class labels.
-    pub fn into_points(self) -> CenteredRows<T> {
-        self.points
-    }
-
-    /// Returns the original row number of each sorted row.
-    pub fn order(&self) -> &[usize] {
-        &self.order
-    }
-
-    /// Returns the position of each original row in the sorted order.
-    pub fn place(&self) -> &[usize] {
-        &self.place
-    }
-
-    /// Returns the kernel function that all binary problems use.
-    pub fn kernel(&self) -> KernelFunction {
-        self.kernel
-    }
-
-    /// Returns the centre that was subtracted from every row (m values).
-    pub fn centre(&self) -> ArrayView1<'_, f64> {
-        self.centre.view()
     }
 
     /// Returns the largest squared distance between a row and the centre, and the largest weight of a row in training.
@@ -184,33 +154,10 @@ impl<T: Scalar> Sorted<T> {
             .sum()
     }
 
-    /// Returns the class labels, ascending.
-    pub fn classes(&self) -> &[usize] {
-        &self.classes
-    }
-
-    /// Returns the weight of each sorted row in training.
-    pub fn weights(&self) -> &[f64] {
-        &self.weights
-    }
-
     /// Returns whether rows of one class have different weights.
     pub fn has_row_weights(&self) -> bool {
         let mut classes = self.ranges.iter().map(|range| &self.weights[range.clone()]);
         classes.any(|weights| weights.iter().any(|weight| *weight != weights[0]))
-    }
-
-    /// Returns the classes, each with the range of its rows in the sorted order.
-    pub fn classes_and_ranges(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
-        self.classes
-            .iter()
-            .copied()
-            .zip(self.ranges.iter().cloned())
-    }
-
-    /// Returns the range of each class's rows in the sorted order.
-    pub fn ranges(&self) -> &[Range<usize>] {
-        &self.ranges
     }
 
     /// Returns the range of all rows of several consecutive classes.
@@ -220,7 +167,7 @@ impl<T: Scalar> Sorted<T> {
 
     /// Returns all pairs of classes by their positions: (0, 1), (0, 2), …, (1, 2), ….
     pub fn all_pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<T> {
-        let all = 0..self.classes.len();
+        let all = 0..self.ranges.len();
         pairs(all.clone(), all)
     }
 

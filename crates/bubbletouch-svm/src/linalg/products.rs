@@ -46,27 +46,19 @@ fn in_place<T: Scalar>(
 }
 
 /// Returns the rows of a matrix as slices; `None` if a row is not contiguous in memory.
-fn slices<T>(rows: ArrayView2<'_, T>) -> Option<Vec<&[T]>> {
+pub(crate) fn slices<T>(rows: ArrayView2<'_, T>) -> Option<Vec<&[T]>> {
     let row = |row: usize| rows.index_axis_move(Axis(0), row).to_slice();
     (0..rows.nrows()).map(row).collect()
 }
 
-/// Returns the inner products `z_i · z_j` between all rows (n × m), as a symmetric n × n matrix.
+/// Returns the inner products `z_i · z_j` between all rows (n × m), as a symmetric n × n matrix. Half of them are copied from the other half.
 pub(crate) fn own_products<T: Scalar>(rows: ArrayView2<T>) -> Array2<T> {
-    with_each_other(rows, multiply)
-}
-
-/// Applies a symmetric function of two rows, such as [`multiply`], to all pairs of rows (n × m). Half of the n × n result is copied from the other half.
-pub(crate) fn with_each_other<T: Scalar>(
-    rows: ArrayView2<T>,
-    pairwise: impl Fn(ArrayView2<T>, ArrayView2<T>, ArrayViewMut2<T>),
-) -> Array2<T> {
     let n = rows.nrows();
     let mut products = Array2::zeros((n, n));
     for start in (0..n).step_by(ROWS_AT_ONCE) {
         let end = n.min(start + ROWS_AT_ONCE);
         let (left, right) = (rows.slice(s![start..end, ..]), rows.slice(s![..end, ..]));
-        pairwise(left, right, products.slice_mut(s![start..end, ..end]));
+        multiply(left, right, products.slice_mut(s![start..end, ..end]));
     }
     mirror(&mut products.view_mut());
     products

@@ -1,6 +1,7 @@
 //! Parameters of linear SVMs that are trained by coordinate descent.
 
 use crate::class_weight::ClassWeight;
+use crate::error::check_above_zero;
 use crate::{Error, Result};
 
 /// Default maximum number of passes over the rows, as in scikit-learn's LinearSVC.
@@ -35,12 +36,8 @@ impl Default for LinearSvmParams {
 impl LinearSvmParams {
     /// Returns an error if C, the tolerance or the maximum number of passes is out of range.
     pub(super) fn check(&self) -> Result<()> {
-        for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
-            if !(value > 0.0 && value.is_finite()) {
-                let allowed = "a finite number above 0 is allowed";
-                return Err(Error::input(name, value, allowed));
-            }
-        }
+        check_above_zero("C", self.c)?;
+        check_above_zero("tolerance", self.tolerance)?;
         if self.max_passes == 0 {
             return Err(Error::input("passes", 0, "at least 1 is allowed"));
         }

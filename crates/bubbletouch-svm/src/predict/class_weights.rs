@@ -63,7 +63,7 @@ impl<V: Scalar> ClassWeights<V> {
         for (&problem, mut own) in own.zip(weights.coefficients.rows_mut()) {
             let BinaryProblem { rows, solution, .. } = &problems[problem];
             for (&row, &coefficient) in rows.iter().zip(&solution.coefficients) {
-                let at = sorted.place()[row];
+                let at = sorted.place[row];
                 if weights.vectors.contains(&at) {
                     own[at - weights.vectors.start] = V::from_f64(coefficient);
                 }
@@ -124,7 +124,7 @@ pub(crate) fn weighted_sums<T: Scalar>(
 impl ClassWeights<f64> {
     /// Adds the support vectors of the class, times their coefficients, to the hyperplane normals of the class's problems (n_problems × m).
     pub fn add_to<T: Scalar>(&self, normals: &mut Array2<f64>, sorted: &Sorted<T>) {
-        let points = sorted.points().in_place();
+        let points = sorted.points.in_place();
         for (weights, &problem) in self.coefficients.rows().into_iter().zip(&self.problems) {
             let mut normal = normals.row_mut(problem);
             let normal = normal

@@ -5,14 +5,11 @@
 //! 1) / 2 pairs are therefore evaluated. On touches of 43 objects, 99 rows of 100 have a Condorcet winner.
 //!
 //! A pair is decided only if its value differs from ρ by more than the rounding error. The result then does not depend on the order of summation.
-//!
-//! For few rows, kernel values are computed on demand. Support vectors of pairs that are not evaluated are not read.
 
 use multiversion::multiversion;
 use ndarray::{Array1, ArrayView1, ArrayView2};
 
 use crate::gram::centered_rows::CenteredRows;
-use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 use crate::predict::class_weights::ClassWeights;
 
@@ -61,26 +58,9 @@ impl<T: Scalar> Pairs<T> {
         let rows = kernel_values.rows().into_iter();
         let rows = rows.map(|row| row.to_slice().expect("they lie row by row"));
         rows.map(|kernel_values| {
-            condorcet_winner(&mut ByKernel {
+            condorcet_winner(&ByKernel {
                 pairs: self,
                 kernel_values,
-            })
-        })
-        .collect()
-    }
-
-    /// Returns the class that wins against every other class for each of a few feature rows; computes only the required kernel values.
-    pub fn condorcet_winners_by_few(
-        &self,
-        rows: &CenteredRows<T>,
-        vectors: &CenteredRows<T>,
-        kernel: &KernelFunction,
-    ) -> Vec<Option<usize>> {
-        let rows = (0..rows.len()).map(|row| rows.row(row));
-        rows.map(|row| {
-            condorcet_winner(&mut ByKernel {
-                pairs: self,
-                kernel_values: RowKernelValues::new(row, vectors, kernel),
             })
         })
         .collect()
@@ -94,6 +74,7 @@ impl<T: Scalar> Pairs<T> {
         (&self.terms[start..end], rho)
     }
 }
+
 /// Returns, for each feature row (n × m), the class that wins against every other class; inputs are the normals and offsets ρ of all pairs.
 pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
     n_classes: usize,
@@ -102,7 +83,7 @@ pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
 ) -> Vec<Option<usize>> {
     let normals = normals.to_slice().expect("normals are stored one by one");
     let of_row = |row| {
-        condorcet_winner(&mut Hyperplanes {
+        condorcet_winner(&Hyperplanes {
             n_classes,
             normals,
             rho,
@@ -117,100 +98,26 @@ trait PairwiseDecisions<T> {
     fn n_classes(&self) -> usize;
 
     /// Returns the weighted sum of a pair's decision function, the sum of its absolute terms, the number of terms, and the offset ρ.
-    fn value(&mut self, pair: usize) -> (T, T, usize, f64);
-}
-
-/// Interface to the kernel values between one row and all support vectors.
-trait KernelValues<T> {
-    /// Returns the kernel values of all support vectors; only the values of support vectors listed in `terms` need to be valid.
-    fn with(&mut self, terms: &[(u32, T)]) -> &[T];
-}
-
-/// Kernel values that have all been computed before.
-impl<T> KernelValues<T> for &[T] {
-    #[inline(always)]
-    fn with(&mut self, _: &[(u32, T)]) -> &[T] {
-        self
-    }
+    fn value(&self, pair: usize) -> (T, T, usize, f64);
 }
 
 /// Decision functions of one row that are evaluated from its kernel values.
-struct ByKernel<'a, T, K> {
+struct ByKernel<'a, T> {
     pairs: &'a Pairs<T>,
-    kernel_values: K,
+    kernel_values: &'a [T],
 }
 
-impl<T: Scalar, K: KernelValues<T>> PairwiseDecisions<T> for ByKernel<'_, T, K> {
+impl<T: Scalar> PairwiseDecisions<T> for ByKernel<'_, T> {
     #[inline(always)]
     fn n_classes(&self) -> usize {
         self.pairs.n_classes
     }
 
     #[inline(always)]
-    fn value(&mut self, pair: usize) -> (T, T, usize, f64) {
+    fn value(&self, pair: usize) -> (T, T, usize, f64) {
         let (terms, rho) = self.pairs.pair(pair);
-        let (sum, size) = sum_and_size(terms, self.kernel_values.with(terms));
+        let (sum, size) = sum_and_size(terms, self.kernel_values);
         (sum, size, terms.len(), rho)
-    }
-}
-
-/// Kernel values of one row, computed when a pair of classes first needs them.
-struct RowKernelValues<'a, T> {
-    kernel: &'a KernelFunction,
-    vectors: &'a CenteredRows<T>,
-    /// Feature row and its squared norm.
-    row: (&'a [T], T),
-    /// Kernel values of the row with all support vectors.
-    kernel_values: Vec<T>,
-    is_known: Vec<bool>,
-    /// Numbers of the support vectors whose kernel values are computed together.
-    asked: Vec<u32>,
-    others: Vec<&'a [T]>,
-    norms: Vec<T>,
-    values: Vec<T>,
-}
-
-impl<'a, T: Scalar> RowKernelValues<'a, T> {
-    fn new(row: (&'a [T], T), vectors: &'a CenteredRows<T>, kernel: &'a KernelFunction) -> Self {
-        Self {
-            kernel,
-            vectors,
-            row,
-            kernel_values: vec![T::zero(); vectors.len()],
-            is_known: vec![false; vectors.len()],
-            asked: Vec::new(),
-            others: Vec::new(),
-            norms: Vec::new(),
-            values: Vec::new(),
-        }
-    }
-}
-
-impl<T: Scalar> KernelValues<T> for RowKernelValues<'_, T> {
-    /// Computes the missing kernel values of the support vectors in `terms`, and returns the kernel values of all support vectors.
-    fn with(&mut self, terms: &[(u32, T)]) -> &[T] {
-        self.asked.clear();
-        self.others.clear();
-        self.norms.clear();
-        for &(vector, _) in terms {
-            let is_known = &mut self.is_known[vector as usize];
-            if !*is_known {
-                *is_known = true;
-                let (other, norm) = self.vectors.row(vector as usize);
-                self.asked.push(vector);
-                self.others.push(other);
-                self.norms.push(norm);
-            }
-        }
-        let (row, norm) = self.row;
-        self.values.resize(self.asked.len(), T::zero());
-        self.kernel
-            .pairwise_of_row(row, &self.others, &mut self.values);
-        self.kernel.of_pairwise(&mut self.values, norm, &self.norms);
-        for (vector, &value) in self.asked.iter().zip(&self.values) {
-            self.kernel_values[*vector as usize] = value;
-        }
-        &self.kernel_values
     }
 }
 
@@ -229,7 +136,7 @@ impl<T: Scalar> PairwiseDecisions<T> for Hyperplanes<'_, T> {
     }
 
     #[inline(always)]
-    fn value(&mut self, pair: usize) -> (T, T, usize, f64) {
+    fn value(&self, pair: usize) -> (T, T, usize, f64) {
         let normal = &self.normals[pair * self.row.len()..][..self.row.len()];
         let (sum, size) = product_and_size(normal, self.row);
         (sum, size, self.row.len(), self.rho[pair])
@@ -237,7 +144,7 @@ impl<T: Scalar> PairwiseDecisions<T> for Hyperplanes<'_, T> {
 }
 
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn condorcet_winner<T: Scalar, P: PairwiseDecisions<T>>(pairs: &mut P) -> Option<usize> {
+fn condorcet_winner<T: Scalar, P: PairwiseDecisions<T>>(pairs: &P) -> Option<usize> {
     let mut champion = 0;
     for other in 1..pairs.n_classes() {
         if !wins(pairs, (champion, other))? {
@@ -256,7 +163,7 @@ fn condorcet_winner<T: Scalar, P: PairwiseDecisions<T>>(pairs: &mut P) -> Option
 /// Returns whether class `first` wins against class `second` (first < second); `None` if rounding errors could change the result.
 #[inline(always)]
 fn wins<T: Scalar>(
-    pairs: &mut impl PairwiseDecisions<T>,
+    pairs: &impl PairwiseDecisions<T>,
     (first, second): (usize, usize),
 ) -> Option<bool> {
     let pair = first * (2 * pairs.n_classes() - first - 1) / 2 + second - first - 1;
@@ -395,38 +302,6 @@ mod tests {
         assert!(winners.iter().any(|winner| winner.is_none()));
         for class in 0..N_CLASSES {
             assert!(winners.contains(&Some(class)), "{class} is never elected");
-        }
-    }
-
-    #[test]
-    fn kernel_values_that_are_asked_for_decide_as_all_of_them_do() {
-        let n_features = 21;
-        let n_vectors = N_CLASSES * N_VECTORS;
-        let vectors = Array2::from_shape_fn((n_vectors, n_features), |(i, j)| {
-            ((i * 37 + j) as f64 * 1.7).sin()
-        });
-        // Each row is near a support vector.
-        let asking = Array2::from_shape_fn((300, n_features), |(i, j)| {
-            vectors[[i % n_vectors, j]] + 0.3 * ((i * 11 + j) as f64 * 0.9).sin()
-        });
-        let rho = Array1::zeros(15);
-        let weights = weights();
-        let pairs = Pairs::new(&weights, &rho);
-        let centre = Array1::from_elem(n_features, 0.1);
-        let [vectors, asking] =
-            [vectors, asking].map(|rows| CenteredRows::<f64>::new(rows.view(), centre.view()));
-        for kernel in [
-            KernelFunction::Rbf { gamma: 0.2 },
-            KernelFunction::Laplacian { gamma: 0.2 },
-        ] {
-            let values = asking.all().kernel(vectors.all(), &kernel);
-            let expected = pairs.condorcet_winners(values.view());
-            assert_eq!(
-                pairs.condorcet_winners_by_few(&asking, &vectors, &kernel),
-                expected
-            );
-            assert!(expected.iter().any(|winner| winner.is_none()));
-            assert!(expected.iter().any(|winner| *winner > Some(0)));
         }
     }
 

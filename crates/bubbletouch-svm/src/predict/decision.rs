@@ -15,7 +15,7 @@ use crate::linalg::products::{FEW_ROWS, multiply};
 use crate::linalg::scalar::Scalar;
 use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
-use crate::predict::voting::VoteCounter;
+use crate::predict::voting::Voting;
 use crate::saved::damaged;
 
 /// Number of rows for which decision values are computed together. With a smaller value, packing the support vectors dominates the time. With a larger
@@ -93,13 +93,13 @@ impl<T: Scalar> DecisionFunctions<T> {
         normals: Option<Array2<T>>,
     ) -> Self {
         let sorted = rows.as_ref();
-        let classes = || sorted.classes_and_ranges();
-        let centre = sorted.centre().to_owned();
-        let (rho, sums) = match sorted.kernel() {
+        let classes = || sorted.ranges.iter().cloned().enumerate();
+        let centre = sorted.centre.clone();
+        let (rho, sums) = match sorted.kernel {
             KernelFunction::Linear => {
                 let about_centre = problems.iter().map(|p| sorted.rho_about_centre(p));
                 let sum = || {
-                    let mut normals = Array2::zeros((problems.len(), sorted.centre().len()));
+                    let mut normals = Array2::zeros((problems.len(), sorted.centre.len()));
                     for (class, rows) in classes() {
                         let weights = ClassWeights::new(sorted, class, rows, problems);
                         weights.add_to(&mut normals, sorted);
@@ -118,8 +118,8 @@ impl<T: Scalar> DecisionFunctions<T> {
                 let rho = problems.iter().map(|p| p.solution.rho).collect();
                 let pairs = pairs_of(&weights, &rho);
                 let vectors = match rows {
-                    Cow::Borrowed(sorted) => sorted.points().select(&support),
-                    Cow::Owned(sorted) => sorted.into_points().keep(&support),
+                    Cow::Borrowed(sorted) => sorted.points.select(&support),
+                    Cow::Owned(sorted) => sorted.points.keep(&support),
                 };
                 let support = Support {
                     kernel,
@@ -169,23 +169,10 @@ impl<T: Scalar> DecisionFunctions<T> {
     }
 
     /// Returns the position of the class with the most votes for each row of features.
-    pub fn winners(&self, features: ArrayView2<f64>, between: (usize, Multiclass)) -> Vec<usize> {
-        let elect = |sums: Array2<T>| VoteCounter::elect(&sums, self.rho.view(), between, |_| true);
+    pub fn winners(&self, features: ArrayView2<f64>, voting: Voting) -> Vec<usize> {
+        let elect = |sums: Array2<T>| voting.elect(&sums, self.rho.view(), |_| true);
         let mut room = self.allocate_kernel_values(features.nrows());
         let of_block = |points: CenteredRows<T>| match &self.sums {
-            Sums::Support(
-                support @ Support {
-                    pairs: Some(pairs), ..
-                },
-            ) if points.len() <= FEW_ROWS => {
-                let Support {
-                    vectors, kernel, ..
-                } = support;
-                elect_open(
-                    pairs.condorcet_winners_by_few(&points, vectors, kernel),
-                    |open| elect(self.sums_of(&points.select(open), &mut room)),
-                )
-            }
             Sums::Support(
                 support @ Support {
                     pairs: Some(pairs), ..
@@ -203,11 +190,11 @@ impl<T: Scalar> DecisionFunctions<T> {
             }
             // For many rows, the matrix product of all pairs is faster than evaluating a tenth of the pairs one by one.
             Sums::Hyperplanes(normals)
-                if between.1 == Multiclass::OneVsOne && points.len() <= FEW_ROWS =>
+                if voting.multiclass == Multiclass::OneVsOne && points.len() <= FEW_ROWS =>
             {
                 let hyperplanes = (normals.view(), self.rho.view());
                 elect_open(
-                    condorcet_winners_by_hyperplanes(between.0, hyperplanes, &points),
+                    condorcet_winners_by_hyperplanes(voting.n_classes, hyperplanes, &points),
                     |open| elect(self.sums_of(&points.select(open), &mut room)),
                 )
             }

@@ -14,6 +14,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::Result;
 use crate::binary_problem::BinaryProblem;
+use crate::class_model::ClassModel;
 use crate::dataset::check_width;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
@@ -21,7 +22,7 @@ use crate::multiclass::Multiclass;
 use crate::precision::Precision;
 use crate::predict::decision::DecisionFunctions;
 use crate::predict::voting::Voting;
-use crate::saved::{VERSION, check_version, damaged};
+use crate::saved::{SavedModel, VERSION, check_version, damaged};
 use crate::training::Trained;
 
 /// Trained SVM for two or more classes, with labels of type `L`. The data of serde (see [`saved`](crate::saved)) contain all that prediction needs.
@@ -105,10 +106,10 @@ impl SvmModel {
     {
         Self {
             version: VERSION,
-            n_features: sorted.centre().len(),
-            classes: sorted.classes().to_vec(),
+            n_features: sorted.centre.len(),
+            classes: (0..sorted.ranges.len()).collect(),
             voting: Voting {
-                n_classes: sorted.classes().len(),
+                n_classes: sorted.ranges.len(),
                 multiclass,
             },
             decision: DecisionFunctions::new(sorted, &problems, normals).into(),
@@ -174,10 +175,9 @@ impl<L: Clone> SvmModel<L> {
     /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<L>> {
         check_width(&features, self.n_features)?;
-        let between = (self.voting.n_classes, self.voting.multiclass);
         let winners = match &self.decision {
-            Decision::Single(functions) => functions.winners(features, between),
-            Decision::Double(functions) => functions.winners(features, between),
+            Decision::Single(functions) => functions.winners(features, self.voting),
+            Decision::Double(functions) => functions.winners(features, self.voting),
         };
         Ok(self.of_numbers(winners))
     }
@@ -194,10 +194,39 @@ impl<L: Clone> SvmModel<L> {
     pub fn labels_of_values(&self, values: ArrayView2<f64>) -> Array1<L> {
         self.of_numbers(self.voting.winners(values))
     }
+}
 
-    /// Returns one value per class (n_rows × n_classes) for decision values, or sums of them (n_rows × n_problems).
-    pub(crate) fn class_scores(&self, values: ArrayView2<f64>) -> Array2<f64> {
-        self.voting.class_scores(values)
+impl ClassModel for SvmModel {
+    fn saved(&self) -> Option<SavedModel> {
+        Some(SavedModel::Svm(Box::new(self.clone())))
+    }
+
+    fn svm(&self) -> Option<&SvmModel> {
+        Some(self)
+    }
+
+    fn classes(&self) -> &[usize] {
+        self.classes()
+    }
+
+    fn n_capped(&self) -> usize {
+        self.n_capped()
+    }
+
+    fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
+        self.decision_values(features)
+    }
+
+    fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
+        self.labels(features)
+    }
+
+    fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
+        self.labels_of_values(scores)
+    }
+
+    fn class_scores(&self, scores: ArrayView2<f64>) -> Array2<f64> {
+        self.voting.class_scores(scores)
     }
 }
 

@@ -40,7 +40,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
 
     /// Returns all pairs of classes in blocks whose data fit into the processor's cache.
     pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
-        let n = self.all.sorted.ranges().len();
+        let n = self.all.sorted.ranges.len();
         let some = move |start, at_once| start..n.min(start + at_once);
         let own = (0..n).step_by(CLASSES_AT_ONCE);
         own.flat_map(move |start| {
@@ -63,7 +63,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
     /// Returns the rows of two classes that are nearest to the other class, measured along the line between the class means.
     fn near_means(&self, (a, b): (usize, usize), ranked: &mut Ranked) -> Sides {
         let along: [Vec<T>; 2] = [a, b].map(|own| {
-            let rows = self.few.sorted.ranges()[own].clone();
+            let rows = self.few.sorted.ranges[own].clone();
             rows.map(|row| self.along_means[[row, a]] - self.along_means[[row, b]])
                 .collect()
         });
@@ -87,23 +87,16 @@ fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
 
 /// Returns all rows projected to a low-dimensional subspace, which is spanned by some of the rows.
 pub(crate) fn few_dimensions<T: SolverScalar>(sorted: &Sorted<T>) -> Sorted<T> {
-    let directions = spanned(sorted.points().all().values, FEW_DIMENSIONS);
+    let directions = spanned(sorted.points.all().values, FEW_DIMENSIONS);
     sorted.along(directions.view())
 }
 
 /// Returns the inner product of each row with the mean of each class, n_rows × n_classes.
 fn along_means<T: SolverScalar>(sorted: &Sorted<T>) -> Array2<T> {
-    let mut means = Array2::zeros((sorted.ranges().len(), sorted.centre().len()));
-    for (range, mut mean) in sorted.ranges().iter().zip(means.rows_mut()) {
+    let mut means = Array2::zeros((sorted.ranges.len(), sorted.centre.len()));
+    for (range, mut mean) in sorted.ranges.iter().zip(means.rows_mut()) {
         let n = T::from_f64(range.len() as f64);
-        mean.assign(
-            &(sorted
-                .points()
-                .range(range.clone())
-                .values
-                .sum_axis(Axis(0))
-                / n),
-        );
+        mean.assign(&(sorted.points.range(range.clone()).values.sum_axis(Axis(0)) / n));
     }
-    sorted.points().all().values.dot(&means.t())
+    sorted.points.all().values.dot(&means.t())
 }

@@ -4,8 +4,7 @@ use ndarray::Array2;
 
 use super::pair_search::{PairGoal, reach_by_equations};
 use crate::dual::DualSolution;
-use crate::gram::matrix::gather;
-use crate::gram::part::{Part, Workspace};
+use crate::gram::matrix::{Gram, GramMemory, gather};
 use crate::linalg::row_products::{Rows, multiply};
 use crate::linalg::transposed::write_columns;
 use crate::screening::margin_rows::{Ranked, RankedRow, SIGNS, Sides, find_below, smallest};
@@ -172,8 +171,8 @@ impl<T: SolverScalar> MarginPair<T> {
     }
 
     /// Solves the problem of the pair on its active rows, starting from the last solution. The argument `within` contains the inner products within each class;
-    /// the Gram matrix reuses the memory of `workspace`.
-    pub fn solve(&mut self, within: &[Within<T>], workspace: &mut Workspace<T>, goal: PairGoal) {
+    /// the Gram matrix reuses `memory`.
+    pub fn solve(&mut self, within: &[Within<T>], memory: &mut GramMemory<T>, goal: PairGoal) {
         let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
         let [first, second] = &self.rows;
         let within = self.classes.map(|class| &within[class]);
@@ -192,10 +191,12 @@ impl<T: SolverScalar> MarginPair<T> {
                 gather(right, within[1].row(second[i]), second);
             }
         };
-        let mut gram = Part::new(diagonal(0).chain(diagonal(1)), write, workspace);
+        let diagonal = diagonal(0).chain(diagonal(1));
+        let mut gram = Gram::new(diagonal, write, std::mem::take(memory));
         let (labels, limits) = (self.of_sides(SIGNS), self.limits());
         let given = ((&labels[..], &limits[..]), (beta, f), self.c);
         let (variables, reached) = reach_by_equations(&mut gram, given, goal);
+        *memory = gram.into_memory();
         (self.beta, self.f) = variables;
         self.c = goal.c;
         self.n_iterations += reached.n_iterations;

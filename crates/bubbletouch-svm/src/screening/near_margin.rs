@@ -11,8 +11,7 @@ use std::ops::Range;
 
 use super::pair_search::PairGoal;
 use crate::dual::DualSolution;
-use crate::gram::matrix::Dense;
-use crate::gram::part::Workspace;
+use crate::gram::matrix::{Gram, GramMemory};
 use crate::gram::sorted::Sorted;
 use crate::linalg::products::own_products;
 use crate::linalg::row_products::multiply;
@@ -41,28 +40,28 @@ impl<'a, T: SolverScalar> Classes<'a, T> {
     /// Computes the inner products between all rows of each class.
     pub fn new(sorted: &'a Sorted<T>) -> Self {
         let within = |range: &Range<usize>| {
-            let own = sorted.points().range(range.clone());
+            let own = sorted.points.range(range.clone());
             Within::new(own_products(own.values))
         };
         Self {
             sorted,
-            within: sorted.ranges().iter().map(within).collect(),
+            within: sorted.ranges.iter().map(within).collect(),
         }
     }
 
     /// Returns the positions of the first row of two classes.
     fn starts(&self, classes: [usize; 2]) -> [usize; 2] {
-        classes.map(|class| self.sorted.ranges()[class].start)
+        classes.map(|class| self.sorted.ranges[class].start)
     }
 
     /// Returns the weights of the two given classes in training.
     fn weights(&self, classes: [usize; 2]) -> [f64; 2] {
-        self.starts(classes).map(|row| self.sorted.weights()[row])
+        self.starts(classes).map(|row| self.sorted.weights[row])
     }
 
     /// Returns the numbers of rows of the two given classes.
     fn sizes(&self, classes: [usize; 2]) -> [usize; 2] {
-        classes.map(|class| self.sorted.ranges()[class].len())
+        classes.map(|class| self.sorted.ranges[class].len())
     }
 }
 
@@ -70,7 +69,7 @@ impl<'a, T: SolverScalar> Classes<'a, T> {
 pub(crate) struct NearMargin<'c, 'a, T> {
     classes: &'c Classes<'a, T>,
     pairs: Vec<MarginPair<T>>,
-    workspace: Workspace<T>,
+    memory: GramMemory<T>,
     scratch: PairWorkspace<'c, T>,
     round: Round<T>,
 }
@@ -106,7 +105,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         let mut all = Self {
             classes,
             pairs: pairs.iter().map(pair).collect(),
-            workspace: Workspace::new(),
+            memory: GramMemory::default(),
             scratch: PairWorkspace::default(),
             round: Round::default(),
         };
@@ -127,7 +126,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         let across = n_pairs * 2 * largest.pow(2);
         let normals = n_pairs * (n_features + 2 * largest);
         let few = sizes().sum::<usize>() * FEW_DIMENSIONS;
-        (2 * within + across + normals + few) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
+        (2 * within + across + normals + few) * size_of::<T>() + Gram::<T>::bytes(2 * largest)
     }
 
     /// Solves the problems of all pairs for the penalty `c`, until no row violates the optimality conditions by more than `tolerance`. Returns the solution and
@@ -165,7 +164,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
     ) -> Vec<R> {
         let mut results = Vec::new();
         results.resize_with(self.pairs.len(), || None);
-        let n_features = self.classes.sorted.centre().len();
+        let n_features = self.classes.sorted.centre.len();
         let mut open: Vec<usize> = (0..self.pairs.len()).collect();
         let mut n_rounds = 0;
         while !open.is_empty() {
@@ -195,12 +194,12 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
 
     /// Solves pairs of classes on their active rows, and computes the inner products of their hyperplane normals with all rows.
     fn solve_round(&mut self, pairs: &[usize], goal: PairGoal) {
-        let n_features = self.classes.sorted.centre().len();
+        let n_features = self.classes.sorted.centre.len();
         let mut round = std::mem::take(&mut self.round);
         round.normals.clear();
         let mut sums = vec![0.0; n_features];
         for &pair in pairs {
-            self.pairs[pair].solve(&self.classes.within, &mut self.workspace, goal);
+            self.pairs[pair].solve(&self.classes.within, &mut self.memory, goal);
             sums.fill(0.0);
             self.add_normal(pair, &mut sums);
             round
@@ -209,10 +208,10 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         }
         round.places.clear();
         round.places.resize(pairs.len(), [0..0, 0..0]);
-        let points = self.classes.sorted.points().in_place();
+        let points = self.classes.sorted.points.in_place();
         let (mut normals, mut rows) = (Vec::new(), Vec::new());
         let mut end = 0;
-        for (class, range) in self.classes.sorted.ranges().iter().enumerate() {
+        for (class, range) in self.classes.sorted.ranges.iter().enumerate() {
             normals.clear();
             let start = end;
             for (number, &pair) in pairs.iter().enumerate() {
@@ -240,7 +239,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         let starts = self.classes.starts(self.pairs[pair].classes());
         let rows = self.pairs[pair].weighing();
         let rows = rows.map(|(side, row, beta)| (starts[side] + row, beta));
-        let points = self.classes.sorted.points();
+        let points = &self.classes.sorted.points;
         points.in_place().add_weighted(sums, rows);
     }
 
@@ -249,7 +248,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         let classes: &'c Classes<'a, T> = self.classes;
         let starts = classes.starts(self.pairs[pair].classes());
         let products = number.map_or([&[][..]; 2], |number| self.round.products(number));
-        let all = (classes.sorted.points().in_place(), starts);
+        let all = (classes.sorted.points.in_place(), starts);
         self.pairs[pair].join(joining, products, all, &mut self.scratch);
     }
 }

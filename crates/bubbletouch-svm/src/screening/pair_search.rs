@@ -29,8 +29,8 @@ type LabelsAndLimits<'a> = (&'a [f64], &'a [f64]);
 /// Solves a binary problem from a given start: pairwise steps to a rough tolerance, followed by active-set steps. If the active-set steps do not reach the
 /// tolerance, pairwise steps continue. The problem is given with its labels, the limits of its coefficients, and the C of the
 /// state.
-pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
-    gram: &mut G,
+pub(crate) fn reach_by_equations<T: SolverScalar>(
+    gram: &mut Gram<T>,
     (rows, state, c): (LabelsAndLimits, State, f64),
     goal: PairGoal,
 ) -> (State, Reached) {
@@ -57,8 +57,8 @@ pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
     (state, reached)
 }
 
-fn reach<T: SolverScalar, G: Gram<T>>(
-    gram: &mut G,
+fn reach<T: SolverScalar>(
+    gram: &mut Gram<T>,
     ((labels, limits), state, c): (LabelsAndLimits, State, f64),
     goal: PairGoal,
 ) -> (State, Reached) {

@@ -40,8 +40,8 @@ pub(crate) enum Stop {
 
 /// Runs the pairwise steps of the solver without explicit vector instructions. Stops if the optimality conditions hold, the iteration cap is reached, or few
 /// variables can still move.
-pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
-    gram: &mut G,
+pub(crate) fn run_plain<T: Scalar>(
+    gram: &mut Gram<T>,
     variables: &mut Variables<T>,
     search: &mut Search,
     first_look: u64,
@@ -54,9 +54,9 @@ pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
 /// inverse curvatures, the highest f and scratch memory. The function `step_along` makes a step, given f, two rows, the step length and marks; it returns the
 /// next variable to increase.
 #[inline(always)]
-pub(super) fn run_with<T: Scalar, G: Gram<T>>(
+pub(super) fn run_with<T: Scalar>(
     (gram, (select_down, step_along)): (
-        &mut G,
+        &mut Gram<T>,
         (
             impl Fn((&[T], &[T]), &[T], T, &mut [T]) -> Down<T>,
             impl Fn(&mut [T], (&[T], &[T]), T, &[T]) -> Option<usize>,
@@ -93,9 +93,7 @@ pub(super) fn run_with<T: Scalar, G: Gram<T>>(
         }
         search.n_iterations += 1;
         until_look = until_look.saturating_sub(1);
-        let (row_i, diagonal) = gram.row_and_diagonal(i);
-        let curvature = (diagonal[i] + diagonal[j]).wide() - 2.0 * row_i[j].wide();
-        let step = variables.step(i, j, curvature.max(gram.smallest_curvature().wide()));
+        let step = variables.step(i, j, gram.curvature(i, j));
         match step_along(
             &mut variables.f,
             gram.rows(i, j),

@@ -17,8 +17,8 @@ use crate::linalg::vector_registers::{load, store};
 /// Runs the pairwise steps of the solver with explicit vector instructions. The passes are closures, because function calls would take as long as a few of
 /// their steps.
 #[target_feature(enable = "avx512f")]
-pub(crate) fn run<G: Gram<f32>>(
-    gram: &mut G,
+pub(crate) fn run(
+    gram: &mut Gram<f32>,
     variables: &mut Variables<f32>,
     search: &mut Search,
     first_look: u64,

@@ -10,8 +10,8 @@ use crate::gram::matrix::Gram;
 const MAX_ITERATIONS: u64 = 10_000_000;
 
 /// Binary problem, given by a Gram matrix and labels, with its solution for the last penalty C.
-pub(crate) struct Smo<'a, G> {
-    pub(super) gram: &'a mut G,
+pub(crate) struct Smo<'a, 'k, T> {
+    pub(super) gram: &'a mut Gram<'k, T>,
     /// Label of each row: 1, −1, or 0 for a row that is excluded from the problem.
     pub(super) y: &'a [f64],
     /// Limit of each coefficient β: its label times its weight in training. β is between 0 and C times its limit.
@@ -27,9 +27,9 @@ pub(crate) struct Smo<'a, G> {
     pub(super) max_iterations: u64,
 }
 
-impl<'a, G> Smo<'a, G> {
+impl<'a, 'k, T: SolverScalar> Smo<'a, 'k, T> {
     /// Creates an unsolved binary problem.
-    pub fn new(gram: &'a mut G, y: &'a [f64]) -> Self {
+    pub fn new(gram: &'a mut Gram<'k, T>, y: &'a [f64]) -> Self {
         Self {
             is_summed: true,
             ..Self::from_start(gram, y, (vec![0.0; y.len()], y.to_vec()), 0.0)
@@ -51,7 +51,7 @@ impl<'a, G> Smo<'a, G> {
 
     /// Creates a problem that starts from coefficients β and their approximate gradient f. The penalty for which β was computed is `c`, or 0 if there is none.
     pub fn from_start(
-        gram: &'a mut G,
+        gram: &'a mut Gram<'k, T>,
         y: &'a [f64],
         (beta, f): (Vec<f64>, Vec<f64>),
         c: f64,
@@ -90,10 +90,7 @@ impl<'a, G> Smo<'a, G> {
     }
 
     /// Recomputes the gradient f from the coefficients β in f64.
-    pub(super) fn refresh<T: SolverScalar>(&mut self)
-    where
-        G: Gram<T>,
-    {
+    pub(super) fn refresh(&mut self) {
         let products = self.gram.times(&self.beta);
         for ((f, product), y) in self.f.iter_mut().zip(products).zip(self.y) {
             *f = y - product;
@@ -102,10 +99,7 @@ impl<'a, G> Smo<'a, G> {
     }
 
     /// Updates the gradient f after a change of the coefficients β, given the previous coefficients `before`.
-    pub(super) fn follow<T: SolverScalar>(&mut self, before: Vec<f64>)
-    where
-        G: Gram<T>,
-    {
+    pub(super) fn follow(&mut self, before: Vec<f64>) {
         let mut change = before;
         for (change, beta) in change.iter_mut().zip(&self.beta) {
             *change = beta - *change;

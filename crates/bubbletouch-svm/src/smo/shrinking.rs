@@ -3,11 +3,11 @@
 use super::iterations::{SHRINK_PERIOD, Search, Stop};
 use super::solver_scalar::SolverScalar;
 use super::variables::Variables;
-use crate::gram::matrix::{Dense, Gram};
+use crate::gram::matrix::Gram;
 
 /// Solves the problem on a submatrix of the Gram matrix; the submatrix may be reduced further. Returns pairs (index of a variable, its coefficient β).
 pub(super) fn solve_part<T: SolverScalar>(
-    mut part: Dense<T>,
+    mut part: Gram<T>,
     mut variables: Variables<T>,
     search: &mut Search,
 ) -> Vec<(usize, f64)> {

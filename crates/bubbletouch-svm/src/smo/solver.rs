@@ -19,25 +19,19 @@ const PAIR_STEPS_PER_ROW: u64 = 20;
 /// on rounding errors; with a smaller value, solutions may miss their tolerance.
 const MAX_REFRESHES: usize = 30;
 
-impl<G> Smo<'_, G> {
+impl<'k, T: SolverScalar> Smo<'_, 'k, T> {
     /// Solves the binary problem for a given C, starting from the last solution. The violation of the optimality conditions is at most `tolerance`.
-    pub fn solve<T: SolverScalar>(&mut self, c: f64, tolerance: f64) -> DualSolution
-    where
-        G: Gram<T>,
-    {
+    pub fn solve(&mut self, c: f64, tolerance: f64) -> DualSolution {
         self.solve_or_from(c, tolerance, |_| None)
     }
 
     /// Solves the problem from the last solution or, if its objective is higher, from another start (coefficients β and gradient f).
-    pub fn solve_or_from<T: SolverScalar>(
+    pub fn solve_or_from(
         &mut self,
         c: f64,
         tolerance: f64,
-        other: impl FnOnce(&mut G) -> Option<(Vec<f64>, Vec<f64>)>,
-    ) -> DualSolution
-    where
-        G: Gram<T>,
-    {
+        other: impl FnOnce(&mut Gram<'k, T>) -> Option<(Vec<f64>, Vec<f64>)>,
+    ) -> DualSolution {
         let reached = self.reach(c, tolerance, other);
         let variables = (&self.beta[..], self.y, &self.f[..]);
         DualSolution {
@@ -47,15 +41,12 @@ impl<G> Smo<'_, G> {
     }
 
     /// Solves the problem from the better of two starts; returns whether the solver converged, and the number of iterations.
-    pub fn reach<T: SolverScalar>(
+    pub fn reach(
         &mut self,
         c: f64,
         tolerance: f64,
-        other: impl FnOnce(&mut G) -> Option<(Vec<f64>, Vec<f64>)>,
-    ) -> Reached
-    where
-        G: Gram<T>,
-    {
+        other: impl FnOnce(&mut Gram<'k, T>) -> Option<(Vec<f64>, Vec<f64>)>,
+    ) -> Reached {
         let mut search = Search::new(self.max_iterations, tolerance);
         if !self.is_summed && self.violation(c) <= tolerance {
             self.refresh();
@@ -77,10 +68,7 @@ impl<G> Smo<'_, G> {
     }
 
     /// Runs the solver until it reaches the tolerance or the maximum number of iterations; returns whether it reached the tolerance.
-    fn search<T: SolverScalar>(&mut self, c: f64, search: &mut Search) -> bool
-    where
-        G: Gram<T>,
-    {
+    fn search(&mut self, c: f64, search: &mut Search) -> bool {
         let max_iterations = search.max_iterations;
         let pair_steps = MIN_PAIR_STEPS.max(PAIR_STEPS_PER_ROW * self.y.len() as u64);
         let (mut n_refreshes, mut is_first) = (0, true);
@@ -118,10 +106,7 @@ impl<G> Smo<'_, G> {
 
     /// Runs the pairwise steps of the solver once on all variables. If most variables are soon omitted, the tolerance is rough at first, because omitted
     /// variables must be checked again before further work.
-    fn search_once<T: SolverScalar>(&mut self, c: f64, search: &mut Search, is_first: bool)
-    where
-        G: Gram<T>,
-    {
+    fn search_once(&mut self, c: f64, search: &mut Search, is_first: bool) {
         let mut all = Variables::<T>::new(&self.beta, self.limits, &self.f, c);
         let first_look = if is_first { SHRINK_PERIOD } else { 0 };
         let stop = T::run(self.gram, &mut all, search, first_look);

@@ -10,8 +10,8 @@ use crate::linalg::scalar::Scalar;
 /// Floating-point type of Gram matrices that the solver supports.
 pub(crate) trait SolverScalar: Scalar {
     /// Runs the [pairwise steps](run_plain) of the solver in this precision.
-    fn run<G: Gram<Self>>(
-        gram: &mut G,
+    fn run(
+        gram: &mut Gram<Self>,
         variables: &mut Variables<Self>,
         search: &mut Search,
         first_look: u64,
@@ -24,8 +24,8 @@ impl SolverScalar for f64 {}
 
 impl SolverScalar for f32 {
     #[cfg(target_arch = "x86_64")]
-    fn run<G: Gram<Self>>(
-        gram: &mut G,
+    fn run(
+        gram: &mut Gram<Self>,
         variables: &mut Variables<Self>,
         search: &mut Search,
         first_look: u64,
@@ -36,8 +36,8 @@ impl SolverScalar for f32 {
 
 #[cfg(target_arch = "x86_64")]
 #[multiversion::multiversion(targets("x86_64+avx512f"))]
-fn run_f32<G: Gram<f32>>(
-    gram: &mut G,
+fn run_f32(
+    gram: &mut Gram<f32>,
     variables: &mut Variables<f32>,
     search: &mut Search,
     first_look: u64,
@@ -51,7 +51,6 @@ fn run_f32<G: Gram<f32>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gram::matrix::Dense;
     use ndarray::Array2;
 
     #[test]
@@ -60,10 +59,9 @@ mod tests {
         let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let at = |i: usize| (i as f64 * 1.7).sin() + 0.2 * sign(i);
         let y: Vec<f64> = (0..n).map(sign).collect();
-        let mut gram = Dense::default();
         for (gamma, c) in [(0.1, 1.0), (3.0, 10.0), (300.0, 0.1)] {
             let kernel = |(i, j): (usize, usize)| (-gamma * (at(i) - at(j)).powi(2)).exp() as f32;
-            gram.of_whole(Array2::from_shape_fn((n, n), kernel).view());
+            let mut gram = Gram::whole(Array2::from_shape_fn((n, n), kernel).view());
             let start = Variables::<f32>::new(&vec![0.0; n], &y, &y, c);
             let (mut found, mut expected) = (start.clone(), start);
             let (mut search, mut plain) = (Search::new(100_000, 1e-4), Search::new(100_000, 1e-4));

@@ -3,18 +3,14 @@
 use super::problem::Smo;
 use super::solver_scalar::SolverScalar;
 use super::variables::{bounds, linear_and_quadratic};
-use crate::gram::matrix::Gram;
 use crate::gram::row_sums::add_row;
 
-impl<G> Smo<'_, G> {
+impl<T: SolverScalar> Smo<'_, '_, T> {
     /// Returns the problem with a start for small C: all multipliers are C, except 0 for the surplus rows of the larger class. The surplus rows are its rows
     /// that are farthest from the other class. If the objective with equal multipliers has its maximum below C, or
     /// if rows have weights, all multipliers start at 0. `sums` contains the
     /// product of the Gram matrix with the labels.
-    pub fn at_bounds<T: SolverScalar>(mut self, c: f64, sums: &[f64]) -> Self
-    where
-        G: Gram<T>,
-    {
+    pub fn at_bounds(mut self, c: f64, sums: &[f64]) -> Self {
         let y = self.y;
         let curvature: f64 = y.iter().zip(sums).map(|(y, sum)| y * sum).sum();
         // The comparison is also false if kernel values are not finite.
@@ -30,7 +26,7 @@ impl<G> Smo<'_, G> {
         for &i in larger.iter().take(balance.abs() as usize) {
             self.beta[i] = 0.0;
             let n = y.len();
-            let (row, _) = self.gram.row_and_diagonal(i);
+            let row = self.gram.row(i);
             add_row(&mut self.f, &row[..n], c * y[i]);
         }
         self.c = c;
@@ -76,19 +72,17 @@ impl<G> Smo<'_, G> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gram::matrix::Dense;
+    use crate::gram::matrix::Gram;
     use ndarray::Array2;
 
     /// Returns the kernel matrix and labels of test points on a line; the classes overlap, and one class has five more rows.
-    fn problem(gamma: f64) -> (Dense<f64>, Vec<f64>) {
+    fn problem(gamma: f64) -> (Gram<'static, f64>, Vec<f64>) {
         let n = 45;
         let at = |i: usize| (i as f64 * 1.7).sin() + if i % 9 < 4 { 0.4 } else { 0.0 };
         let kernel =
             Array2::from_shape_fn((n, n), |(i, j)| (-gamma * (at(i) - at(j)).powi(2)).exp());
-        let mut gram = Dense::default();
-        gram.of_whole(kernel.view());
         (
-            gram,
+            Gram::whole(kernel.view()),
             (0..n).map(|i| if i % 9 < 4 { 1.0 } else { -1.0 }).collect(),
         )
     }

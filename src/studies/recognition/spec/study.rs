@@ -147,7 +147,7 @@ params! {
         /// Candidate values of the penalty C; replaces `c`. Each fit chooses one candidate by cross-validation within its training rows.
         c_grid: Option<Vec<f64>> => PENALTY, Choice, Axes;
         /// Candidate values of the kernel parameter γ, as multiples of its default; replaces `gamma`. The default is 1 / (F · m · variance), where F · m is the
-        /// number of features of a touch. For the Laplacian kernel, the standard deviation replaces the variance. Each fit chooses one candidate together with C.
+        /// number of features of a touch. Each fit chooses one candidate together with C.
         gamma_grid: Option<Vec<f64>> => GAMMA, Choice, Axes;
         /// Number of folds of the inner cross-validation, which selects C and γ and estimates decisions on unseen touches for `most_informative`. Default: 5. Folds
         /// do not divide groups that the split does not divide.

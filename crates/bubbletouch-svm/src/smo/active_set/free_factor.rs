@@ -29,7 +29,7 @@ pub(crate) struct FreeFactor {
 
 impl FreeFactor {
     /// Factorises the kernel matrix of the given variables; variables that depend linearly on earlier variables are omitted.
-    pub fn new<T: Scalar, G: Gram<T>>(gram: &mut G, free: &[usize]) -> Self {
+    pub fn new<T: Scalar>(gram: &mut Gram<T>, free: &[usize]) -> Self {
         let width = (free.len() + JOINING).div_ceil(LANES);
         // The capacity includes all variables that may be added, so that rows are not moved.
         let mut rows = Vec::with_capacity(width * LANES * width);
@@ -44,7 +44,7 @@ impl FreeFactor {
         let mut largest = f64::MIN_POSITIVE;
         for (at, to) in factor.rows.chunks_exact_mut(width).enumerate() {
             let to = to.as_flattened_mut();
-            let (row, _) = gram.rows(free[at], free[at]);
+            let row = gram.row(free[at]);
             for j in at..free.len() {
                 to[j] = row[free[j]].wide();
             }
@@ -117,18 +117,18 @@ impl FreeFactor {
     }
 
     /// Adds a variable to the factors when it becomes free; returns `false` if the capacity is exhausted.
-    pub fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, variable: usize) -> bool {
+    pub fn join<T: Scalar>(&mut self, gram: &mut Gram<T>, variable: usize) -> bool {
         let n = self.places.len();
         if n == self.width * LANES {
             return false;
         }
         let mut column = vec![[[0.0; LANES]]; n.div_ceil(LANES)];
-        let (row, diagonal) = gram.row_and_diagonal(variable);
+        let mut pivot = gram.diagonal(variable).wide() + self.ridge;
+        let row = gram.row(variable);
         let all = column.as_flattened_mut().as_flattened_mut();
         for (to, place) in all.iter_mut().zip(&self.places) {
             *to = place.map_or(0.0, |other| row[other].wide());
         }
-        let mut pivot = diagonal[variable].wide() + self.ridge;
         substitute(&self.rows, self.width, &self.inverse, &mut column);
         let column = column.as_flattened().as_flattened();
         for (place, row) in self.rows.chunks_exact_mut(self.width).enumerate() {
@@ -158,7 +158,6 @@ impl FreeFactor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gram::matrix::Dense;
     use ndarray::Array2;
 
     const N: usize = 120;
@@ -193,8 +192,7 @@ mod tests {
     #[test]
     fn variables_join_and_leave() {
         let kernel = kernel(150);
-        let mut gram = Dense::<f64>::default();
-        gram.of_whole(kernel.view());
+        let mut gram = Gram::whole(kernel.view());
         let mut factor = FreeFactor::new(&mut gram, &(0..50).collect::<Vec<_>>());
         assert_solves(&factor, &kernel);
         for (joins, leaves) in [(50, 3), (51, 40), (52, 50), (53, 0), (54, 49), (3, 53)] {
@@ -219,8 +217,7 @@ mod tests {
     #[test]
     fn rows_that_depend_on_those_before_have_no_place_until_they_join() {
         let kernel = kernel(5);
-        let mut gram = Dense::<f64>::default();
-        gram.of_whole(kernel.view());
+        let mut gram = Gram::whole(kernel.view());
         let all: Vec<usize> = (0..N).collect();
         let mut factor = FreeFactor::new(&mut gram, &all);
         // Five variables, few of which are separated only by δ.
@@ -235,8 +232,7 @@ mod tests {
     #[test]
     fn when_there_is_no_room_none_joins() {
         let kernel = kernel(150);
-        let mut gram = Dense::<f64>::default();
-        gram.of_whole(kernel.view());
+        let mut gram = Gram::whole(kernel.view());
         let mut factor = FreeFactor::new(&mut gram, &[0]);
         let n_joined = (1..N).take_while(|&i| factor.join(&mut gram, i)).count();
         assert!((JOINING..N - 1).contains(&n_joined), "{n_joined}");

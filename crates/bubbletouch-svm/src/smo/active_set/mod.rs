@@ -35,8 +35,8 @@ pub(crate) struct ActiveSetGoal {
 }
 
 /// Improves the coefficients β by active-set steps and updates their gradient f, given the limits of the coefficients. Returns the number of steps; 0 if fewer than two variables are free.
-pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
-    gram: &mut G,
+pub(crate) fn solve_by_active_set<T: Scalar>(
+    gram: &mut Gram<T>,
     limits: &[f64],
     (beta, f): (&mut [f64], &mut [f64]),
     goal: ActiveSetGoal,
@@ -80,8 +80,8 @@ struct ActiveSet<'a> {
 
 impl<'a> ActiveSet<'a> {
     /// Creates the state of the active-set method; returns `None` if fewer than two variables are between their bounds.
-    fn new<T: Scalar, G: Gram<T>>(
-        gram: &mut G,
+    fn new<T: Scalar>(
+        gram: &mut Gram<T>,
         limits: &'a [f64],
         (beta, f): (&'a mut [f64], &'a mut [f64]),
         c: f64,
@@ -108,7 +108,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// Factorises the kernel matrix of the given free variables.
-    fn take<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, free: &[usize]) {
+    fn take<T: Scalar>(&mut self, gram: &mut Gram<T>, free: &[usize]) {
         self.factor = FreeFactor::new(gram, free);
         self.has_place = vec![false; self.limits.len()];
         for (_, variable) in self.factor.variables() {
@@ -161,7 +161,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// Updates the gradient f after changes of the coefficients β.
-    fn follow<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G) {
+    fn follow<T: Scalar>(&mut self, gram: &mut Gram<T>) {
         gram.take_times(&self.changes, self.f);
         self.changes.fill(0.0);
     }
@@ -196,7 +196,7 @@ impl<'a> ActiveSet<'a> {
 
     /// Adds the given variables to the free variables, as far as memory for the factors is available. Returns true if at least one variable was added, or if
     /// none had to be added.
-    fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, entering: &[usize]) -> bool {
+    fn join<T: Scalar>(&mut self, gram: &mut Gram<T>, entering: &[usize]) -> bool {
         for (number, &variable) in entering.iter().enumerate() {
             if !self.factor.join(gram, variable) {
                 // Entering variables come first; variables that depend on them linearly are omitted for now.
@@ -215,7 +215,6 @@ impl<'a> ActiveSet<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gram::matrix::Dense;
     use crate::smo::Smo;
     use crate::smo::variables::extremes;
     use ndarray::{Array1, Array2};
@@ -253,8 +252,7 @@ mod tests {
 
     /// Asserts that active-set steps from `start` reach the same objective as pairwise steps.
     fn assert_settles((kernel, labels): &(Array2<f64>, Vec<f64>), start: Vec<f64>, c: f64) {
-        let mut gram = Dense::<f64>::default();
-        gram.of_whole(kernel.view());
+        let mut gram = Gram::whole(kernel.view());
         let expected = Smo::new(&mut gram, labels).solve(c, 1e-7).objective;
         let (mut beta, mut f) = (start.clone(), f_of(kernel, &start, labels));
         let before = objective(&beta, &f, labels);
@@ -286,8 +284,7 @@ mod tests {
             (90, 12, 0.1, 30.0),
         ] {
             let (kernel, labels) = problem(n, m, apart);
-            let mut gram = Dense::<f64>::default();
-            gram.of_whole(kernel.view());
+            let mut gram = Gram::whole(kernel.view());
             let mut smo = Smo::new(&mut gram, &labels);
             assert!(smo.reach(c, 0.05, |_| None).is_solved);
             let rough = smo.variables().0.to_vec();
@@ -319,8 +316,7 @@ mod tests {
     #[test]
     fn it_goes_no_further_than_it_may() {
         let (kernel, labels) = problem(60, 20, 0.1);
-        let mut gram = Dense::<f64>::default();
-        gram.of_whole(kernel.view());
+        let mut gram = Gram::whole(kernel.view());
         let start: Vec<f64> = labels.iter().map(|y| 0.1 * y).collect();
         for max_steps in [0, 1, 7] {
             let (mut beta, mut f) = (start.clone(), f_of(&kernel, &start, &labels));
