@@ -246,7 +246,7 @@ fn touch_to_answer(criterion: &mut Criterion) {
     let touched = draw_touches(objects, &plan.placement, &Seed::new(1)).unwrap();
     let study = RecognitionStudy::new(plan, Box::new(touched.clone())).unwrap();
     let set = study.first().features((0, 0), &Silent).unwrap();
-    let array = &study.first().plan.arrays[0];
+    let array = &study.first().plan.array;
     let noise = Noise {
         std: 0.1,
         unit: NoiseUnit::FullScale,

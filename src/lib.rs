@@ -11,7 +11,7 @@
 //! | **kind** | the type of a study: recognition, reconstruction, object detail, whole body or stability |
 //! | **axis** | a key with several values; a **choice** describes the design, a **condition** the world |
 //! | **configuration** | one value of each axis; its number identifies it in all tables |
-//! | **variant** | one value of each axis of `[axes]`: a study with these values in place of its own |
+//! | **variant** | one value of each axis in `[axes]`, and of each list of a key with one value: a study with these values in place of its own |
 //! | **trial** | one draw of split, projection and noise; all configurations have the same trials |
 //! | **family** | configurations that differ only in C and in touches per decision; they are trained together |
 //! | **decision** | the class of one touch, or of several touches of an object (`touches_per_decision`) whose scores are added |

@@ -69,9 +69,7 @@ impl Study for SaturationStudy {
         let check = source.check();
         check.keys("saturation", &spec.saturation, &Self::keys())?;
         let of_touches = (&spec.skin, &spec.touches);
-        let allowed = "one pitch and one size";
-        let (array, placement) =
-            check.touches_of_one_array(&mut spec.objects, of_touches, allowed)?;
+        let (array, placement) = check.touches_of_one_array(&mut spec.objects, of_touches)?;
         check.used_springs(of_touches, false, "no such key")?;
         let objects = load_objects(&spec.objects, source.packings.as_deref())?;
         let touched = draw_touches(objects, &placement, &Seed::new(spec.seed))?;

@@ -7,7 +7,6 @@ use bubbletouch::inputs::content_hash::identity;
 use bubbletouch::kinds::recognition::{load_study, read_plans, touch_content};
 use bubbletouch::report::progress;
 use bubbletouch::study::axes::AxisValues;
-use bubbletouch::study::taxel_array::TaxelArray;
 use bubbletouch::study::{
     Plan, ReadFrames, TOUCH_FILES, load_objects, millimetres, touch_units, write_human_touches,
     write_touches,
@@ -51,7 +50,6 @@ pub struct Args {
 /// Touches on one array for one combination of axis values.
 struct DataSet<'a> {
     plan: &'a Plan,
-    array: &'a TaxelArray,
     n_frames: usize,
     axes: &'a AxisValues,
     /// Whether only test touches are simulated in this way.
@@ -89,7 +87,7 @@ pub fn touches(args: &Args) -> Result<()> {
     let mut claimed = DataFolder::claim(&args.out, "touches", files.iter().map(String::as_str))?;
     let is_force = read.as_ref().map(|read| read.is_force);
     for set in &sets {
-        for (name, units) in touch_units(set.array, is_force) {
+        for (name, units) in touch_units(&set.plan.array, is_force) {
             claimed.describe(&below(set, name), units);
         }
     }
@@ -99,7 +97,7 @@ pub fn touches(args: &Args) -> Result<()> {
     for set in &sets {
         let folder = args.out.join(&set.folder);
         output_folder(&folder)?;
-        let (plan, array, progress) = (set.plan, set.array, progress.as_ref());
+        let (plan, array, progress) = (set.plan, &set.plan.array, progress.as_ref());
         n_touches += match &plan.spec.human_touch {
             Some(human) => write_human_touches(&folder, human, plan, array, progress)?,
             None => {
@@ -130,25 +128,19 @@ fn data_sets<'a>(plans: &'a [(AxisValues, Plan)], read: Option<&ReadFrames>) -> 
         std::iter::once((axes, plan, false)).chain(tested)
     };
     for (axes, plan, is_tested) in plans.iter().flat_map(own) {
-        let arrays = plan.arrays.iter().enumerate();
-        let is_asked = |&(number, _): &(usize, _)| read.is_none_or(|read| read.array == number);
-        for (_, array) in arrays.filter(is_asked) {
-            let counts = match read {
-                None => plan.frames.clone(),
-                Some(_) => vec![1],
-            };
-            for n_frames in counts {
-                if known.insert((touch_content(plan), identity(array), n_frames)) {
-                    let folder = String::new();
-                    sets.push(DataSet {
-                        plan,
-                        array,
-                        n_frames,
-                        axes,
-                        is_tested,
-                        folder,
-                    });
-                }
+        let counts = match read {
+            None => plan.frames.clone(),
+            Some(_) => vec![1],
+        };
+        for n_frames in counts {
+            if known.insert((touch_content(plan), identity(&plan.array), n_frames)) {
+                sets.push(DataSet {
+                    plan,
+                    n_frames,
+                    axes,
+                    is_tested,
+                    folder: String::new(),
+                });
             }
         }
     }
@@ -170,7 +162,8 @@ fn data_sets<'a>(plans: &'a [(AxisValues, Plan)], read: Option<&ReadFrames>) -> 
 
 /// Returns the parts of a folder name: the array, followed by each axis with its value.
 fn folder_parts(set: &DataSet) -> Vec<String> {
-    let (ImageShape { ny, nx }, pitch_mm) = (set.array.shape(), millimetres(set.array.pitch()));
+    let (ImageShape { ny, nx }, pitch_mm) =
+        (set.plan.array.shape(), millimetres(set.plan.array.pitch()));
     let array = format!("{nx}x{ny}_at_{pitch_mm}_mm");
     let axes = set.axes.values.iter().map(|axis| {
         let value = match &axis.value {

@@ -13,18 +13,17 @@ use std::time::Instant;
 
 impl Check<'_> {
     /// Checks the objects, the array and the touches of a study in which one array touches all objects. Returns the array and the placement of its touches. The
-    /// objects get the default surface error of the array if none is given; `allowed` describes the allowed arrays.
+    /// objects get the default surface error of the array if none is given.
     ///
     /// # Errors
-    /// If a key is out of its range, or `[skin]` describes several arrays.
+    /// If a key is out of its range.
     pub fn touches_of_one_array(
         &self,
         objects: &mut ObjectsSpec,
         (skin, touches): (&SkinSpec, &TouchesSpec),
-        allowed: &str,
     ) -> Result<(TaxelArray, Placement)> {
         self.objects(objects)?;
-        let array = self.one_array(skin, allowed)?;
+        let array = self.grid(skin)?;
         objects.settle_surface_error(std::slice::from_ref(&array));
         Ok((array, self.placement(touches)?))
     }

@@ -1,7 +1,7 @@
 //! `bubbletouch touches`: the files of a data set agree with each other and with the library, and are written with little memory.
 
 use crate::command::{Case, CommandLine, filled, says, skip};
-use crate::study::Study;
+use crate::study::{Study, laid_out};
 use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::study::progress::Silent;
@@ -76,7 +76,9 @@ const FOLDERS: [&str; 2] = ["data/12x12_at_4_mm", "data/24x24_at_2_mm"];
 fn the_frames_are_the_librarys_one_folder_an_array() {
     let case = written();
     let study = Study::new(STUDY);
-    for (folder, array) in FOLDERS.iter().zip(&study.plan.arrays) {
+    let parts = laid_out(STUDY).unwrap();
+    let arrays = parts.parts().iter().map(|part| &part.plan.array);
+    for (folder, array) in FOLDERS.iter().zip(arrays) {
         let files = files(&case, folder);
         let bubbletouch::world::ImageShape { ny, nx } = array.shape();
         assert_eq!(files.frames.dim(), (900, ny, nx));
@@ -168,7 +170,9 @@ fn labels_depths_and_tables_agree_and_are_the_touches_of_the_study() {
 fn pressing_at_the_recorded_pose_reproduces_the_frame() {
     let case = written();
     let study = Study::new(STUDY);
-    for (folder, array) in FOLDERS.iter().zip(&study.plan.arrays) {
+    let parts = laid_out(STUDY).unwrap();
+    let arrays = parts.parts().iter().map(|part| &part.plan.array);
+    for (folder, array) in FOLDERS.iter().zip(arrays) {
         let files = files(&case, folder);
         let mut workspace = Workspace::new();
         for (touch, pose) in files.poses.outer_iter().enumerate() {

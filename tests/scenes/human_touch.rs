@@ -347,7 +347,7 @@ fn touches_are_balanced_and_alone_the_same() {
     assert_eq!(fewer.with_label(1), &touches.with_label(0)[..12]);
     // Frame by frame, as with manual presses, with new spheres each time.
     let human = plan.spec.human_touch.as_ref().unwrap();
-    let array = &plan.arrays[0];
+    let array = &plan.array;
     let skin = human.skin(array).unwrap();
     let frames = touches.simulate((array, human.n_frames()), &Silent);
     let deflection = frames.to_array();
@@ -375,7 +375,7 @@ fn touches_are_balanced_and_alone_the_same() {
 #[test]
 fn rows_and_columns_of_the_array_run_along_and_around_the_arm() {
     let (plan, touches, _) = laid_out(&STUDY.replace("KINDS", "")).unwrap();
-    let skin = touches.spec.skin(&plan.arrays[0]).unwrap();
+    let skin = touches.spec.skin(&plan.array).unwrap();
     let centers = skin.layout().centers();
     let place = |row: usize, column: usize| {
         let p = centers[row * 32 + column];

@@ -22,7 +22,7 @@ const STUDY: &str = include_str!("../fixtures/texts/calibration.toml");
 /// Deflections of touches in random order, n × 1,024, metres.
 static TOUCHED: LazyLock<Array2<f64>> = LazyLock::new(|| {
     let study = Study::new(STUDY);
-    let frames = simulate_array(&study.touched, &study.plan.arrays[0], 1, &Silent);
+    let frames = simulate_array(&study.touched, &study.plan.array, 1, &Silent);
     let frames = frames.to_array();
     let n = frames.len() / (SIDE * SIDE);
     let frames = frames.into_shape_with_order((n, SIDE * SIDE)).unwrap();

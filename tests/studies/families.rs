@@ -33,7 +33,7 @@ const ALL_FEATURES: &str = r#"features = ["raw", "centred", "unit_norm", "centre
 
 /// Computes the feature rows of a configuration in a trial with plain loops over touches, frames and numbers.
 fn slow_rows(study: &Study, configuration: &Configuration, trial: u64) -> Array2<f64> {
-    let array = &study.plan.arrays[0];
+    let array = &study.plan.array;
     let seed = Seed::new(study.plan.spec.seed);
     let steps = [SignalStep::Noise(Noise {
         std: configuration.noise_std,
@@ -230,7 +230,7 @@ fn frames_take_memory_in_proportion() {
 #[test]
 fn the_size_of_frames_is_estimated_from_some_touches() {
     let study = Study::new(STUDY);
-    let array = &study.plan.arrays[0];
+    let array = &study.plan.array;
     let frames = simulate_array(&study.touched, array, 1, &Silent).to_array();
     let n_touched = frames.iter().filter(|value| **value > 0.0).count();
     let actual = array.n_values() as f64 / 8.0 + 4.0 * n_touched as f64 / frames.nrows() as f64;

@@ -14,7 +14,7 @@ const STUDY: &str = include_str!("../fixtures/texts/frames.toml");
 #[test]
 fn every_frame_is_its_touch_pressed_alone() {
     let study = Study::new(STUDY);
-    let array = &study.plan.arrays[0];
+    let array = &study.plan.array;
     let frames = simulate_array(&study.touched, array, 1, &Silent);
     let deflection = frames.to_array();
     let touches = study.touches();
@@ -43,7 +43,7 @@ fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
         for touch in touches.filter(|touch| touch.depth < 1e-9) {
             touch.depth = 1e-23;
         }
-        let array = &study.plan.arrays[0];
+        let array = &study.plan.array;
         let frames = simulate_array(&study.touched, array, 3, &Silent);
         let deflection = frames.to_array();
         let empty = deflection.outer_iter().skip(2).step_by(3);
@@ -87,7 +87,7 @@ fn by_the_equations(array: &TaxelArray, object: &TouchedObject, touch: &Touch) -
 #[test]
 fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
     let study = Study::new(STUDY);
-    let array = &study.plan.arrays[0];
+    let array = &study.plan.array;
     let stroke = array.taxel().stroke;
     let frames = simulate_array(&study.touched, array, 1, &Silent);
     let deflection = frames.to_array();
@@ -275,7 +275,7 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
         .replace("[2.0, 4.0]\n", "4.0\nspeed_mm_per_s = 50.0\n")
         .replace("[sensing]", "[signal]\nsteps = [\"force\"]\n\n[sensing]");
     let study = Study::new(&text);
-    let array = &study.plan.arrays[0];
+    let array = &study.plan.array;
     let frames = simulate_array(&study.touched, array, 1, &Silent);
     let frames = frames.to_array();
     let samples = sample_frames(&study.plan, &study.sweep.groups, &study.touched).unwrap();

@@ -111,7 +111,7 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
     let signal =
         "steps = [\"hysteresis\", \"scan\"]\nhysteresis_full_scale = 0.2\nscan_time_ms = 30.0";
     let study = Study::new(&with_signal(signal));
-    let array = &study.plan.arrays[0];
+    let array = &study.plan.array;
     let n = array.n_taxels();
     let touches = study.touches();
     let press = |row: usize, share: f64| {

@@ -43,7 +43,7 @@ fn frames_are_those_of_the_skin_pressed_by_hand() {
     let text = with("layout = \"cap\"\ncurvature_radius_mm = 30.0");
     let study = laid_out(&text).unwrap();
     let part = study.first();
-    let array = &part.plan.arrays[0];
+    let array = &part.plan.array;
     let skin = array.patch();
     let frames = simulate_array(part.touched.as_ref(), array, 2, &Silent);
     let frames = frames.to_array();
@@ -77,7 +77,7 @@ fn the_command_writes_where_the_taxels_are() {
     case.succeeds("touches study.toml --out touches");
     let taxels: Array2<f64> = case.read_array("touches/taxels.npy");
     let study = laid_out(&text).unwrap();
-    let skin = study.first().plan.arrays[0].patch();
+    let skin = study.first().plan.array.patch();
     assert_eq!(taxels.dim(), (skin.n_taxels(), 6));
     for (row, center) in taxels.outer_iter().zip(skin.layout().centers()) {
         assert_eq!(row.to_vec()[..3], center.to_array());

@@ -90,7 +90,7 @@ fn an_object_is_touched_the_same_whatever_else_is_in_the_set() {
             let few = Study::new(&text.replace("\"mug\", \"banana\", ", ""));
             let many = Study::new(&text);
             assert_eq!((few.touched.len(), many.touched.len()), (2, 4));
-            let patch = &few.plan.arrays[0];
+            let patch = &few.plan.array;
             let frames = |touched| simulate_array(touched, patch, 1, &Silent).to_array();
             let (few_frames, many_frames) = (frames(&few.touched), frames(&many.touched));
             for (label, object) in few.touched.iter().enumerate() {

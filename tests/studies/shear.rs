@@ -27,7 +27,7 @@ fn read(text: &str) -> Array2<f64> {
 #[test]
 fn frames_are_those_of_the_skin_pressed_and_drawn_by_hand() {
     let study = Study::new(STUDY);
-    let array = &study.plan.arrays[0];
+    let array = &study.plan.array;
     let n_frames = 4;
     let frames = simulate_array(&study.touched, array, n_frames, &Silent);
     let frames = frames.to_array();

@@ -4,6 +4,7 @@ use super::study_axes::{CombineSpec, StudyAxes, find, insert, table_at, take_lis
 use super::study_axis::StudyAxis;
 use crate::error::{Error, Result};
 use crate::inputs::keys::{AxisPlace, KeyAbout};
+use crate::inputs::toml_value::{number, table_of, value_at};
 use crate::toml_lines::line_of;
 use crate::toml_text::{check_brackets, check_numbers};
 use serde::de::DeserializeOwned;
@@ -17,7 +18,7 @@ use toml::de::{DeTable, DeValue};
 /// # Errors
 /// If the study is invalid. If an axis has no values, a repeated value, a key that is also given elsewhere, or a key that cannot be an axis. The error names
 /// the file, the line and the key.
-pub fn read<S: DeserializeOwned>(
+pub fn read<S: DeserializeOwned + Serialize>(
     place: &str,
     text: &str,
     keys: &'static [KeyAbout],
@@ -97,6 +98,18 @@ pub fn read<S: DeserializeOwned>(
     let study = study.map_err(|error| {
         unexpected_list(place, text, &error, keys).unwrap_or_else(|| said(error))
     })?;
+    let own = table_of(&study);
+    for axis in axes.axes.iter_mut().filter(|axis| axis.is_of_table) {
+        // Whole numbers of a key with decimals are written with decimals.
+        if value_at(&own, &axis.key).is_some_and(toml::Value::is_float) {
+            let as_float = |value: &mut toml::Value| {
+                if let Some(number) = number(value) {
+                    *value = number.into();
+                }
+            };
+            axis.values.iter_mut().for_each(as_float);
+        }
+    }
     Ok((study, axes))
 }
 
@@ -315,7 +328,7 @@ mod tests {
                 "[0.0, 0.0]",
                 "s.toml:1, key zone_mm: 0.0 twice; each value once",
             ),
-            ("[]", "s.toml:1, key zone_mm: no list of values"),
+            ("[]", "s.toml:1, key zone_mm: an empty list"),
             (
                 "[0.0, \"a\"]",
                 "s.toml:1, key zone_mm: zone_mm = \"a\"; invalid type",

@@ -102,6 +102,19 @@ impl StudyAxes {
         axes.any(|axis| axis.keys().iter().any(|own| own == key))
     }
 
+    /// Returns the number of variants that have the same values of the axes in `[axes]`.
+    pub fn n_of_tables(&self) -> usize {
+        let of_tables = self.axes.iter().filter(|axis| axis.is_of_table);
+        of_tables.map(|axis| axis.values.len()).product()
+    }
+
+    /// Returns the number of values of a key in its own table.
+    pub(crate) fn n_values(&self, key: &str) -> usize {
+        let mut axes = self.axes.iter();
+        let axis = axes.find(|axis| axis.is_of_table && axis.key == key);
+        axis.map_or(1, |axis| axis.values.len())
+    }
+
     /// Returns one column for each axis that has no column in result tables yet. For a name that another column already has, `is_taken` returns true.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
         let column = |axis: &StudyAxis| {

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::inputs::check::MAX_VALUES;
 use crate::inputs::keys::{AxisPlace, KeyAbout, find as find_key};
 use crate::inputs::toml_value::{number, value_at};
+use crate::inputs::units::{MM, millimetres};
 use crate::table::{Column, Role, Scale};
 
 /// Prefix of keys that apply only to test touches.
@@ -75,7 +76,9 @@ impl StudyAxis {
             |key: &String| !key.split('.').any(str::is_empty) && !key.contains(['{', '}']);
         let twice = self.values.iter().enumerate().find(|(place, value)| {
             let before = self.values[..*place].iter();
-            before.take(MAX_VALUES).any(|other| is_same(other, value))
+            before
+                .take(MAX_VALUES)
+                .any(|other| is_same(&self.shown(other), &self.shown(value)))
         });
         let n = self.values.len();
         let (given, allowed) = match (refused, twice) {
@@ -92,6 +95,7 @@ impl StudyAxis {
                 "no path".to_owned(),
                 "the path of a key: \"skin.stroke_mm\", or of several: \"touches.offset_{x,y}_mm\"",
             ),
+            _ if n == 0 && self.is_of_table => ("an empty list".to_owned(), "at least one value"),
             _ if n == 0 => (
                 "no list of values".to_owned(),
                 "at least one value: [1.0, 2.0]",
@@ -101,6 +105,16 @@ impl StudyAxis {
             _ => return Ok(()),
         };
         Err(self.error(place, given, allowed))
+    }
+
+    /// Returns a value as tables show it. Two values with equal text in tables would be mistaken for each other.
+    fn shown(&self, value: &toml::Value) -> toml::Value {
+        match number(value) {
+            Some(mm) if self.is_of_table && self.key.ends_with("_mm") => {
+                millimetres(mm * MM).into()
+            }
+            _ => value.clone(),
+        }
     }
 
     /// Returns the paths of all keys that the axis sets: several if the axis key lists several names in braces.

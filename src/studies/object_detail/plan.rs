@@ -104,7 +104,7 @@ impl ObjectDetailPlan {
             let allowed = "no such key: object_detail.methods says what the meshes become";
             return Err(check.error("objects.model", "a model", allowed));
         }
-        let array = check.one_array(&spec.skin, "one pitch and one size")?;
+        let array = check.grid(&spec.skin)?;
         spec.objects.settle_sizes(std::slice::from_ref(&array));
         if spec.objects.surface_error_mm.is_some() {
             let allowed = "no such key: object_detail.tolerances_mm says how far spheres may be from the meshes";

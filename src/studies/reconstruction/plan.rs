@@ -100,17 +100,15 @@ impl ReconstructionPlan {
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub fn new(place: &str, mut spec: ReconstructionStudySpec) -> Result<Self> {
         let check = Check { place };
-        let allowed = "one pitch and one size: a dictionary is of one array";
         let of_touches = (&spec.skin, &spec.touches);
-        let (array, placement) =
-            check.touches_of_one_array(&mut spec.objects, of_touches, allowed)?;
+        let (array, placement) = check.touches_of_one_array(&mut spec.objects, of_touches)?;
         let (noise_unit, noise) = check.noise(&spec.signal, None)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
         let reads_force = spec.signal.steps.contains(&StepSpec::Force);
         let of_force = "\"force\" among signal.steps beside it";
         check.used_springs(of_touches, reads_force, of_force)?;
-        check.sensing(&spec.sensing, std::slice::from_ref(&array))?;
+        check.sensing(&spec.sensing, &array)?;
         check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
         let allowed = "no such key: drawn ensembles select no taxels";
         check.absent(("sensing", &spec.sensing), &["selection"], allowed)?;

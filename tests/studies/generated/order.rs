@@ -37,7 +37,7 @@ fn the_order_of_configurations_changes_nothing_but_their_numbers() {
 fn frames_by_object(study: &GeneratedStudy) -> Vec<(String, Vec<f64>)> {
     let loaded = study.load().unwrap();
     let part = loaded.first();
-    let on = (&part.plan.arrays[0], 1);
+    let on = (&part.plan.array, 1);
     let frames = part.touched.simulate(on, &Silent);
     let frames = frames.to_array();
     let mut by_object = Vec::new();

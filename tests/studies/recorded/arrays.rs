@@ -386,7 +386,7 @@ fn taxels_without_a_layout_are_measured() {
     let case = recordings();
     case.write_array("flat.npy", &without_layout());
     let found = case.recorded(&of_file("flat.npy"), REST).unwrap();
-    let array = &found.first().plan.arrays[0];
+    let array = &found.first().plan.array;
     assert_eq!((array.n_taxels(), array.sides()), (24, None));
     assert_eq!(array.describe_taxels(), "24 taxels without a layout");
     found.run(&Silent).unwrap();
@@ -445,7 +445,7 @@ fn recordings_over_time_stay_as_they_were() {
     let one = frames().insert_axis(Axis(1));
     case.write_array("one.npy", &one);
     let found = case.recorded(&of_file("one.npy"), REST).unwrap();
-    let shape = found.first().plan.arrays[0].shape();
+    let shape = found.first().plan.array.shape();
     assert_eq!(shape, ImageShape { ny: 8, nx: 8 });
     let frames = Array4::from_shape_fn((N, 3, 8, 8), |(touch, frame, row, column)| {
         one[[touch, 0, row, column]] * (frame + 1) as f64

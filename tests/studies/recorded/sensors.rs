@@ -95,7 +95,7 @@ fn taxels_that_are_no_grid_have_images_and_neighbours_by_their_layout() {
     assert_ne!(case.scores(&recorded, &rest), uncoupled);
     // The sample picture has three cells per pitch, and shows each taxel.
     let study = case.recorded(&recorded, &rest).unwrap();
-    let cells = study.first().plan.arrays[0].picture_cells();
+    let cells = study.first().plan.array.picture_cells();
     assert_eq!(cells.dim(), (24, 24));
     let shown: HashSet<_> = cells.iter().flatten().collect();
     assert_eq!(shown.len(), 64);
@@ -155,7 +155,7 @@ fn each_sensor_alone_is_a_value_of_an_axis() {
     // Each sensor has an image of its own, and a frame has the features of all images.
     let study = case.recorded(&recorded, &format!("{SKIN}{IMAGES}"));
     let study = study.unwrap();
-    let array = &study.first().plan.arrays[0];
+    let array = &study.first().plan.array;
     let shapes = [3, 5].map(|ny| ImageShape { ny, nx: 8 });
     assert_eq!(array.image_shapes(), shapes);
     assert_eq!(array.n_taxels(), 64);
@@ -333,7 +333,7 @@ fn several_values_at_a_position_have_an_image_each() {
     let expected = case.scored_rows(&keys("first.npy"), &rest);
     assert_eq!(case.scored_rows(&keys("last.npy"), &rest), expected);
     let study = case.recorded(&keys("last.npy"), &rest).unwrap();
-    assert_eq!(study.first().plan.arrays[0].image_shapes().len(), 2);
+    assert_eq!(study.first().plan.array.image_shapes().len(), 2);
     // The values of each sign are like a sensor of their own.
     case.write_array("left.npy", &list().slice(s![.., ..32]));
     case.write_array("right.npy", &list().slice(s![.., 32..]));

@@ -31,7 +31,7 @@ fn scores(study: &RecognitionStudy) -> Vec<TrialScore> {
 fn simulated() -> (Study, Vec<usize>, Array4<f32>) {
     let head = "question = \"?\"\ntrials = 2\n";
     let study = Study::new(&format!("{head}{SKIN}taxels = 8\n{OBJECTS}{REST}"));
-    let frames = simulate_array(&study.touched, &study.plan.arrays[0], 2, &Silent);
+    let frames = simulate_array(&study.touched, &study.plan.array, 2, &Silent);
     let frames = frames.to_array().mapv(|metres| metres as f32);
     let labels = study.sweep.labels.to_vec();
     let shape = (labels.len(), 2, 8, 8);

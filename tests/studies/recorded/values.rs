@@ -58,7 +58,7 @@ fn each_value_of_a_taxel_has_an_image() {
     }
     let study = case.recorded(&keys("last", LAST), &format!("{SKIN}{IMAGES}"));
     let study = study.unwrap();
-    let array = &study.first().plan.arrays[0];
+    let array = &study.first().plan.array;
     assert_eq!(array.image_shapes(), [ImageShape { ny: 4, nx: 8 }; 2]);
     says(&array.describe_taxels(), &["skin, value 2 32"]);
 }
@@ -130,7 +130,7 @@ fn each_value_of_a_taxel_has_a_zero() {
 /// Returns the readings of the touch 7 of a study, metres.
 fn frame(study: &RecognitionStudy) -> Vec<f64> {
     let part = study.first();
-    let frames = part.touched.simulate((&part.plan.arrays[0], 1), &Silent);
+    let frames = part.touched.simulate((&part.plan.array, 1), &Silent);
     frames.to_array().row(7).to_vec()
 }
 

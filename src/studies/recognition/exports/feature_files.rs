@@ -144,14 +144,15 @@ impl StudyPart {
         trial: usize,
         (stage, progress): (&str, &dyn Progress),
     ) -> Result<Measurements> {
-        let array = &self.plan.arrays[group.array];
+        let array = &self.plan.array;
         let n_touches = self.sweep.labels.len() as u64;
         progress.stage(&format!("{stage} {}", array.describe()), n_touches);
         let frames = self.touched.simulate((array, group.frames), progress);
-        let tested = self.plan.tested.as_ref().map(|plan| {
-            let array = &plan.arrays[group.array];
-            self.tested.simulate((array, group.frames), &Silent)
-        });
+        let tested = self
+            .plan
+            .tested
+            .as_ref()
+            .map(|plan| self.tested.simulate((&plan.array, group.frames), &Silent));
         let tested = tested.as_ref().unwrap_or(&frames);
         self.measure((group, rows), [&frames, tested], (trial, n_measurements))
     }

@@ -70,8 +70,6 @@ struct Reading<'a> {
 
 /// Deepest frame of every touch in one trial, after the signal chain of a configuration and before compression.
 pub struct ReadFrames {
-    /// Index of the array that the configuration uses, in the list of arrays of the plan.
-    pub array: usize,
     /// Frame values, shape (n_touches · F, n_taxels), with F frames per touch; the last frame of a touch is the deepest.
     values: Array2<f64>,
     n_frames: usize,
@@ -97,14 +95,13 @@ impl ReadFrames {
             selection: None,
             ..group.clone()
         };
-        let n_values = part.plan.arrays[group.array].n_values();
+        let n_values = part.plan.array.n_values();
         let of = (&identity, TrainingRows::default(), n_values);
         let read = part.measured(of, trial, ("read", progress))?;
         Ok(Self {
-            array: group.array,
             values: read.values,
             n_frames: group.frames,
-            is_force: *part.plan.arrays[group.array].sensed() != Sensed::Deflection
+            is_force: *part.plan.array.sensed() != Sensed::Deflection
                 || part.plan.spec.signal.steps.contains(&StepSpec::Force),
         })
     }
@@ -388,9 +385,9 @@ fn write_recorded(
     let tables = Tables {
         recorded,
         skin: SkinSpec {
-            pitch_mm: Axis::One(millimetres(array.pitch())),
+            pitch_mm: millimetres(array.pitch()),
             size_mm: None,
-            taxels: (!is_grid).then_some(Axis::One(array.grid().nx)),
+            taxels: (!is_grid).then_some(array.grid().nx),
             ..skin.clone()
         },
     };

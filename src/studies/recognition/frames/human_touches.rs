@@ -145,8 +145,11 @@ impl TouchSet for HumanTouches {
         touches
     }
 
-    fn samples(&self, plan: &Plan, _groups: &[MeasurementGroup]) -> Result<Samples> {
-        human_samples(plan, self)
+    fn samples(&self, parts: &[(&Plan, &[MeasurementGroup])]) -> Result<Samples> {
+        // In a tie, the first array.
+        let plans = parts.iter().map(|(plan, _)| plan).rev();
+        let finest = plans.max_by_key(|plan| plan.array.n_taxels());
+        human_samples(finest.expect("at least one part"), self)
     }
 
     fn settings(&self) -> Vec<(String, String)> {
@@ -172,18 +175,13 @@ const N_FRAMES: usize = 4;
 const N_LOOKED_AT: usize = 10;
 
 /// Returns film strips of the kinds of touch that the study lists for its picture; of all kinds if it lists none. Each strip shows the strongest of the first
-/// touches of its kind at four times, evenly spaced between its first and its last contact. The study's finest array is used, without noise.
+/// touches of its kind at four times, evenly spaced between its first and its last contact, without noise.
 ///
 /// # Errors
-/// If the study has no configurations, lists an unknown kind of touch, or has an invalid skin.
+/// If the study lists an unknown kind of touch, or has an invalid skin.
 pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
-    let n_taxels = |array: &&TaxelArray| array.n_taxels();
-    // In a tie, the first array.
-    let array = plan.arrays.iter().rev().max_by_key(n_taxels);
-    let no_cells = || Error::input("study", "no configurations", "at least one value an axis");
-    let array = array.ok_or_else(no_cells)?;
-    let grid = array.grid();
-    let skin = touches.spec.skin(array)?;
+    let grid = plan.array.grid();
+    let skin = touches.spec.skin(&plan.array)?;
     let interval = touches.spec.interval();
     let mut frames = Vec::new();
     let chosen = named_samples(plan, &touches.class_names())?;

@@ -206,7 +206,9 @@ impl TouchSet for Vec<TouchedObject> {
         touches
     }
 
-    fn samples(&self, plan: &Plan, groups: &[MeasurementGroup]) -> Result<Samples> {
+    fn samples(&self, parts: &[(&Plan, &[MeasurementGroup])]) -> Result<Samples> {
+        let finest = parts.iter().max_by_key(|(plan, _)| plan.array.n_taxels());
+        let (plan, groups) = finest.expect("at least one part");
         sample_frames(plan, groups, self)
     }
 

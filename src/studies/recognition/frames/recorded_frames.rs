@@ -307,8 +307,9 @@ impl TouchSet for RecordedFrames {
     }
 
     /// Returns sample touches for pictures: for each class, the last frame of its first touch.
-    fn samples(&self, plan: &Plan, _groups: &[MeasurementGroup]) -> Result<Samples> {
-        let array = &plan.arrays[0];
+    fn samples(&self, parts: &[(&Plan, &[MeasurementGroup])]) -> Result<Samples> {
+        let plan = parts[0].0;
+        let array = &plan.array;
         let (configurations, stroke) = (array.picture_cells(), array.taxel().stroke);
         let mut first = 0;
         let frames = self.classes().into_iter().map(|(name, count)| {

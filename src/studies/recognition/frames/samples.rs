@@ -15,7 +15,7 @@ use ndarray::{Array2, ArrayView1};
 const N_SAMPLES: usize = 4;
 
 /// Returns the sample pictures of a study. The first picture shows the first touch of the objects that the study lists, by default of four spread over the
-/// list. The finest array reads them at the highest noise, without smoothing. In a study of one sensor error at a time, the picture shows the first touch
+/// list. The array reads them at the highest noise, without smoothing. In a study of one sensor error at a time, the picture shows the first touch
 /// of the first object with each error at its last value. On a skin with memory, each touch follows the touch of the last object. A second picture shows
 /// the first touch of every object at the highest noise.
 ///
@@ -26,9 +26,9 @@ pub fn sample_frames(
     groups: &[MeasurementGroup],
     touched: &[TouchedObject],
 ) -> Result<Samples> {
-    let group = loudest_group(plan, groups)
+    let group = loudest_group(groups)
         .ok_or_else(|| Error::input("study", "no configurations", "at least one value an axis"))?;
-    let on = &plan.arrays[group.array];
+    let on = &plan.array;
     let names: Vec<&str> = touched.iter().map(|t| t.object.name.as_str()).collect();
     let chosen = spread_samples(plan, &names)?;
     let before = chosen.last().copied().unwrap_or(0);
@@ -50,7 +50,7 @@ pub fn sample_frames(
         (0..names.len()).map(name).zip(each).collect(),
         format!("One touch each on {array}, {noise}"),
     );
-    let groups = imperfect_groups(plan, groups, group.array);
+    let groups = imperfect_groups(plan, groups);
     let shown = match chosen.first() {
         Some(&first) if !groups.is_empty() => {
             // The full scale limits the colours, because one taxel with a large gain would dominate them.
@@ -86,7 +86,7 @@ fn read(
     group: &MeasurementGroup,
     (touched, before): (&[TouchedObject], usize),
 ) -> Result<Vec<Array2<f64>>> {
-    let array = &plan.arrays[group.array];
+    let array = &plan.array;
     let seed = Seed::new(plan.spec.seed);
     let first = |t: &TouchedObject| TouchedObject {
         touches: t.touches[..1].to_vec(),
@@ -122,7 +122,7 @@ fn read(
 
 /// Returns a signal chain for each channel, without the smoothing step. Smoothing would hide the effect of the other steps.
 fn chains(plan: &Plan, group: &MeasurementGroup) -> Result<Vec<Chain>> {
-    let array = &plan.arrays[group.array];
+    let array = &plan.array;
     let skin = skin(&Seed::new(plan.spec.seed), array);
     array.chains(&skin, |skin| {
         let mut steps = group.signal(plan).steps(skin);
@@ -136,13 +136,11 @@ fn chains(plan: &Plan, group: &MeasurementGroup) -> Result<Vec<Chain>> {
 fn imperfect_groups<'a>(
     plan: &Plan,
     groups: &'a [MeasurementGroup],
-    array: usize,
 ) -> Vec<(String, &'a MeasurementGroup)> {
     let signal = &plan.spec.signal;
     if signal.combine != CombineSpec::OneAtATime {
         return Vec::new();
     }
-    let groups = || groups.iter().filter(|group| group.array == array);
     let mut chosen = Vec::new();
     for (key, _, axis) in signal.axes.given() {
         let Some(column) = strength_columns().iter().find(|c| c.name == *key) else {
@@ -154,13 +152,13 @@ fn imperfect_groups<'a>(
             own.key == *key && value == last && !error.about().needs_motion
         };
         let has_it = |group: &&MeasurementGroup| group.condition.strengths.given().any(shows);
-        if let Some(group) = groups().find(has_it)
+        if let Some(group) = groups.iter().find(has_it)
             && values.len() > 1
         {
             chosen.push((column.phrase(&last.into()), group));
         }
     }
-    if let (Some(first), false) = (groups().next(), chosen.is_empty()) {
+    if let (Some(first), false) = (groups.first(), chosen.is_empty()) {
         let condition = &first.condition;
         let is_ideal = condition.noise == 0.0 && condition.strengths.present().count() == 0;
         let words = if is_ideal { "ideal" } else { "first values" };
@@ -169,13 +167,10 @@ fn imperfect_groups<'a>(
     chosen
 }
 
-/// Returns the group of configurations with the largest noise, among those with the most taxels.
-fn loudest_group<'a>(plan: &Plan, groups: &'a [MeasurementGroup]) -> Option<&'a MeasurementGroup> {
-    let n_taxels = |group: &MeasurementGroup| plan.arrays[group.array].n_taxels();
-    groups.iter().max_by(|a, b| {
-        let by_size = n_taxels(a).cmp(&n_taxels(b));
-        by_size.then(a.condition.noise.total_cmp(&b.condition.noise))
-    })
+/// Returns the group of configurations with the largest noise.
+fn loudest_group(groups: &[MeasurementGroup]) -> Option<&MeasurementGroup> {
+    let groups = groups.iter();
+    groups.max_by(|a, b| a.condition.noise.total_cmp(&b.condition.noise))
 }
 
 /// Returns the class labels that the sample picture shows: the classes listed in the study, or four classes spread over all classes.

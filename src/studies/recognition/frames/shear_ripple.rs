@@ -102,20 +102,17 @@ pub(crate) fn note_shear_ripple(plan: &Plan, objects: &[Object]) -> Result<bool>
         Spread::Values(values) => values.iter().copied().fold(0.0, f64::max),
         Spread::Uniform { high, .. } => *high,
     };
-    for array in &plan.arrays {
-        let Some(ripple) = ShearRipple::measure(array, spec.surface_error(), depth)? else {
-            continue;
-        };
-        note(format_args!(
-            "{packed} of {} objects are spheres within {} mm: on a flat face a taxel of the {} mm array reads {:.3} ± {:.3} N of shear \
-             that no exact face has; meshes with model = \"mesh\" have none",
-            objects.len(),
-            spec.surface_error() / MM,
-            crate::inputs::units::millimetres(array.pitch()),
-            ripple.mean,
-            ripple.std
-        ));
-        return Ok(true);
-    }
-    Ok(false)
+    let Some(ripple) = ShearRipple::measure(&plan.array, spec.surface_error(), depth)? else {
+        return Ok(false);
+    };
+    note(format_args!(
+        "{packed} of {} objects are spheres within {} mm: on a flat face a taxel of the {} mm array reads {:.3} ± {:.3} N of shear \
+         that no exact face has; meshes with model = \"mesh\" have none",
+        objects.len(),
+        spec.surface_error() / MM,
+        crate::inputs::units::millimetres(plan.array.pitch()),
+        ripple.mean,
+        ripple.std
+    ));
+    Ok(true)
 }

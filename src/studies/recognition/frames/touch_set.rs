@@ -102,11 +102,11 @@ pub trait TouchSet: Sync {
     /// read at a speed (m/s, 0 at rest), each touch after another randomly drawn touch.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 
-    /// Returns the sample touches that the pictures of the study show.
+    /// Returns the sample touches that the pictures of the study show, given at least one part of the study: its plan and its groups of configurations.
     ///
     /// # Errors
     /// If a picture cannot be made.
-    fn samples(&self, plan: &Plan, groups: &[MeasurementGroup]) -> Result<Samples>;
+    fn samples(&self, parts: &[(&Plan, &[MeasurementGroup])]) -> Result<Samples>;
 
     /// Returns the number of touches that are deeper past first contact than the stroke of the taxels, metres.
     fn n_deeper_than(&self, _stroke: f64) -> usize {

@@ -229,13 +229,13 @@ impl MeasurementGroup {
         let test = plan.tested.as_deref().map(|tested| {
             let condition = plan.tested_condition(self.condition.clone());
             TestInputs {
-                array: &tested.arrays[self.array],
+                array: &tested.array,
                 speed: tested.speed,
                 signal: signal_inputs(tested, condition),
             }
         });
         MeasurementInputs {
-            array: &plan.arrays[self.array],
+            array: &plan.array,
             seed: plan.spec.seed,
             projections_per_split: plan.spec.projections_per_split,
             speed: plan.speed,

@@ -11,22 +11,23 @@ use crate::studies::recognition::spec::{
 };
 
 impl Check<'_> {
-    /// Checks that `[sensing]` contains either a compression ratio or a number of measurements. The number may not exceed the number of taxels of any array.
-    pub(crate) fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
+    /// Checks that `[sensing]` contains either a compression ratio or a number of measurements. The number may not exceed the number of taxels of the array.
+    pub(crate) fn sensing(&self, sensing: &SensingSpec, array: &TaxelArray) -> Result<()> {
         self.table("sensing", sensing)?;
         let ratios = sensing.ratio.iter().flat_map(Axis::values);
         let ratios = ratios.map(|ratio| ("sensing.ratio", ratio));
         let counts = sensing.measurements.iter().flat_map(Axis::values);
         let counts = counts.map(|m| ("sensing.measurements", m as f64));
-        let smallest = arrays.iter().map(TaxelArray::n_values).min().unwrap_or(0);
-        if let Some((key, given)) = ratios.chain(counts).find(|(_, n)| *n > smallest as f64) {
-            let allowed = format!("at most {smallest}, the numbers of the smallest frame");
+        let n_values = array.n_values();
+        if let Some((key, given)) = ratios.chain(counts).find(|(_, n)| *n > n_values as f64) {
+            let allowed = format!("at most {n_values}, the numbers of the smallest frame");
             return Err(self.error(key, given, allowed));
         }
         let mut ensembles = sensing.ensemble.values().into_iter();
         let of_rows = ensembles.find(|ensemble| ensemble.about().needs_rows);
-        let no_rows = arrays.iter().find(|array| array.equal_images().is_none());
-        if let (Some(ensemble), Some(array)) = (of_rows, no_rows) {
+        if let Some(ensemble) = of_rows
+            && array.equal_images().is_none()
+        {
             let given = format!("{} of {}", ensemble.about().words, array.layout_words());
             let mut allowed = "ensembles that need no rows and columns".to_owned();
             if array.image_shapes().len() > 1 {
@@ -35,14 +36,12 @@ impl Check<'_> {
             return Err(self.error("sensing.ensemble", given, allowed));
         }
         if let Some(ensemble) = of_rows {
-            for array in arrays {
-                let (n_images, _) = array.measured_images(ensemble);
-                let counts = sensing.measurements_on(array.n_values());
-                if let Some(m) = counts.into_iter().find(|&m| m < n_images) {
-                    let given = format!("{m} measurements of {n_images} images");
-                    let allowed = format!("at least {n_images}, one for each kind of value");
-                    return Err(self.error(sensing.count_key(), given, allowed));
-                }
+            let (n_images, _) = array.measured_images(ensemble);
+            let counts = sensing.measurements_on(n_values);
+            if let Some(m) = counts.into_iter().find(|&m| m < n_images) {
+                let given = format!("{m} measurements of {n_images} images");
+                let allowed = format!("at least {n_images}, one for each kind of value");
+                return Err(self.error(sensing.count_key(), given, allowed));
             }
         }
         Ok(())
@@ -111,33 +110,25 @@ impl Check<'_> {
     }
 
     /// Checks that each taxel reads a single value if a study uses image features.
-    pub(crate) fn images(
-        &self,
-        recognition: &RecognitionSpec,
-        arrays: &[TaxelArray],
-    ) -> Result<()> {
+    pub(crate) fn images(&self, recognition: &RecognitionSpec, array: &TaxelArray) -> Result<()> {
         let mut features = recognition.all_features().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
             return Ok(());
         };
-        if arrays.iter().any(|array| !array.is_placed()) {
+        if !array.is_placed() {
             let given = format!("{} of taxels without a layout", String::from(features));
             let allowed = "features of measurements (raw, centred, unit_norm, centred_unit_norm): \
                            those of images need positions (recorded.layout, or rows and columns by recorded.grid or recorded.order)";
             return Err(self.error("recognition.features", given, allowed));
         }
-        let has_several = |array: &TaxelArray| array.image_shapes().len() > 1;
-        if let (Some(array), true) = (
-            arrays.iter().find(|array| has_several(array)),
-            recognition.has_copies(),
-        ) {
+        if array.image_shapes().len() > 1 && recognition.has_copies() {
             let given = format!("tilted copies of {}", array.layout_words());
             let allowed = "no such key: each sensor has a tilt of its own";
             return Err(self.error("recognition.tilt_augmentation", given, allowed));
         }
-        match arrays.iter().find(|array| array.sensed().n_channels() > 1) {
-            None => Ok(()),
-            Some(_) => {
+        match array.sensed().n_channels() {
+            ..=1 => Ok(()),
+            _ => {
                 let given = format!("{} of shear", String::from(features));
                 let allowed = "features of measurements (raw, centred, unit_norm, centred_unit_norm): \
                                those of images need one value a taxel";

@@ -39,11 +39,7 @@ impl RecordedSpec {
 
 impl Check<'_> {
     /// Checks the table `[recorded]` and returns the array with which the frames were recorded. Keys that describe simulated touches are not allowed.
-    pub(crate) fn recorded(
-        &self,
-        recorded: &RecordedSpec,
-        spec: &StudySpec,
-    ) -> Result<Vec<TaxelArray>> {
+    pub(crate) fn recorded(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<TaxelArray> {
         if spec.objects != ObjectsSpec::default()
             || spec.touches != TouchesSpec::default()
             || spec.human_touch.is_some()
@@ -90,6 +86,13 @@ impl Check<'_> {
             let allowed = "no such key: recorded.splits has the split of each trial";
             self.absent(learned, &["folds", "test_fraction"], allowed)?;
         }
+        for key in ["skin.pitch_mm", "skin.size_mm", "skin.taxels"] {
+            let n = spec.axes.n_values(key);
+            if n > 1 {
+                let allowed = "one, of the skin that read the frames";
+                return Err(self.error(key, format!("{n} values"), allowed));
+            }
+        }
         let array = self.array_of(recorded, &spec.skin)?;
         let smoothings = spec.signal.axes.get("smoothing_mm").into_iter();
         let smooths = smoothings.flat_map(Axis::values).any(|width| width > 0.0);
@@ -113,7 +116,7 @@ impl Check<'_> {
             let allowed = "sensors with rows and columns, or one sensor (recorded.sensor)";
             return Err(self.error("signal.steps", given, allowed));
         }
-        Ok(vec![array])
+        Ok(array)
     }
 
     /// Checks the keys for the approach speed and for the time between frames.
@@ -147,11 +150,7 @@ impl Check<'_> {
         }
         let allowed = "no such key: rows and columns are those of the recorded frames";
         self.absent(("skin", skin), &["taxels", "size_mm"], allowed)?;
-        let pitches = skin.pitch_mm.values();
-        let [pitch_mm] = pitches[..] else {
-            let given = format!("{} pitches", pitches.len());
-            return Err(self.error("skin.pitch_mm", given, "one, of the skin that read them"));
-        };
+        let pitch_mm = skin.pitch_mm;
         let (mut placed, mut n_taxels) = (Vec::new(), 0);
         for (name, sensor) in &sensors {
             let shape = sensor.shape_of("frames")?;
@@ -209,13 +208,8 @@ impl Check<'_> {
             let allowed = "no such key beside skin.layout";
             return Err(self.error(&sensor.place.key("layout"), path.display(), allowed));
         }
-        let mut arrays = self.touching_arrays(skin, &TouchesSpec::default())?;
-        let shape = sensor.shape_of("frames")?;
-        let n_taxels = shape.n_taxels;
-        let (Some(array), 0) = (arrays.pop(), arrays.len()) else {
-            let allowed = "one, of the skin that read the frames";
-            return Err(self.error("skin", "several arrays", allowed));
-        };
+        let array = self.touching_array(skin, &TouchesSpec::default())?;
+        let n_taxels = sensor.shape_of("frames")?.n_taxels;
         if array.n_taxels() != n_taxels {
             let given = format!("{} taxels", array.n_taxels());
             let allowed = format!("{n_taxels}, as {} has", sensor.frames.display());

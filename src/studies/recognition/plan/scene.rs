@@ -72,38 +72,29 @@ impl Check<'_> {
         Ok(())
     }
 
-    pub(crate) fn arrays(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
+    /// Checks `[skin]` and returns the array.
+    pub(crate) fn array(&self, skin: &SkinSpec) -> Result<TaxelArray> {
         self.table("skin", skin)?;
-        let pitches = skin.pitch_mm.values();
-        let n_sizes = match (&skin.size_mm, &skin.taxels) {
-            (Some(sizes), _) => sizes.values().len(),
-            (_, Some(counts)) => counts.values().len(),
-            _ => return Err(self.error("skin", "neither size_mm nor taxels", "one of them")),
+        let n = self.taxels_a_side(skin)?;
+        let grid = Grid {
+            nx: n,
+            ny: n,
+            pitch: skin.pitch_mm * MM,
         };
-        self.configurations(pitches.len() as f64 * n_sizes as f64)?;
-        let layout = skin.layout.unwrap_or_default();
+        let taxel = skin.taxel(skin.pitch_mm);
+        grid.check()?;
+        taxel.check()?;
         let radius = skin.curvature_radius_mm.unwrap_or(0.0) * MM;
-        let mut arrays = Vec::new();
-        for pitch_mm in pitches {
-            let taxel = skin.taxel(pitch_mm);
-            for n in self.taxels_a_side(skin, pitch_mm)? {
-                let grid = Grid {
-                    nx: n,
-                    ny: n,
-                    pitch: pitch_mm * MM,
-                };
-                grid.check()?;
-                taxel.check()?;
-                let array = TaxelArray::new(layout, (grid, taxel), radius);
-                let place = || format!("{}, key skin.curvature_radius_mm, ", self.place);
-                arrays.push(array.map_err(|error| error.under(place()))?);
-            }
-        }
-        Ok(arrays)
+        let array = TaxelArray::new(skin.layout.unwrap_or_default(), (grid, taxel), radius);
+        let place = || format!("{}, key skin.curvature_radius_mm, ", self.place);
+        array.map_err(|error| error.under(place()))
     }
 
-    /// Checks that all arrays are square grids of taxels that read normal deflections or forces, and returns them. Any other key of `[skin]` is refused.
-    pub(crate) fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
+    /// Checks that the array is a square grid of taxels that read normal deflections or forces, and returns it. Any other key of `[skin]` is refused.
+    ///
+    /// # Errors
+    /// If the check fails; the error names the file, the key and the allowed values.
+    pub fn grid(&self, skin: &SkinSpec) -> Result<TaxelArray> {
         let of_taxels = [
             "taxel_radius_mm",
             "stroke_mm",
@@ -113,33 +104,23 @@ impl Check<'_> {
         let of_grids = [&["pitch_mm", "size_mm", "taxels"], &of_taxels[..]].concat();
         let allowed = "no such key: only studies of recognition use it";
         self.only(("skin", skin), &of_grids, allowed)?;
-        self.arrays(skin)
+        self.array(skin)
     }
 
-    /// Returns the only array of a study; returns an error with the text `allowed` if the study has several arrays.
-    ///
-    /// # Errors
-    /// If the check fails; the error names the file, the key and the allowed values.
-    pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<TaxelArray> {
-        let mut arrays = self.grids(skin)?;
-        match (arrays.pop(), arrays.len()) {
-            (Some(array), 0) => Ok(array),
-            (_, n) => Err(self.error("skin", format!("{} arrays", n + 1), allowed)),
-        }
-    }
-
-    fn taxels_a_side(&self, skin: &SkinSpec, pitch_mm: f64) -> Result<Vec<usize>> {
-        let side = |size_mm: f64| {
-            let n = (size_mm / pitch_mm).round();
-            let given = format!("{size_mm} mm at a pitch of {pitch_mm} mm");
-            match (n * pitch_mm - size_mm).abs() > 1e-6 * pitch_mm || n < 1.0 {
-                true => Err(self.error("skin.size_mm", given, "a whole number of pitches")),
-                false => self.count("skin.size_mm", n as usize, MAX_SIDE),
+    fn taxels_a_side(&self, skin: &SkinSpec) -> Result<usize> {
+        let pitch_mm = skin.pitch_mm;
+        let size_mm = match (skin.size_mm, skin.taxels) {
+            (Some(size_mm), _) => size_mm,
+            (None, Some(n)) => return Ok(n),
+            (None, None) => {
+                return Err(self.error("skin", "neither size_mm nor taxels", "one of them"));
             }
         };
-        match (&skin.size_mm, &skin.taxels) {
-            (Some(sizes), _) => sizes.values().into_iter().map(side).collect(),
-            (_, counts) => Ok(counts.iter().flat_map(Axis::values).collect()),
+        let n = (size_mm / pitch_mm).round();
+        let given = format!("{size_mm} mm at a pitch of {pitch_mm} mm");
+        match (n * pitch_mm - size_mm).abs() > 1e-6 * pitch_mm || n < 1.0 {
+            true => Err(self.error("skin.size_mm", given, "a whole number of pitches")),
+            false => self.count("skin.size_mm", n as usize, MAX_SIDE),
         }
     }
 
@@ -265,19 +246,18 @@ impl HumanTouchSpec {
 
 impl Check<'_> {
     /// Checks the table `[human_touch]` of a study: the array is a grid that fits around the arm.
-    pub(crate) fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
+    pub(crate) fn human_touch(&self, spec: &StudySpec, array: &TaxelArray) -> Result<()> {
         let Some(human) = &spec.human_touch else {
             return Ok(());
         };
         self.table("human_touch", human)?;
-        self.grids(&spec.skin)?;
+        self.grid(&spec.skin)?;
         let n_frames = (human.duration_s * human.frames_hz).round() + 1.0;
         if !(2.0..=MAX_FRAMES as f64).contains(&n_frames) {
             let allowed = format!("2 to {MAX_FRAMES} frames in duration_s at frames_hz");
             return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
         }
-        let mut arrays = arrays.iter();
-        arrays.try_for_each(|array| self.fits_around(human, array))
+        self.fits_around(human, array)
     }
 
     /// Checks that the array leaves a gap of at least one pitch on the far side of the arm. Also checks that its layout has rows and columns.

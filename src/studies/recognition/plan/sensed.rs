@@ -45,18 +45,17 @@ pub(crate) fn of_channel(named: &Seed, channel: usize) -> Seed {
 }
 
 impl Check<'_> {
-    /// Returns the arrays of a study, each with its measured quantity and its slide along the object.
-    pub(crate) fn touching_arrays(
+    /// Returns the array of a study, with its measured quantity and its slide along the object.
+    pub(crate) fn touching_array(
         &self,
         skin: &SkinSpec,
         touches: &TouchesSpec,
-    ) -> Result<Vec<TaxelArray>> {
+    ) -> Result<TaxelArray> {
         let sensed = skin.sensed();
         let length = touches.slide_mm.unwrap_or(0.0) * MM;
         let direction = touches.slide_deg.unwrap_or(0.0).to_radians();
         let slide = length * DVec2::from_angle(direction);
-        let arrays = self.arrays(skin)?.into_iter();
-        arrays.map(|array| array.reading(sensed, slide)).collect()
+        self.array(skin)?.reading(sensed, slide)
     }
 }
 

@@ -25,8 +25,8 @@ pub fn as_written(value: f64) -> f64 {
 pub struct Plan {
     /// Specification of the study, with the keys, values and units of the study file.
     pub spec: StudySpec,
-    /// Arrays of taxels, one for each combination of pitch and size.
-    pub arrays: Vec<TaxelArray>,
+    /// Array of taxels that touches the objects.
+    pub array: TaxelArray,
     /// Distribution from which the poses of touches are drawn; not used in studies of human touches.
     pub placement: Placement,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
@@ -47,7 +47,8 @@ impl Plan {
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub fn new(place: &str, spec: StudySpec) -> Result<Self> {
-        let plan = Self::with_any_keys(place, spec)?;
+        let mut plan = Self::with_any_keys(place, spec)?;
+        Self::settle_objects(vec![&mut plan]);
         let unused = Check { place }.unused_key([&plan]);
         unused.map_or(Ok(plan), |(_, error)| Err(error))
     }
@@ -63,11 +64,11 @@ impl Plan {
         if let Some(recorded) = &mut spec.recorded {
             recorded.settle_values(&spec.skin);
         }
-        let arrays = match &spec.recorded {
+        let array = match &spec.recorded {
             Some(recorded) => check.recorded(recorded, &spec)?,
-            None => check.touching_arrays(&spec.skin, &spec.touches)?,
+            None => check.touching_array(&spec.skin, &spec.touches)?,
         };
-        check.human_touch(&spec, &arrays)?;
+        check.human_touch(&spec, &array)?;
         let placement = match spec.places_objects() {
             false => check.placed(&TouchesSpec {
                 depth_mm: SpreadSpec::One(1.0),
@@ -75,7 +76,6 @@ impl Plan {
             })?,
             true => {
                 check.objects(&spec.objects)?;
-                spec.objects.settle_surface_error(&arrays);
                 check.placed(&spec.touches)?
             }
         };
@@ -89,21 +89,21 @@ impl Plan {
             None => spec.touches.speed_mm_per_s * MM,
         };
         check.steps(&spec.signal)?;
-        check.sensing(&spec.sensing, &arrays)?;
+        check.sensing(&spec.sensing, &array)?;
         let frames = match (&spec.human_touch, &spec.recorded) {
             (Some(human), _) => vec![human.n_frames()],
             (_, Some(_)) => touches.frames.values(),
             _ => spec.touches.frames.values(),
         };
         check.recognition(&spec.recognition)?;
-        check.images(&spec.recognition, &arrays)?;
+        check.images(&spec.recognition, &array)?;
         check.over_time(&spec.recognition, &frames)?;
         check.combinations(OF_LEARNING, &spec)?;
         let mut plan = Self {
             speed,
             tested: None,
             group_by: spec.recognition.kept_together(),
-            arrays,
+            array,
             placement,
             noise_unit,
             frames,
@@ -114,11 +114,34 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Removes taxels that read nothing from all arrays. The list has one value for each taxel, or none if all taxels read.
+    /// Sets the keys of the objects that depend on the arrays of all given variants.
+    fn settle_objects(variants: Vec<&mut Self>) {
+        let arrays = |array: fn(&Self) -> Option<&TaxelArray>| -> Vec<TaxelArray> {
+            let arrays = variants.iter().filter_map(|plan| array(plan));
+            let mut arrays: Vec<TaxelArray> = arrays.cloned().collect();
+            let shape = |array: &TaxelArray| (*array.grid(), *array.taxel());
+            arrays.dedup_by(|a, b| shape(a) == shape(b));
+            arrays
+        };
+        let learned = arrays(|plan| Some(&plan.array));
+        let tested = arrays(|plan| Some(&plan.tested.as_ref()?.array));
+        let variants = variants.into_iter();
+        for plan in variants.filter(|plan| plan.spec.places_objects()) {
+            let own = &mut plan.spec.objects;
+            own.settle_surface_error(&learned);
+            if let Some(of_tests) = &mut plan.tested {
+                let of_tests = &mut Arc::make_mut(of_tests).spec.objects;
+                of_tests.model = of_tests.model.or(own.model);
+                of_tests.surface_error_mm = of_tests.surface_error_mm.or(own.surface_error_mm);
+                of_tests.settle_surface_error(&tested);
+            }
+        }
+    }
+
+    /// Removes taxels that read nothing from the array. The list has one value for each taxel, or none if all taxels read.
     pub(crate) fn without_taxels(mut self, is_absent: &[bool]) -> Self {
         if is_absent.contains(&true) {
-            let arrays = self.arrays.into_iter();
-            self.arrays = arrays.map(|array| array.without(is_absent)).collect();
+            self.array = self.array.without(is_absent);
             let tested = self.tested.map(Arc::unwrap_or_clone);
             self.tested = tested.map(|plan| Arc::new(plan.without_taxels(is_absent)));
         }
@@ -151,7 +174,11 @@ impl Plan {
             let plan = plan.map_err(|error| refused(&values, error))?;
             Ok((values, plan))
         });
-        let plans = plans.collect::<Result<Vec<_>>>()?;
+        let mut plans = plans.collect::<Result<Vec<_>>>()?;
+        for alike in plans.chunks_mut(axes.n_of_tables()) {
+            let alike = alike.iter_mut().map(|(_, plan)| plan);
+            Self::settle_objects(alike.collect());
+        }
         if let Some((number, error)) = check.unused_key(plans.iter().map(|(_, plan)| plan)) {
             return Err(refused(&plans[number].0, error));
         }
@@ -170,9 +197,9 @@ impl Plan {
         self.spec.signal.n_conditions() * self.spec.n_combinations()
     }
 
-    /// Returns the numbers m of measurements for an array and an ensemble. On a small array, different ratios may give equal m.
-    pub(crate) fn measurement_counts(&self, array: &TaxelArray, ensemble: Ensemble) -> Vec<usize> {
-        let n_values = array.n_values();
+    /// Returns the numbers m of measurements for an ensemble. On a small array, different ratios may give equal m.
+    pub(crate) fn measurement_counts(&self, ensemble: Ensemble) -> Vec<usize> {
+        let n_values = self.array.n_values();
         if ensemble.about().is_whole_frame {
             return vec![n_values];
         }
@@ -217,8 +244,6 @@ pub(crate) fn projection_of(projections_per_split: Option<usize>, trial: usize) 
 /// Group of configurations whose results are computed from the same measurements of touches.
 #[derive(Clone, Debug)]
 pub struct MeasurementGroup {
-    /// Index of the array in the plan's list of arrays.
-    pub array: usize,
     /// Number F of frames per touch.
     pub frames: usize,
     /// Condition of the signal: the strengths of noise, smoothing and sensor errors.

@@ -109,21 +109,12 @@ impl Check<'_> {
     /// Returns an error if test frames and training frames differ in their taxels or in their values per taxel. A key that is an axis of the study must not
     /// have a list in `[test]`.
     fn check_alike(&self, plan: &Plan, tested: &Plan) -> Result<()> {
-        let shapes = |plan: &Plan| -> Vec<_> {
-            let arrays = plan.arrays.iter();
-            arrays
-                .map(|array| (array.shape(), array.n_values()))
-                .collect()
-        };
-        let (learned, shown) = (shapes(plan), shapes(tested));
-        if learned != shown {
-            let taxels = |shapes: &[(ImageShape, usize)]| {
-                let sizes = shapes
-                    .iter()
-                    .map(|(ImageShape { ny, nx }, _)| format!("{nx} x {ny}"));
-                sizes.collect::<Vec<_>>().join(", ")
-            };
-            let (given, allowed) = (taxels(&shown), taxels(&learned));
+        let (learned, shown) = (&plan.array, &tested.array);
+        if (learned.shape(), learned.n_values()) != (shown.shape(), shown.n_values()) {
+            let [given, allowed] = [shown, learned].map(|array| {
+                let ImageShape { ny, nx } = array.shape();
+                format!("{nx} x {ny}")
+            });
             let allowed = format!("the taxels that are learned, {allowed}, with the same readings");
             return Err(self.error("test.skin", format!("{given} taxels"), allowed));
         }

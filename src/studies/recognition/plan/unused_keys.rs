@@ -70,7 +70,7 @@ key_uses! {
     } => "fewer than two keys of [signal] have several values", "no such key, or two axes in [signal]";
     ["sensing.ratio", "sensing.measurements"] if |plan| {
         let counts = plan.spec.sensing.measurements.iter().flat_map(Axis::values);
-        let is_all = |m: usize| plan.arrays.iter().all(|array| array.n_values() == m);
+        let is_all = |m: usize| plan.array.n_values() == m;
         compresses(plan) || plan.spec.sensing.ratio.is_none() && counts.into_iter().all(is_all)
     } => "every ensemble of the study measures all values of a frame", "no such key, or another sensing.ensemble beside it";
     ["recognition.depth_window_full_scale", "recognition.tilt_augmentation"] if has_images

@@ -42,6 +42,14 @@ macro_rules! configuration {
             }
         }
 
+        impl $configuration {
+            /// Returns whether a column of its own shows the values of a key.
+            pub(crate) fn shows(key: &str) -> bool {
+                // The number of taxels is shown along x and y.
+                [$($($key,)?)* "skin.taxels"].contains(&key)
+            }
+        }
+
         /// Returns the columns of the result tables that describe a configuration, except the columns of axes declared in `[axes]`.
         impl Columns for $configuration {
             fn columns() -> Vec<Column> {

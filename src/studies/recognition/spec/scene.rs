@@ -20,11 +20,11 @@ params! {
     pub struct SkinSpec {
         /// Axis: side of the square area per taxel, mm, positive. In a grid, the side is the distance between neighbours. In a hexagonal lattice (`hexagonal`,
         /// `disc`) the distance between neighbours is 1.0746 times as large.
-        pitch_mm: Axis<f64> => Positive, Choice, Table, scale: Linear, gives_way: 3;
+        pitch_mm: f64 => Positive, Choice, Table, scale: Linear, gives_way: 3;
         /// Axis: side length of the square array, mm, positive, a multiple of the pitch.
-        size_mm: Option<Axis<f64>> => Positive, Choice, Table, title: "array size", scale: Linear, gives_way: 2;
+        size_mm: Option<f64> => Positive, Choice, Table, title: "array size", scale: Linear, gives_way: 2;
         /// Axis: number of taxels along a side of the square array, at least 1. Replaces `size_mm`.
-        taxels: Option<Axis<usize>> => SIDE, Choice, Table, scale: Linear;
+        taxels: Option<usize> => SIDE, Choice, Table, scale: Linear;
         /// Layout of the taxels: `grid` (default), `foveated` (closer in the middle, farther apart at the edge), `hexagonal`, `disc`, `cylinder` or `cap`. All
         /// layouts have the same area and about the same number of taxels.
         layout: Option<ArrayLayout> => Any, Choice, Axes, usual: || "grid".into();

@@ -295,7 +295,10 @@ impl StudySpec {
     /// # Errors
     /// If the text is not a valid study. The error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        let (spec, axes) = axes::read::<Self>(place, text, recognition_keys())?;
+        let (spec, mut axes) = axes::read::<Self>(place, text, recognition_keys())?;
+        for axis in &mut axes.axes {
+            axis.has_column |= Configuration::shows(&axis.key);
+        }
         let has_trials = text
             .parse::<toml::Table>()
             .is_ok_and(|table| table.contains_key("trials"));

@@ -91,7 +91,7 @@ impl RecognitionStudy {
         // Separate test touches are simulated together with the training touches. Sets with most frames come first, because their items take longest.
         jobs.sort_by_key(|(touches, jobs)| {
             let set = &self.touch_sets[*touches];
-            (jobs.is_empty(), set.part, set.array, Reverse(set.n_frames))
+            (jobs.is_empty(), set.part, Reverse(set.n_frames))
         });
         if self.has_axes() {
             // Progress lines for every combination would be too many.
@@ -112,9 +112,9 @@ impl RecognitionStudy {
         Ok(())
     }
 
-    /// Returns whether the study has a table `[axes]`.
+    /// Returns whether the study has a table `[axes]` with several values.
     fn has_axes(&self) -> bool {
-        self.parts().len() > 1
+        self.parts().len() > self.alike(0).len()
     }
 
     /// Returns the measurements of a set of touches that pending families of configurations need.

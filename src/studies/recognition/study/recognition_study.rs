@@ -35,8 +35,6 @@ pub struct RecognitionStudy {
 pub(crate) struct Touches {
     /// Index of the part of the study that has these touches.
     pub part: usize,
-    /// Index of the array in the plan of the part.
-    pub array: usize,
     /// Number of frames per touch.
     pub n_frames: usize,
     /// Whether the touches serve only as test touches.
@@ -139,12 +137,11 @@ impl RecognitionStudy {
             let contents = [0, 1].map(|of| set_content(plans[of], sets[of].as_ref()));
             for (number, group) in sweep.groups.iter().enumerate() {
                 let mut place_touches = |of: usize| {
-                    let array = &plans[of].arrays[group.array];
+                    let array = &plans[of].array;
                     let content = identity(&(&contents[of], array, group.frames));
                     *known_touches.entry(content.clone()).or_insert_with(|| {
                         self.touch_sets.push(Touches {
                             part,
-                            array: group.array,
                             n_frames: group.frames,
                             is_tested: of > 0,
                             measurement: measurements.len(),
@@ -195,6 +192,13 @@ impl RecognitionStudy {
         &self.parts
     }
 
+    /// Returns the parts of the study with the same values of the table `[axes]` as a part.
+    pub(crate) fn alike(&self, part: usize) -> &[StudyPart] {
+        let n_alike = self.first().plan.spec.axes.n_of_tables();
+        let first = part - part % n_alike;
+        &self.parts[first..self.parts.len().min(first + n_alike)]
+    }
+
     /// Returns the distinct values of a property of the study's parts as text; see [`distinct`].
     pub(crate) fn of_parts(&self, value: impl Fn(&StudyPart) -> String) -> String {
         distinct(self.parts.iter().map(value))
@@ -234,7 +238,7 @@ impl RecognitionStudy {
     /// Returns the number of different arrays on which touches are simulated.
     pub fn n_arrays(&self) -> usize {
         let sets = self.touch_sets.iter();
-        let arrays = sets.map(|set| identity(&self.parts[set.part].plan.arrays[set.array]));
+        let arrays = sets.map(|set| identity(&self.parts[set.part].plan.array));
         arrays.collect::<HashSet<_>>().len()
     }
 
@@ -307,7 +311,7 @@ impl RecognitionStudy {
             (Some(tested), true) => (tested.as_ref(), part.tested.as_ref()),
             _ => (&part.plan, part.touched.as_ref()),
         };
-        (touched, &plan.arrays[set.array], set.n_frames)
+        (touched, &plan.array, set.n_frames)
     }
 
     /// Returns the rows of `stages.csv`: the times to simulate and to measure the touches of each array.
@@ -378,9 +382,9 @@ impl RecognitionStudy {
         let selected = configurations.iter();
         let selected = selected.filter(|row| !row.evaluation.selected.is_empty());
         let arrays = selected.map(|row| {
-            let (part, group) = self.group(row.at.0);
-            let number = self.family(row.at.0).1[row.at.1].configuration;
-            (number, &part.plan.arrays[group.array])
+            let (part, configurations) = self.family(row.at.0);
+            let number = configurations[row.at.1].configuration;
+            (number, &part.plan.array)
         });
         let arrays: HashMap<usize, &TaxelArray> = arrays.collect();
         let place = |configuration: &Configuration, taxel: usize| {
@@ -459,10 +463,13 @@ impl RecognitionStudy {
 
     /// Returns the sample touches for pictures, from the first combination of the values in `[axes]`.
     pub(crate) fn samples(&self) -> Result<&Samples> {
-        let first = self.first();
+        let alike = self.alike(0);
         self.samples.get(|| {
-            let mut samples = first.touched.samples(&first.plan, &first.sweep.groups)?;
-            if self.parts.len() > 1 {
+            let parts = alike
+                .iter()
+                .map(|part| (&part.plan, &part.sweep.groups[..]));
+            let mut samples = self.first().touched.samples(&parts.collect::<Vec<_>>())?;
+            if self.parts.len() > alike.len() {
                 let pictures = std::iter::once(&mut samples.shown).chain(&mut samples.each);
                 pictures.for_each(|one| one.caption += ", at the first value of each axis");
             }

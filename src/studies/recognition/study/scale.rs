@@ -63,7 +63,7 @@ impl Job<'_> {
     /// evaluate at the same time.
     pub(crate) fn bytes(&self) -> Vec<f64> {
         let (part, group) = self.study.group(self.families[0]);
-        let array = &part.plan.arrays[group.array];
+        let array = &part.plan.array;
         let (n, m) = (array.n_values() as f64, self.first().n_measurements as f64);
         let n_read = (part.sweep.labels.len() * group.frames * group.n_readings(&part.plan)) as f64;
         let inputs = group.inputs(&part.plan);

@@ -1,7 +1,7 @@
 //! Configurations of a study, grouped by the computations that they share.
 //!
 //! ```text
-//! array × frames per touch ── touches simulated once
+//! variant (array and all keys with one value) × frames per touch ── touches simulated once
 //!   └─ condition of the signal × test skin × ensemble (a group), and trial ── frames read and projected once, at the largest m
 //!        └─ m × over time × features × classifier × training rows (a family) ── rows computed once
 //!             └─ C ── fit, score test touches
@@ -47,7 +47,7 @@ macro_rules! push_each {
 /// Splits and configurations of a study, determined before the first touch is simulated.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    /// Groups of configurations, ordered by array.
+    /// Groups of configurations.
     pub groups: Vec<MeasurementGroup>,
     /// Split of all touches into training and test touches for each trial.
     pub splits: Vec<Hashed<Split>>,
@@ -116,7 +116,6 @@ impl Sweep {
             poses: is_chosen.then(|| hashed_poses(scaled_poses(&plan.placement, &poses))),
         };
         nested! {
-            array in 0..plan.arrays.len();
             frames in plan.frames.iter().copied();
             condition in plan.conditions();
             test_sensor in Axis::optional_values(&plan.spec.signal.test_sensor);
@@ -124,7 +123,6 @@ impl Sweep {
             selection in plan.spec.sensing.selections(ensemble);
             {
                 let group = MeasurementGroup {
-                    array,
                     frames,
                     condition: condition.clone(),
                     test_sensor: test_sensor.unwrap_or_default(),
@@ -204,7 +202,7 @@ impl Sweep {
         mut group: MeasurementGroup,
         train_touches: &[usize],
     ) -> Result<()> {
-        let array = &plan.arrays[group.array];
+        let array = &plan.array;
         let ImageShape {
             ny: n_rows,
             nx: n_columns,
@@ -246,7 +244,7 @@ impl Sweep {
                 frames: group.frames,
                 variant: AxisValues::default(),
             }
-            measurements in plan.measurement_counts(array, group.ensemble);
+            measurements in plan.measurement_counts(group.ensemble);
             temporal_features in Axis::optional_values(&learned.temporal_features);
             features in learned.all_features();
             depth_window_full_scale in Axis::active_values(&learned.depth_window_full_scale, features.of_image().is_some(), 1.0);

@@ -76,9 +76,7 @@ impl Study for TransmissionStudy {
         check.keys("signal", &spec.signal, &Self::keys())?;
         check.steps(&spec.signal)?;
         let of_touches = (&spec.skin, &spec.touches);
-        let allowed = "one pitch and one size";
-        let (array, placement) =
-            check.touches_of_one_array(&mut spec.objects, of_touches, allowed)?;
+        let (array, placement) = check.touches_of_one_array(&mut spec.objects, of_touches)?;
         let objects = load_objects(&spec.objects, source.packings.as_deref())?;
         let touched = draw_touches(objects, &placement, &Seed::new(spec.seed))?;
         let mut configurations = Vec::new();
