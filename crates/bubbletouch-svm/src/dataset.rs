@@ -111,13 +111,8 @@ pub(crate) fn check_unweighted(data: &Dataset) -> Result<()> {
 
 /// Returns the distinct labels, ascending, and the position of each row's label among them.
 pub(crate) fn numbered<L: Label>(labels: ArrayView1<L>) -> (Vec<L>, Array1<usize>) {
-    let mut classes = labels.to_vec();
-    classes.sort_unstable();
-    classes.dedup();
-    let numbers = labels
-        .iter()
-        .map(|label| classes.partition_point(|class| class < label));
-    let numbers = numbers.collect();
+    let classes = distinct(labels);
+    let numbers = positions(labels, &classes).into();
     (classes, numbers)
 }
 
@@ -222,7 +217,7 @@ pub fn check_width<D: Data<Elem = f64>>(features: &ArrayBase<D, Ix2>, width: usi
 
 /// Returns the distinct labels, ascending.
 #[doc(hidden)]
-pub fn distinct(labels: ArrayView1<usize>) -> Vec<usize> {
+pub fn distinct<L: Label>(labels: ArrayView1<L>) -> Vec<L> {
     let mut classes = labels.to_vec();
     classes.sort_unstable();
     classes.dedup();
@@ -260,10 +255,10 @@ pub(crate) fn check_two_classes<L: std::fmt::Debug>(classes: &[L]) -> Result<()>
 
 /// Returns the position of each row's label in the ascending list `classes`, which contains all labels.
 #[doc(hidden)]
-pub fn positions(labels: ArrayView1<usize>, classes: &[usize]) -> Vec<usize> {
+pub fn positions<L: Label>(labels: ArrayView1<L>, classes: &[L]) -> Vec<usize> {
+    let labels = labels.iter();
     labels
-        .iter()
-        .map(|&label| classes.partition_point(|&class| class < label))
+        .map(|label| classes.partition_point(|class| class < label))
         .collect()
 }
 

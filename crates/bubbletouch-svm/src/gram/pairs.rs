@@ -92,3 +92,59 @@ pub(crate) fn gram_of_pair<'a, T: Scalar>(
     };
     Gram::new(diagonal.into_iter(), write, memory)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gram::centered_rows::CenteredRows;
+    use crate::kernel::KernelFunction;
+    use ndarray::Array1;
+
+    #[test]
+    fn rows_of_a_gram_matrix_are_kernel_values_whatever_their_source_and_memory() {
+        let rows = Array2::from_shape_fn((23, 4), |(i, j)| ((i * 4 + j) as f64 * 1.7).sin());
+        let points = CenteredRows::<f64>::new(rows.view(), Array1::zeros(4).view());
+        let kernel = KernelFunction::Rbf { gamma: 0.3 };
+        let values = points.all().own_kernel(&kernel);
+        let (first, second) = (0..9, 10..23);
+        let pair: Vec<usize> = first.clone().chain(second.clone()).collect();
+        let own = points.select(&pair);
+        let part = own.all().own_kernel(&kernel);
+        // Blocks of different matrices: the first rows, and the rows from row 10 on.
+        let [above, below] = [&first, &second].map(|rows| points.range(rows.clone()));
+        let blocks = [
+            above.own_kernel(&kernel),
+            below.own_kernel(&kernel),
+            below.kernel(above, &kernel),
+        ];
+        let starts = [[0, 0], [10, 10], [10, 0]];
+        let blocks = [0, 1, 2].map(|at| Block::new(&blocks[at], starts[at]));
+        let [mut transposed, mut other] = [Vec::new(), Vec::new()];
+        let classes = [&first, &second];
+        let whole = [Block::new(&values, [0, 0]); 3];
+        let beta: Vec<f64> = (0..22).map(|i| f64::from(i % 3) - 1.0).collect();
+        let expected = part.dot(&Array1::from(beta.clone()));
+        for mut gram in [
+            gram_of_pair(classes, whole, &mut transposed, GramMemory::default()),
+            gram_of_pair(classes, blocks, &mut other, GramMemory::default()),
+            Gram::of_points(&own, kernel, 1),
+            Gram::of_points(&own, kernel, usize::MAX),
+            Gram::whole(part.view()),
+            Gram::whole(values.view()).part(&pair),
+        ] {
+            assert_eq!(gram.len(), pair.len());
+            // Each row is computed, replaced by others, and computed again.
+            for i in (0..22).chain([0, 21, 0]) {
+                let (row, last) = gram.rows(i, 21);
+                assert!((last[i] - part[[21, i]]).abs() < 1e-14);
+                let (row, padding) = row.split_at(22);
+                let values = row.iter().zip(part.row(i));
+                values.for_each(|(a, b)| assert!((a - b).abs() < 1e-14));
+                assert!(padding.iter().all(|value| *value == 0.0));
+            }
+            for (sum, expected) in gram.times(&beta).iter().zip(&expected) {
+                assert!((sum - expected).abs() < 1e-13);
+            }
+        }
+    }
+}

@@ -22,17 +22,7 @@ const MAX_REFRESHES: usize = 30;
 impl<'k, T: SolverScalar> Smo<'_, 'k, T> {
     /// Solves the binary problem for a given C, starting from the last solution. The violation of the optimality conditions is at most `tolerance`.
     pub fn solve(&mut self, c: f64, tolerance: f64) -> DualSolution {
-        self.solve_or_from(c, tolerance, |_| None)
-    }
-
-    /// Solves the problem from the last solution or, if its objective is higher, from another start (coefficients β and gradient f).
-    pub fn solve_or_from(
-        &mut self,
-        c: f64,
-        tolerance: f64,
-        other: impl FnOnce(&mut Gram<'k, T>) -> Option<(Vec<f64>, Vec<f64>)>,
-    ) -> DualSolution {
-        let reached = self.reach(c, tolerance, other);
+        let reached = self.reach(c, tolerance, |_| None);
         let variables = (&self.beta[..], self.y, &self.f[..]);
         DualSolution {
             coefficients: self.beta.clone(),
@@ -40,7 +30,8 @@ impl<'k, T: SolverScalar> Smo<'_, 'k, T> {
         }
     }
 
-    /// Solves the problem from the better of two starts; returns whether the solver converged, and the number of iterations.
+    /// Solves the problem from the last solution or, if its objective is higher, from another start (coefficients β and gradient f). Returns whether the solver
+    /// converged, and the number of iterations.
     pub fn reach(
         &mut self,
         c: f64,

@@ -138,9 +138,9 @@ mod tests {
             let f = y.iter().zip(products).map(|(y, product)| y - product);
             let f: Vec<f64> = f.collect();
             let mut smo = Smo::new(&mut gram, &y);
-            let found = smo.solve_or_from(1.0, 1e-9, |_| Some((other, f)));
-            assert!((found.objective - expected.objective).abs() < 1e-8);
-            assert_eq!(found.n_iterations == Some(0), factor == 1.0, "{factor}");
+            let reached = smo.reach(1.0, 1e-9, |_| Some((other, f)));
+            assert!((smo.objective() - expected.objective).abs() < 1e-8);
+            assert_eq!(reached.n_iterations == 0, factor == 1.0, "{factor}");
         }
     }
 }

@@ -1,12 +1,24 @@
 //! Random data sets, and folds of their rows.
 
+use bubbletouch_svm::SvmParams;
 use bubbletouch_svm::dataset::{Dataset, dataset};
+use bubbletouch_svm::kernel::Kernel;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Array2};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use sha2::{Digest, Sha256};
+
+/// Returns the parameters of an SVM with the given kernel, penalty C and tolerance.
+pub fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
+    SvmParams {
+        kernel,
+        c,
+        tolerance,
+        ..SvmParams::default()
+    }
+}
 
 /// Returns the random generator of a seed and words: the ChaCha8 stream whose key is their SHA-256. The tolerances of the laws were measured on its rows.
 pub fn rng(seed: u64, words: &[&str]) -> ChaCha8Rng {

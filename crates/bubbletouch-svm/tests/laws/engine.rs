@@ -1,7 +1,7 @@
 //! The SVM engine against the definitions: every objective, violation and duality gap is recomputed from the features, one kernel value at a time. The checks
 //! use no cached or rounded values of the solver.
 
-use crate::drawn::{folds, rng};
+use crate::drawn::{folds, params, rng};
 use crate::svm_conditions::{Worth, kernel_value};
 use bubbletouch_svm::class_weight::ClassWeight;
 use bubbletouch_svm::cross_validation::choice::{Candidates, Chosen, choose};
@@ -26,15 +26,6 @@ const CUBIC: Kernel = Kernel::Polynomial {
     degree: 3,
 };
 const KERNELS: [Kernel; 3] = [Kernel::Linear, RBF, CUBIC];
-
-fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
-    SvmParams {
-        kernel,
-        c,
-        tolerance,
-        ..SvmParams::default()
-    }
-}
 
 /// Returns normal clouds of `counts` rows, one cloud per class, in `m` features of unit standard deviation. The centres lie `apart` times a normal vector from
 /// the origin; the rows of all classes are mixed.

@@ -1,5 +1,6 @@
 //! Difficult data sets for support vector machines whose solution is known without another program.
 
+use crate::drawn::params;
 use bubbletouch_svm::dataset::dataset;
 use bubbletouch_svm::kernel::{Gamma, Kernel};
 use bubbletouch_svm::{Multiclass, SvmParams};
@@ -13,15 +14,6 @@ const CUBIC: Kernel = Kernel::Polynomial {
     coef0: 1.0,
     degree: 3,
 };
-
-fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
-    SvmParams {
-        kernel,
-        c,
-        tolerance,
-        ..SvmParams::default()
-    }
-}
 
 #[test]
 fn an_enormous_c_separates_what_can_be_separated() {

@@ -1,5 +1,6 @@
 //! The support vector machines against scikit-learn's results and the optimality conditions, on easy and difficult data sets.
 
+use crate::drawn::params;
 use crate::svm_conditions::Worth;
 use bubbletouch_svm::dataset::{Dataset, dataset};
 use bubbletouch_svm::kernel::{Gamma, Kernel};
@@ -45,15 +46,6 @@ const CUBIC: Kernel = Kernel::Polynomial {
     coef0: 1.0,
     degree: 3,
 };
-
-fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
-    SvmParams {
-        kernel,
-        c,
-        tolerance,
-        ..SvmParams::default()
-    }
-}
 
 /// Asserts that a solution is optimal within the tolerance and the rounding error of thousands of steps.
 fn assert_optimal(params: SvmParams, data: &Dataset, problem: &BinaryProblem) {
