@@ -105,10 +105,8 @@ impl Posture {
     /// Returns the height of the hand's `anchor` point above the skin at first contact of the open hand, metres. `surface` is the radius of the arm.
     pub fn first_contact(&self, surface: f64) -> f64 {
         let hand = spheres(&self.open);
-        let heights = hand
-            .spheres()
-            .iter()
-            .filter_map(|ball| self.touches_at(ball, surface));
+        let balls = hand.spheres().iter();
+        let heights = balls.filter_map(|ball| self.touches_at(ball, surface));
         heights.fold(f64::NEG_INFINITY, f64::max)
     }
 
@@ -186,11 +184,8 @@ fn anchor(hand: &Hand, fingers: usize) -> DVec3 {
     match fingers {
         5 => strands[1][0].center.lerp(strands[1][1].center, 0.75),
         n => {
-            strands[..n]
-                .iter()
-                .map(|finger| finger[4].center)
-                .sum::<DVec3>()
-                / n as f64
+            let tips = strands[..n].iter().map(|finger| finger[4].center);
+            tips.sum::<DVec3>() / n as f64
         }
     }
 }

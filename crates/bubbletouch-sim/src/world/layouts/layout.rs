@@ -215,10 +215,8 @@ impl Layout {
 
     fn of_places(places: Places) -> Self {
         Self {
-            rule: Rule::None,
             places: places.into(),
-            sides: None,
-            n_left_out: 0,
+            ..Self::of_rule(Rule::None)
         }
     }
 

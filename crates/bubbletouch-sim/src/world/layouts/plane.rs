@@ -57,10 +57,8 @@ impl Layout {
         let n = centers.len();
         let away = |taxel: usize| centers[taxel] - centers[0];
         let pitch = away(1.min(n - 1)).length();
-        let is_flat = self
-            .axes()
-            .iter()
-            .all(|a| a.distance(axis) <= GRID_TOLERANCE);
+        let is_along = |other: &DVec3| other.distance(axis) <= GRID_TOLERANCE;
+        let is_flat = self.axes().iter().all(is_along);
         if pitch == 0.0 || !is_flat {
             return None;
         }
@@ -82,10 +80,8 @@ impl Layout {
         };
         let is_long =
             |side: DVec3| side == DVec3::ZERO || (side.length() - 1.0).abs() <= GRID_TOLERANCE;
-        let is_square = [x.dot(y), x.dot(axis), y.dot(axis)];
-        let is_square = is_square
-            .iter()
-            .all(|cosine| cosine.abs() <= GRID_TOLERANCE);
+        let cosines = [x.dot(y), x.dot(axis), y.dot(axis)];
+        let is_square = cosines.iter().all(|it| it.abs() <= GRID_TOLERANCE);
         let place = |taxel: usize| {
             let (row, column) = (taxel / columns, taxel % columns);
             pitch * (column as f64 * x + row as f64 * y)
@@ -107,11 +103,7 @@ impl Layout {
 pub fn nearest_distances(places: &[DVec2]) -> Vec<f64> {
     let step = places.len().div_ceil(MAX_SEARCHED).max(1);
     let nearest = |taxel: usize| {
-        let others = places
-            .iter()
-            .enumerate()
-            .filter(|(other, _)| *other != taxel);
-        let squares = others.map(|(_, place)| place.distance_squared(places[taxel]));
+        let squares = places.iter().map(|it| it.distance_squared(places[taxel]));
         // Taxels at one position have no distance.
         let squares = squares.filter(|square| *square > 0.0);
         squares.min_by(f64::total_cmp).map(f64::sqrt)

@@ -178,11 +178,9 @@ fn turns(way_points: &WayPoints, rotations: &[DQuat]) -> Result<Vec<DVec3>> {
                     DQuat::from_rotation_x(-from[3]) * DVec3::Y,
                     rotations[next - 1].conjugate() * DVec3::Z,
                 ];
-                let expected = axes
-                    .into_iter()
-                    .zip(change)
-                    .map(|(axis, change)| change * axis);
-                return Ok(turn_near(whole, expected.sum()));
+                let parts = axes.into_iter().zip(change);
+                let expected = parts.map(|(axis, change)| change * axis).sum();
+                return Ok(turn_near(whole, expected));
             }
             if largest > PI - UNDETERMINED {
                 let degrees = largest.to_degrees();

@@ -73,10 +73,8 @@ impl Support {
         let mut cells: Vec<_> = rings.chain([self.cell_of(down)]).collect();
         cells.sort_unstable();
         cells.dedup();
-        let mut indices: Vec<_> = cells
-            .iter()
-            .flat_map(|&cell| &self.candidates[cell])
-            .collect();
+        let indices = cells.iter().flat_map(|&cell| &self.candidates[cell]);
+        let mut indices: Vec<_> = indices.collect();
         indices.sort_unstable();
         indices.dedup();
         let sphere = |&&index: &&u32| self.spheres[index as usize];

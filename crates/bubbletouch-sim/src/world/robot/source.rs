@@ -99,10 +99,8 @@ impl Source {
         }
         tried.dedup();
         let Some(path) = tried.iter().find(|path| path.is_file()) else {
-            let list: Vec<String> = tried
-                .iter()
-                .map(|path| path.display().to_string())
-                .collect();
+            let list = tried.iter().map(|path| path.display().to_string());
+            let list: Vec<String> = list.collect();
             let given = format!("`{name}`, a file that is not found");
             return Err(element.refuse(given, format!("a file at {}", list.join(" or "))));
         };

@@ -47,10 +47,10 @@ pub(super) fn read_tactile_sensors(robot: Element) -> Vec<(String, Result<Tactil
         };
         first_lines.entry(name).or_insert_with(|| tactile.line());
         match &sensor {
-            Ok(sensor) => sensor
-                .notes
-                .iter()
-                .for_each(|note| robot.lines.note(note.clone())),
+            Ok(sensor) => {
+                let notes = sensor.notes.iter().cloned();
+                notes.for_each(|note| robot.lines.note(note));
+            }
             Err(fault) => robot.lines.note(format!(
                 "{fault}: tactile sensor `{name}` on link `{}` is not read",
                 place.link.unwrap_or("without a name")

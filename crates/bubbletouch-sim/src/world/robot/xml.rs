@@ -357,10 +357,10 @@ impl<'a> Element<'a> {
 
 /// Returns the word of a list of words, separated by spaces, of which an unknown word is a misspelling; `None` for a known word.
 fn slip<'k>(word: &str, known: &'k str) -> Option<&'k str> {
-    let known: Vec<&str> = known.split_whitespace().collect();
-    match known.contains(&word) {
+    let known = known.split(' ');
+    match known.clone().any(|other| other == word) {
         true => None,
-        false => slip_of(word, &known),
+        false => slip_of(word, &known.collect::<Vec<_>>()),
     }
 }
 
