@@ -60,6 +60,16 @@ impl Study for SaturationStudy {
     const VERSION: &'static str = "1";
     const TABLES: TableFiles = TableFiles::always(&[&SATURATION]);
 
+    const CHARTS: &'static [Chart] = &[Chart {
+        table: SATURATION.name(),
+        name: "saturated",
+        title: "Saturated touches by the number of taxels at their stroke",
+        x: "n_taxels",
+        y: "saturated",
+        lines: &["object"],
+        ..Chart::LINES
+    }];
+
     type Spec = SaturationStudySpec;
     type Rows = Vec<(SaturationConfiguration, Saturation)>;
 
@@ -128,11 +138,5 @@ impl Study for SaturationStudy {
 
     fn tables(&self, rows: Self::Rows) -> Result<Vec<Table>> {
         Ok(vec![SATURATION.table(&rows)?])
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        let title = "Saturated touches by the number of taxels at their stroke";
-        let chart = tables[0].chart("saturated", title, ("saturated", "n_taxels"));
-        vec![chart.by(["object"])]
     }
 }

@@ -178,14 +178,10 @@ impl Args {
             let certain = offers.in_words(certain);
             text += &format!("\nIf the whole interval must be good enough: {certain}");
         }
-        let Some(next) = &advice.next_up else {
-            return text + "\nNo configuration is better";
-        };
-        let gain = offers.value_words((next.value - choice.value).abs());
-        let cost = offers.cost.number_words(next.cost - choice.cost);
-        let (times, next) = (next.cost / choice.cost, offers.in_words(next));
-        text + &format!(
-            "\nThe next step up gains {gain} and costs {cost} more ({times:.1} times as much): {next}"
-        )
+        let next = advice.next_up.as_ref().map(|next| offers.in_words(next));
+        match next {
+            Some(next) => text + &format!("\nThe next step up: {next}"),
+            None => text + "\nNo configuration is better",
+        }
     }
 }

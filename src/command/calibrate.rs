@@ -6,6 +6,7 @@ use bubbletouch::calibration::{NotIdentifiable, calibrate as estimated};
 use bubbletouch::files::write_bytes;
 use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames};
 use bubbletouch::{Error, Result};
+use bubbletouch_sim::text::spelling::counted;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -139,9 +140,9 @@ pub fn calibrate(args: &Args) -> Result<()> {
     }
     let (rows, columns) = skin.shape;
     let mut text = format!(
-        "# {}: {} frames of {rows} × {columns} taxels, {} of the untouched skin. The zero is {zero}. Taxels are taken to be {} mm apart.\n",
+        "# {}: {} of {rows} × {columns} taxels, {} of the untouched skin. The zero is {zero}. Taxels are taken to be {} mm apart.\n",
         args.frames.display(),
-        skin.touched.nrows() + skin.untouched.nrows(),
+        counted(skin.touched.nrows() + skin.untouched.nrows(), "frame"),
         skin.untouched.nrows(),
         args.pitch_mm
     );

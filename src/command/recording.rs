@@ -16,6 +16,7 @@ use bubbletouch::report::terminal::Ink;
 use bubbletouch::scene::ScenePlan;
 use bubbletouch::signal::Quantity;
 use bubbletouch::{Error, Result};
+use bubbletouch_sim::text::spelling::counted;
 use ndarray::Array2;
 use std::path::{Path, PathBuf};
 
@@ -161,9 +162,9 @@ fn animate(args: &Args, file: &mut RecordingFile, path: &Path) -> Result<()> {
     let shown = write_animation(path, file, patch, (args.quantity(), &models), &playback)?;
     let milliseconds: u64 = shown.iter().map(|frame| frame.milliseconds).sum();
     note(format_args!(
-        "{} of {} frames in {:.1} s, at {} × the speed of the recording",
+        "{} of {} in {:.1} s, at {} × the speed of the recording",
         shown.len(),
-        file.time().len(),
+        counted(file.time().len(), "frame"),
         milliseconds as f64 * 1e-3,
         playback.speed
     ));

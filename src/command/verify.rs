@@ -9,6 +9,7 @@ use bubbletouch::report::progress::to_stderr;
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::provenance::{MANIFEST_FILE, SOURCE};
 use bubbletouch::{Error, Result};
+use bubbletouch_sim::text::spelling::counted;
 use std::path::PathBuf;
 
 /// Check a results folder and re-run some of its work items
@@ -48,7 +49,8 @@ pub fn verify(args: &Args) -> Result<()> {
     if n_missing > 0 {
         let again = shell_line(&[&*program(), "report", &folder.display().to_string()]);
         say(format_args!(
-            "note: missing charts, pictures or page: {n_missing} files; {again} draws them"
+            "note: missing charts, pictures or page: {}; {again} draws them",
+            counted(n_missing, "file")
         ))?;
     }
     if manifest.source != SOURCE {

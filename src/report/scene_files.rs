@@ -9,6 +9,7 @@ use crate::scene::{
     Carrier, Frame, FrameSink, Movement, PatchReading, PlannedPatch, PlannedSignal, PoseControl,
     ScenePlan, Summary,
 };
+use crate::spelling::counted;
 use crate::table::short_number;
 use crate::world::Motion;
 use glam::DVec3;
@@ -155,9 +156,9 @@ pub fn scene_table(plan: &ScenePlan, summary: &Summary) -> String {
     for patch in &plan.patches {
         let n_left_out = patch.skin.layout().n_left_out();
         if n_left_out > 0 {
-            let name = patch.skin.name();
+            let (name, left_out) = (patch.skin.name(), counted(n_left_out, "taxel"));
             text += &format!(
-                "Patch {name}: {n_left_out} taxels left out, whose axes would meet the mesh again.\n"
+                "Patch {name}: {left_out} left out, whose axes would meet the mesh again.\n"
             );
         }
     }
@@ -205,9 +206,8 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> String {
     let all = plan.objects.iter().zip(&plan.models);
     let rows = all.zip(&summary.objects).map(|((object, model), summary)| {
         let parts = match model.spheres() {
-            Some(union) if union.n_spheres() == 1 => "1 sphere".to_owned(),
-            Some(union) => format!("{} spheres", union.n_spheres()),
-            None => format!("{} triangles", model.n_triangles()),
+            Some(union) => counted(union.n_spheres(), "sphere"),
+            None => counted(model.n_triangles(), "triangle"),
         };
         let mut end = ending(&object.movement, &summary.held);
         if matches!(object.movement, Movement::Free { .. }) {
@@ -216,14 +216,15 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> String {
             end += &format!("; last at {position} mm, rotated by {angles}°");
         }
         if summary.n_unsettled > 0 {
-            end += &format!("; not at rest in {} frames", summary.n_unsettled);
+            end += &format!("; not at rest in {}", counted(summary.n_unsettled, "frame"));
         }
         if summary.imbalance > 0.0 {
             let share = short_number(summary.imbalance);
             end += &format!("; at most {share} of its weight not balanced");
         }
         if summary.n_off > 0 {
-            end += &format!("; not with the force wanted in {} frames", summary.n_off);
+            let frames = counted(summary.n_off, "frame");
+            end += &format!("; not with the force wanted in {frames}");
         }
         vec![object.name.clone(), parts, end]
     });

@@ -20,6 +20,7 @@ pub(crate) use crate::learning::classifiers::ClassifierKind;
 pub(crate) use crate::objects::{Model, Object};
 pub(crate) use crate::quantile::quantile;
 pub use crate::random::Seed;
+pub use crate::report::chart::Chart;
 pub(crate) use crate::report::study_folder::{Beyond, NamedPicture};
 pub(crate) use crate::sensing::{Basis, Ensemble, Projection, Selection};
 pub(crate) use crate::signal::NoiseUnit;

@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::files::has_table;
 use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::params::{Described, keys_of};
+use crate::report::chart::Chart;
 use crate::report::page::StudyAbout;
 use crate::report::study_folder::{Beyond, ChartFormat, first_found, words_of};
 use crate::studies::recognition::spec::keys::keys_without_axes;
@@ -220,6 +221,9 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Table files to which a study writes its results.
     const TABLES: TableFiles;
 
+    /// Charts of the tables, the most important one first.
+    const CHARTS: &'static [Chart] = &[];
+
     /// Specification of a study: the keys that its file may have.
     type Spec: Described + Serialize;
 
@@ -288,8 +292,11 @@ pub trait Study: Send + Sized + Sync + 'static {
         Self::TABLES.read(folder)
     }
 
-    /// Returns the charts of the result tables, the most important one first.
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec>;
+    /// Returns the charts of the result tables, the most important one first. Without another implementation, these are the constant charts of the kind.
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        let specs = Self::CHARTS.iter().map(|chart| chart.specs(tables));
+        specs.flatten().collect()
+    }
 
     /// Returns answers as sentences, computed from the result tables. They are shown at the top of the page and at the end of the run.
     fn answers(&self, _tables: &[Table]) -> Vec<String> {

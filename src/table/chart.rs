@@ -1,6 +1,7 @@
 //! Specification of a chart: its columns, and the type of its marks.
 
 use super::{Column, Table, Value};
+use std::borrow::Cow;
 
 /// Specification of a chart, which is drawn as SVG and PNG; the result page contains the SVG.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,14 +74,6 @@ impl Table {
     }
 }
 
-impl ChartSpec {
-    /// Returns the chart with one line or point colour for each combination of values of the given columns.
-    pub fn by<const N: usize>(mut self, columns: [&str; N]) -> Self {
-        self.lines = columns.map(str::to_owned).to_vec();
-        self
-    }
-}
-
 impl Shown {
     /// Creates the filter of the rows with a value in a column.
     pub fn new(column: impl Into<String>, value: impl Into<Value>) -> Self {
@@ -93,11 +86,20 @@ impl Shown {
 
 impl Rule {
     /// Creates a reference line at a constant value of an axis.
-    pub fn at(along: Along, value: f64, words: impl Into<String>) -> Self {
+    pub fn at(along: Along, value: f64, words: impl Into<Cow<'static, str>>) -> Self {
         Self {
             along,
             at: At::Value(value),
             words: words.into(),
+        }
+    }
+
+    /// Creates a constant reference line with a constant label.
+    pub const fn constant(along: Along, at: At, words: &'static str) -> Self {
+        Self {
+            along,
+            at,
+            words: Cow::Borrowed(words),
         }
     }
 }
@@ -112,7 +114,7 @@ pub struct Shown {
 }
 
 /// Type of the marks of a chart, such as lines, points or tiles.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Mark {
     /// Points joined by lines along x. If the x column contains words, the points are not joined.
     #[default]
@@ -122,13 +124,13 @@ pub enum Mark {
     /// One coloured tile for each pair of x and y values.
     Tiles {
         /// Column that determines the colour of the tiles: outcomes with one colour each, or numbers on a sequential colour scale.
-        fill: String,
+        fill: &'static str,
     },
 }
 
 impl Mark {
     /// Returns the name of the column that determines the colour of the marks; `None` if there is no such column.
-    pub fn fill(&self) -> Option<&str> {
+    pub fn fill(self) -> Option<&'static str> {
         match self {
             Self::Tiles { fill } => Some(fill),
             _ => None,
@@ -153,17 +155,17 @@ pub struct Rule {
     /// Position of the reference line on its axis.
     pub at: At,
     /// Label of the reference line in the legend of the chart.
-    pub words: String,
+    pub words: Cow<'static, str>,
 }
 
 /// Position of a reference line on its axis.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum At {
     /// Constant position on the axis.
     Value(f64),
     /// Column that contains the position of the reference line, for each panel and each value on the other axis. Examples: a chance level that depends on the
     /// number of objects, or a limit that depends on the mass.
-    Column(String),
+    Column(&'static str),
 }
 
 /// Axis of a chart.

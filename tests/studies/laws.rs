@@ -177,7 +177,8 @@ fn chance_is_that_of_each_configuration() {
         let tables = tables_of(&run(&text.replace(names, ""))).unwrap();
         let charts = charts(&tables, None).into_iter();
         let rules = charts.flat_map(|chart| chart.rules);
-        let rules: Vec<(At, String)> = rules.map(|rule| (rule.at, rule.words)).collect();
+        let rules = rules.map(|rule| (rule.at, rule.words.into_owned()));
+        let rules: Vec<(At, String)> = rules.collect();
         let configurations = table(&tables, "configurations.csv");
         (rules, configurations.numbers("chance").map(<[f64]>::to_vec))
     };
@@ -187,7 +188,7 @@ fn chance_is_that_of_each_configuration() {
     assert!(rules.iter().all(|rule| *rule == expected), "{rules:?}");
     assert_eq!(column, None);
     let (rules, column) = axes(r#"[["mug", "bowl"], ["apple", "pear", "mug", "bowl"]]"#);
-    let is_column = |(at, _): &(At, String)| *at == At::Column("chance".to_owned());
+    let is_column = |(at, _): &(At, String)| *at == At::Column("chance");
     assert!(!rules.is_empty());
     assert!(rules.iter().all(is_column), "{rules:?}");
     assert_eq!(column, Some(vec![0.5, 0.5, 0.25, 0.25]));

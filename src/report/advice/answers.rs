@@ -3,7 +3,7 @@
 use super::candidates::{Advice, Candidate, Candidates, Requirement};
 use crate::error::{Error, Result};
 use crate::report::swept::Setting;
-use crate::table::{Scale, Value};
+use crate::table::Value;
 
 /// Advice for one condition, or the reason why no advice exists.
 pub struct Answer {
@@ -82,30 +82,56 @@ pub fn answers_json(offers: &Candidates, answers: &[Answer]) -> serde_json::Valu
     })
 }
 
+/// Maximum number of conditions for which sentences are written.
+const MAX_CONDITIONS: usize = 8;
+
 impl Candidates<'_> {
-    /// Returns the value, interval and cost of a candidate as text, such as `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
-    pub fn gives(&self, candidate: &Candidate) -> String {
-        let interval = match self.table.interval(self.value, candidate.row) {
-            Some(ends) => {
-                let [low, high] = ends.map(|end| self.value_words(end));
-                format!(" ({low} to {high})")
-            }
-            None => String::new(),
-        };
-        let value = self.value_words(candidate.value);
-        let cost = self.cost.phrase(&Value::Number(candidate.cost));
-        format!("{} {value}{interval}, {cost}", self.value.words)
-    }
-
-    /// Formats a value of the value column, or a difference between two such values. Fractions have three decimal places.
-    pub fn value_words(&self, value: f64) -> String {
-        match self.value.scale == Scale::Share && self.value.unit.is_empty() {
-            true => format!("{value:.3}"),
-            false => self.value.number_words(value),
+    /// Returns sentences on the best choices under each condition: the cheapest one within the interval of the best, and the best one. Of many conditions, only
+    /// the first ones have sentences.
+    pub(crate) fn sentences(&self) -> Vec<String> {
+        let conditions = self.by_condition();
+        let listed = conditions.iter().take(MAX_CONDITIONS);
+        let best = listed.filter_map(|choices| self.best_and_as_good(choices));
+        let mut sentences: Vec<String> = best.flat_map(|best| self.best_words(best)).collect();
+        if conditions.len() > MAX_CONDITIONS {
+            let n = conditions.len() - MAX_CONDITIONS;
+            let more = format!("The best of {n} more conditions are in the tables.");
+            sentences.push(more);
         }
+        sentences
     }
 
-    /// Returns the value, cost and choices of a candidate as text, such as `accuracy 0.830, time of a decision 210 µs: RBF SVM, m = 64`.
+    fn best_words(&self, [best, as_good]: [Candidate; 2]) -> Vec<String> {
+        let with = match &self.condition(&best)[..] {
+            "" => String::new(),
+            words => format!(" with {words}"),
+        };
+        let said = |candidate: &Candidate| {
+            let value = self.table.bounded(self.value, candidate.row);
+            match &self.choices(candidate)[..] {
+                "" => value,
+                words => format!("{value} at {words}"),
+            }
+        };
+        let (value, cost) = (&self.value.words, &self.cost.words);
+        let cheapest = (as_good != best).then(|| {
+            format!(
+                "Within the interval of the best{with}, for the least {cost}: {}.",
+                said(&as_good)
+            )
+        });
+        let best = format!("Best {value}{with}: {}.", said(&best));
+        cheapest.into_iter().chain([best]).collect()
+    }
+
+    /// Returns the value, interval and cost of a candidate as text, such as `accuracy 0.83 [0.80, 0.86], time of a decision 210 µs`.
+    pub fn gives(&self, candidate: &Candidate) -> String {
+        let value = self.table.bounded(self.value, candidate.row);
+        let cost = self.cost.phrase(&Value::Number(candidate.cost));
+        format!("{} {value}, {cost}", self.value.words)
+    }
+
+    /// Returns the value, cost and choices of a candidate as text, such as `accuracy 0.83, time of a decision 210 µs: RBF SVM, m = 64`.
     pub fn in_words(&self, candidate: &Candidate) -> String {
         format!("{}: {}", self.gives(candidate), self.setting(candidate))
     }

@@ -82,7 +82,7 @@ impl<'a> Candidates<'a> {
         // Among several tables, one whose values have confidence intervals is preferred.
         let has_interval = |table: &&&'a Table| value(table).interval.is_some();
         let table = *offering.iter().find(has_interval).unwrap_or(&offering[0]);
-        let mut found = Self::of_columns(table, value(table), COST.columns(table, cost)[0]);
+        let mut found = Self::all(table, value(table), COST.columns(table, cost)[0]);
         let mut given = asked.given.iter();
         found.rows = given.try_fold(found.rows, |rows, text| rows_with(table, rows, text))?;
         for (name, most) in &asked.limits {
@@ -139,8 +139,18 @@ impl<'a> Candidates<'a> {
         }
     }
 
-    /// Creates candidates from all rows of a table.
-    pub fn of_columns(table: &'a Table, value: &'a Column, cost: &'a Column) -> Self {
+    /// Creates candidates from all rows of a table, given the names of its value column and its cost column; `None` without such columns.
+    pub fn of_columns(table: &'a Table, value: &str, cost: &str) -> Option<Self> {
+        let (value, cost) = (table.column(value)?.0, table.column(cost)?.0);
+        Some(Self::all(table, value, cost))
+    }
+
+    /// Restricts the candidates to the rows for which `is_kept` returns true.
+    pub(crate) fn retain(&mut self, is_kept: impl Fn(usize) -> bool) {
+        self.rows.retain(|&row| is_kept(row));
+    }
+
+    fn all(table: &'a Table, value: &'a Column, cost: &'a Column) -> Self {
         Self {
             table,
             value,
@@ -557,7 +567,7 @@ mod tests {
         };
         let dear = text("accuracy", Requirement::Value(0.99));
         assert!(
-            dear.contains("the best here is accuracy 0.970") && dear.contains("best"),
+            dear.contains("the best here is accuracy 0.97 [") && dear.contains("best"),
             "{dear}"
         );
         let fine = text("error", Requirement::Value(1e-3));

@@ -1,9 +1,10 @@
 //! Charts: a [`ChartSpec`] and a table are converted to a [`Drawing`].
 //!
 //! All charts have one renderer. `view` selects rows, lines and panels of the table. `scale` maps values to fractions of an axis. `layout` computes the pixel
-//! positions of the panels. `series` and `tiles` draw the data. The page embeds the drawings: each mark is a group with its row number, so that the page's
+//! positions of the panels. `series` and `tiles` draw the data. `declared` makes specifications of the constant charts of a kind of study. The page embeds the drawings: each mark is a group with its row number, so that the page's
 //! script finds the row's values.
 
+mod declared;
 mod front;
 mod layout;
 mod legend;
@@ -13,6 +14,7 @@ mod series;
 mod tiles;
 mod view;
 
+pub use declared::Chart;
 pub use view::Place;
 
 use crate::error::{Error, Result};

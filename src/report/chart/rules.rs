@@ -15,7 +15,7 @@ pub(super) fn entries(view: &View) -> Vec<LegendEntry> {
     let rules = rules.filter(|(number, rule)| first_of(view, rule) == *number);
     let entries = rules.map(|(_, rule)| {
         let stroke = stroke(view, rule);
-        LegendEntry::new(rule.words.clone(), move |drawing, area| {
+        LegendEntry::new(rule.words.to_string(), move |drawing, area| {
             drawing.line(area.at(0.0, 0.5), area.at(1.0, 0.5), stroke);
         })
     });

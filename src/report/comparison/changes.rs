@@ -5,14 +5,14 @@
 
 use crate::report::swept::Setting;
 use crate::row;
-use crate::table::{Column, Role, Table, Value};
+use crate::table::{Column, Role, Table, Value, short_number};
 use std::collections::{HashMap, HashSet};
 
 /// Columns that contain configuration numbers, which may differ between runs.
 const CONFIGURATION_NUMBERS: [&str; 2] = ["configuration", "best_configuration"];
 /// Roles of the columns whose entries together identify a row of a table.
 const KEY_ROLES: [Role; 3] = [Role::Choice, Role::Condition, Role::Subject];
-/// Maximum number of changed outcomes that a text lists, such as `right` to `wrong`.
+/// Maximum number of different changes that a text lists, such as `right` to `wrong`.
 const MAX_CHANGES: usize = 8;
 
 row! {
@@ -39,7 +39,7 @@ pub struct ChangedColumn {
     n_same: usize => Value(Neither) "rows alike": Linear;
     /// Number of common rows whose entries differ.
     n_changed: usize => Value(Neither) "rows that differ": Linear;
-    /// Description of the change, such as `226 from right to not finite`.
+    /// Description of the change, such as `226 from right to not finite` or `by -0.1 to 0.2`.
     change: String => Subject;
 } }
 
@@ -214,47 +214,38 @@ impl<'a> Pair<'a> {
                 != entry(after, ours, &self.configurations[1])
         };
         let rows: Vec<[usize; 2]> = self.rows.iter().filter(differs).copied().collect();
-        let n_lacking = |side: usize, one: Setting| {
-            let lacking = rows
-                .iter()
-                .filter(|rows| one.data.value(rows[side]).is_none());
-            lacking.count()
-        };
-        let (gained, lost) = (n_lacking(0, before), n_lacking(1, after));
-        let mut said = match after.column.role {
-            Role::Outcome => outcome_words(before, after, &rows),
-            _ => Vec::new(),
-        };
-        if after.is_number() {
-            let alone = [(lost, "first"), (gained, "second")].into_iter();
-            let alone = alone.filter(|(n, _)| *n > 0);
-            said.extend(alone.map(|(n, run)| format!("{n} in the {run} run alone")));
-        }
         let counts = [self.rows.len() - rows.len(), rows.len()];
-        (!rows.is_empty()).then(|| self.changed(after.column, counts, said.join(", ")))
+        (!rows.is_empty()).then(|| self.changed(after.column, counts, words(before, after, &rows)))
     }
 }
 
-/// Returns the changes of an outcome as texts, such as `226 from right to not finite`, in the order of first occurrence.
-fn outcome_words(before: Setting, after: Setting, rows: &[[usize; 2]]) -> Vec<String> {
-    let word = |one: Setting, row: usize| match one.data.value(row) {
-        None => "nothing".to_owned(),
-        Some(Value::Number(number)) => number.to_string(),
-        Some(Value::Word(word)) => one.column.word(&word),
-    };
+/// Returns the changes of a column as text: the range of the differences of numbers, and the changes of other entries in the order of first occurrence, such as
+/// `226 from right to not finite`.
+fn words(before: Setting, after: Setting, rows: &[[usize; 2]]) -> String {
+    let word = |value: Option<Value>| value.map(|value| after.column.value_words(&value));
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut changes: Vec<(String, usize)> = Vec::new();
     for &[theirs, ours] in rows {
-        let change = format!("from {} to {}", word(before, theirs), word(after, ours));
+        let (theirs, ours) = (before.data.value(theirs), after.data.value(ours));
+        if let (Some(Value::Number(theirs)), Some(Value::Number(ours))) = (&theirs, &ours) {
+            (low, high) = (low.min(ours - theirs), high.max(ours - theirs));
+            continue;
+        }
+        let [theirs, ours] = [theirs, ours].map(|value| word(value).unwrap_or("nothing".into()));
+        let change = format!("from {theirs} to {ours}");
         match changes.iter_mut().find(|(known, _)| *known == change) {
             Some((_, n)) => *n += 1,
             None => changes.push((change, 1)),
         }
     }
-    let n_changes = changes.len();
+    let range = (low <= high).then(|| match [low, high].map(short_number) {
+        [low, high] if low == high => format!("by {low}"),
+        [low, high] => format!("by {low} to {high}"),
+    });
+    let others = changes.len().saturating_sub(MAX_CHANGES);
     let listed = changes.into_iter().take(MAX_CHANGES);
-    let mut listed: Vec<String> = listed.map(|(change, n)| format!("{n} {change}")).collect();
-    if n_changes > MAX_CHANGES {
-        listed.push("and others".to_owned());
-    }
-    listed
+    let listed = listed.map(|(change, n)| format!("{n} {change}"));
+    let others = (others > 0).then(|| "and others".to_owned());
+    let all = range.into_iter().chain(listed).chain(others);
+    all.collect::<Vec<_>>().join(", ")
 }

@@ -130,11 +130,11 @@ fn chart(
         lines: vec!["significance".to_owned()],
         mark: Mark::Points,
         square: true,
-        rules: vec![Rule {
-            along: Along::Y,
-            at: At::Column("first".to_owned()),
-            words: "no difference".to_owned(),
-        }],
+        rules: vec![Rule::constant(
+            Along::Y,
+            At::Column("first"),
+            "no difference",
+        )],
         ..values.chart(name, format!("{words} in both runs"), ("second", "first"))
     }
 }

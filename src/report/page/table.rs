@@ -154,7 +154,7 @@ impl Shown<'_> {
 
     /// Returns the HTML of a table cell. If the fields of the cell vary between rows and differ from its text, the attribute `data-v` contains them.
     fn cell(&self, table: &Table, row: usize, fields: &[String]) -> String {
-        let said = with_interval(table, self.column, row);
+        let said = table.bounded(self.column, row);
         let values = self.joined(fields);
         let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "._-+".contains(letter);
         let value = match &values[..] {
@@ -179,14 +179,5 @@ impl Shown<'_> {
         } else {
             " class=\"word\""
         }
-    }
-}
-
-/// Returns the value of a column in a row with its unit and its interval, such as `0.93 [0.9, 0.95]`; empty if the value is absent.
-fn with_interval(table: &Table, column: &Column, row: usize) -> String {
-    let said = table.words(&column.name, row);
-    match table.interval(column, row) {
-        Some([low, high]) => format!("{said} [{}, {}]", column.tick(low), column.tick(high)),
-        None => said,
     }
 }

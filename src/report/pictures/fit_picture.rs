@@ -9,6 +9,7 @@ use crate::report::pictures::colours::{PAINT, diverging};
 use crate::report::pictures::drawing::{Align, Area, Drawing, TextStyle};
 use crate::report::pictures::picture::Picture;
 use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
+use crate::spelling::counted;
 use crate::table::short_number;
 use bubbletouch_sim::raster::{Canvas, Hit, Lighting, three_quarter_view};
 use glam::{DVec2, DVec3};
@@ -75,11 +76,12 @@ pub fn fit_picture(
     let above = [
         match original {
             Original::Mesh(surface, _) => {
-                format!("{name}: {} triangles", surface.mesh().n_triangles())
+                let triangles = counted(surface.mesh().n_triangles(), "triangle");
+                format!("{name}: {triangles}")
             }
             Original::Solid(_) => name.to_owned(),
         },
-        format!("{} spheres", spheres.n_spheres()),
+        counted(spheres.n_spheres(), "sphere"),
         format!("spheres outside (+) or inside (−): {lowest} to {highest} mm"),
     ];
     for (panel, text) in above.iter().enumerate() {

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::inputs::arrays::npy_file::read_header;
 use crate::signal::Quantity;
+use crate::spelling::counted;
 use glam::{DQuat, DVec3};
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -55,7 +56,11 @@ impl RecordingFile {
             let n_rows = open_rows(&mut open.archive, &member).map(|rows| rows.1);
             let n_rows = n_rows.map_err(|e| open.damaged(&member.name, e))?;
             if n_rows != open.time.len() {
-                let given = format!("{n_rows} rows for {} frames", open.time.len());
+                let given = format!(
+                    "{} for {}",
+                    counted(n_rows, "row"),
+                    counted(open.time.len(), "frame")
+                );
                 return Err(open.damaged(&member.name, given));
             }
         }

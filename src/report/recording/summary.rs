@@ -4,6 +4,7 @@ use super::reader::RecordingFile;
 use crate::error::Result;
 use crate::report::terminal::rows_text;
 use crate::signal::Quantity;
+use crate::spelling::counted;
 use crate::table::short_number;
 
 /// Returns a text summary of a recording: frames and times, patches with their largest values, objects, and metadata. Reads all data of the file.
@@ -79,8 +80,8 @@ fn time_sentence(time: &[f64]) -> String {
         return "no frames".to_owned();
     };
     let mut sentence = format!(
-        "{} frames from {} s to {} s",
-        time.len(),
+        "{} from {} s to {} s",
+        counted(time.len(), "frame"),
         short_number(*first),
         short_number(*last)
     );

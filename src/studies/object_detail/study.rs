@@ -2,7 +2,7 @@
 
 use crate::inputs::object_files::{NamedMesh, load_named_meshes};
 use crate::inputs::packings::packing_path;
-use crate::studies::object_detail::charts::{answers, charts};
+use crate::studies::object_detail::charts::{CHARTS, answers};
 use crate::studies::object_detail::measured::{Level, Measured, levels};
 use crate::studies::object_detail::plan::*;
 use crate::studies::object_detail::recognition::{Learned, Sensor};
@@ -56,6 +56,8 @@ impl Study for ObjectDetailStudy {
         always: &[&DETAIL, &SUMMARY, &TIMING, &COST],
         of_parts: &[&RECOGNITION],
     };
+
+    const CHARTS: &'static [Chart] = CHARTS;
 
     type Spec = ObjectDetailStudySpec;
     type Rows = DetailRows;
@@ -199,10 +201,6 @@ impl Study for ObjectDetailStudy {
             tables.push(RECOGNITION.table(&recognition)?);
         }
         Ok(tables)
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
     }
 
     fn answers(&self, tables: &[Table]) -> Vec<String> {

@@ -5,7 +5,7 @@ use crate::sensing::{PCA_ATOMS, Solver};
 use crate::studies::prelude::*;
 use crate::studies::recognition::spec::keys::keys_without_axes;
 use crate::studies::recognition::tables::table_files::set_noise_unit;
-use crate::studies::reconstruction::charts::{answers, charts};
+use crate::studies::reconstruction::charts::{CHARTS, answers};
 use crate::studies::reconstruction::measured::measure_cells;
 use crate::studies::reconstruction::plan::*;
 use crate::studies::reconstruction::rows::*;
@@ -29,6 +29,8 @@ impl Study for ReconstructionStudy {
         words: "a study that reconstructs frames",
     };
     const TABLES: TableFiles = TableFiles::always(&[&CONFIGURATIONS, &ISOMETRY, &TIMING, &PARETO]);
+
+    const CHARTS: &'static [Chart] = CHARTS;
 
     type Spec = ReconstructionStudySpec;
     type Rows = ReconstructionRows;
@@ -125,10 +127,6 @@ impl Study for ReconstructionStudy {
 
     fn read_tables(folder: &Path) -> Result<Vec<Table>> {
         Self::TABLES.read(folder).map(with_both)
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
     }
 
     fn answers(&self, tables: &[Table]) -> Vec<String> {

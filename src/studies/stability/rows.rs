@@ -15,6 +15,18 @@ const METHODS: &[(&str, &str)] = &[
     ("mujoco_discrete", "MuJoCo, discrete, hard"),
 ];
 
+/// Descriptions of the scenes in titles.
+const SCENES: &[(&str, &str)] = &[
+    ("rest", "a ball let go on taxels"),
+    (
+        "press",
+        "a ball pressed on taxels with 0.5 m/s, held and taken off",
+    ),
+    ("stack_of_two", "two balls in a stack, let go on taxels"),
+    ("stack_of_four", "four balls in a stack, let go on taxels"),
+    ("plunger", "a plunger let go on SkinSim's taxels"),
+];
+
 /// Display names of the outcomes; their order determines the colours in all charts.
 const OUTCOMES: &[(&str, &str)] = &[
     ("right", "right"),
@@ -141,6 +153,8 @@ row! {
 pub struct CommonScene {
     /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
     part: usize => Condition "part": Linear;
+    /// Scene of the part.
+    scene: String => Condition named SCENES;
     /// Method that simulates the contact, with its number of iterations if several are compared.
     method: String => Choice;
     /// Time step and taxel mass.
@@ -158,8 +172,8 @@ row! {
 pub struct MethodScore {
     /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
     part: usize => Condition "part": Linear;
-    /// Scene of the part, such as `rest`.
-    scene: String => Note;
+    /// Scene of the part.
+    scene: String => Condition named SCENES;
     /// Method that simulates the contact, with its number of iterations if several are compared.
     method: String => Choice;
     /// Number of scenes that all methods of the part have computed.

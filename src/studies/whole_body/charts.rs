@@ -7,54 +7,72 @@ use crate::report::pictures::picture::Picture;
 use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
 use crate::studies::prelude::*;
 use crate::studies::whole_body::plan::*;
-use crate::table::{Along, Rule, Shown, short_number};
+use crate::studies::whole_body::rows::*;
+use crate::table::{Along, At, Rule, short_number};
 use bubbletouch_sim::raster::{Canvas, Hit, Lighting, view_from};
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Returns charts of the computing time per step. Some show it by the number of taxels, of touched taxels and of spheres; others show the time of each
-/// stage in each scene.
-pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
-    let (recognition, timing, steps) = (&tables[1], &tables[3], &tables[4]);
-    let ladder = |series: &str, name: &str, (x, line): (&str, &str), size: &str| {
-        of_series(steps, series).map(|shown| ChartSpec {
-            shown: vec![shown],
-            lines: vec![line.to_owned()],
-            rules: vec![Rule::at(Along::Y, 1000.0, "a millisecond")],
-            ..steps.chart(
-                name,
-                format!("Time of a step by the size of {size}"),
-                ("us_median", x),
-            )
-        })
-    };
-    let by_stage = of_series(timing, "scene").map(|shown| ChartSpec {
-        shown: vec![shown],
-        lines: vec!["compression".to_owned(), "n_threads".to_owned()],
-        panels: Some("stage".to_owned()),
+/// Time of a control step of a kilohertz loop, µs.
+const MILLISECOND: At = At::Value(1000.0);
+
+/// Charts of the computing time per step by the number of taxels, of touched taxels and of spheres, of the time of each stage, and of accuracy against memory.
+pub(super) const CHARTS: &[Chart] = &[
+    Chart {
+        name: "time_by_taxels",
+        title: "Time of a step by the size of the skin, the touch the same",
+        shown: &[("series", "skin")],
+        x: "n_taxels",
+        lines: &["touched"],
+        ..LADDER
+    },
+    Chart {
+        name: "time_by_touched",
+        title: "Time of a step by the size of the touch, the skin the same",
+        shown: &[("series", "touch")],
+        x: "touched_mean",
+        lines: &["n_spheres"],
+        ..LADDER
+    },
+    Chart {
+        name: "time_by_spheres",
+        title: "Time of a step by the size of the object, skin and touch the same",
+        shown: &[("series", "spheres")],
+        x: "n_spheres",
+        lines: &["touched"],
+        ..LADDER
+    },
+    Chart {
+        table: TIMING.name(),
+        name: "time_by_stage",
+        title: "From touch to answer: where the time of a step goes",
+        shown: &[("series", "scene")],
+        x: "us_median",
+        y: "name",
+        lines: &["compression", "n_threads"],
+        panels: Some("stage"),
         mark: Mark::Points,
-        rules: vec![Rule::at(Along::X, 1000.0, "a millisecond")],
-        ..timing.chart(
-            "time_by_stage",
-            "From touch to answer: where the time of a step goes",
-            ("name", "us_median"),
-        )
-    });
-    let of_skin = "the skin, the touch the same";
-    let of_touch = "the touch, the skin the same";
-    let of_object = "the object, skin and touch the same";
-    let taxels = ("n_taxels", "touched");
-    let touched = ("touched_mean", "n_spheres");
-    let spheres = ("n_spheres", "touched");
-    let charts = [
-        ladder("skin", "time_by_taxels", taxels, of_skin),
-        ladder("touch", "time_by_touched", touched, of_touch),
-        ladder("spheres", "time_by_spheres", spheres, of_object),
-        by_stage,
-        memory_chart(recognition),
-    ];
-    charts.into_iter().flatten().collect()
-}
+        rules: &[Rule::constant(Along::X, MILLISECOND, "a millisecond")],
+        ..Chart::LINES
+    },
+    Chart {
+        table: RECOGNITION.name(),
+        name: "accuracy_by_memory",
+        title: "Which object is it: accuracy against memory of a taxel",
+        x: "bytes_per_taxel",
+        y: "accuracy",
+        lines: &["compression"],
+        ..Chart::FRONT
+    },
+];
+
+/// Time of a step along a scaling series.
+const LADDER: Chart = Chart {
+    table: STEPS.name(),
+    y: "us_median",
+    rules: &[Rule::constant(Along::Y, MILLISECOND, "a millisecond")],
+    ..Chart::LINES
+};
 
 /// Returns answers about the time from touch to decision and about memory; the charts show the rest.
 pub(super) fn answers(tables: &[Table]) -> Vec<String> {
@@ -75,28 +93,6 @@ pub(super) fn answers(tables: &[Table]) -> Vec<String> {
         format!("A body at rest takes at most {most} bytes a taxel.")
     }));
     answers
-}
-
-/// Returns a filter for the rows of a scaling series; `None` if the table has no such rows.
-fn of_series(table: &Table, series: &str) -> Option<Shown> {
-    let mut rows = 0..table.n_rows;
-    let row = rows.find(|&row| table.word("series", row) == series)?;
-    table.shown("series", row)
-}
-
-/// Returns the chart of recognition accuracy against the memory of the measurement matrix per taxel, with the Pareto front. Returns `None` if the table has
-/// no rows.
-fn memory_chart(recognition: &Table) -> Option<ChartSpec> {
-    (recognition.n_rows > 0).then(|| ChartSpec {
-        lines: vec!["compression".to_owned()],
-        mark: Mark::Points,
-        front: true,
-        ..recognition.chart(
-            "accuracy_by_memory",
-            "Which object is it: accuracy against memory of a taxel",
-            ("accuracy", "bytes_per_taxel"),
-        )
-    })
 }
 
 /// Contents of the picture of a scene, with all positions in the world frame.

@@ -3,7 +3,7 @@
 use crate::inputs::object_files::file_content;
 use crate::objects::SphereUnion;
 use crate::studies::prelude::*;
-use crate::studies::whole_body::charts::{answers, charts, picture_of_body};
+use crate::studies::whole_body::charts::{CHARTS, answers, picture_of_body};
 use crate::studies::whole_body::drive::{Drive, Posture, of_scene};
 use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
 use crate::studies::whole_body::plan::*;
@@ -20,6 +20,8 @@ impl Study for WholeBodyPlan {
     };
     const TABLES: TableFiles =
         TableFiles::always(&[&CASES, &RECOGNITION, &SENSED, &TIMING, &STEPS]);
+
+    const CHARTS: &'static [Chart] = CHARTS;
 
     type Spec = WholeBodyStudySpec;
     type Rows = WholeBodyRows;
@@ -144,10 +146,6 @@ impl Study for WholeBodyPlan {
             TIMING.table(&times)?,
             STEPS.table(&steps)?,
         ])
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
     }
 
     fn answers(&self, tables: &[Table]) -> Vec<String> {

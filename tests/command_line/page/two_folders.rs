@@ -90,11 +90,11 @@ fn an_edit_of_any_entry_is_found_whatever_configurations_are_numbered() {
     assert_eq!(rows.n_both, 6);
     let wanted = [
         column("outcome", 4, "2 from right to not finite"),
-        column("error", 4, "2 in the first run alone"),
+        column("error", 4, "2 from 0.25 to nothing"),
     ];
     assert_eq!(changed, wanted);
     let (_, changed) = of_scores(&|row, scored| scored.n_capped = usize::from(row == 2));
-    assert_eq!(changed, [column("n_capped", 5, "")]);
+    assert_eq!(changed, [column("n_capped", 5, "by 1")]);
     // A setting that does not apply is a different setting.
     let (rows, _) = of_scores(&|row, scored| scored.c = (row < 2).then_some(1.0));
     let wanted = ComparedTable {

@@ -164,10 +164,10 @@ fn the_answer_names_the_best_the_frugal_and_each_effect() {
     // Configuration 4 is the best (0.76); the configuration at 16:1 is within its interval.
     made.summary[5].1.accuracy = 0.74;
     let sentences = answers_of(&made);
-    let frugal = "Within the interval of the best, with the fewest measurements … compression 16:1 … m = 256";
+    let frugal = "Within the interval of the best, for the least measurements a decision … compression 16:1 … m = 256";
     assert!(contains(&sentences[0], frugal), "{sentences:?}");
     assert!(
-        sentences[1].starts_with("Best accuracy 0.76 ["),
+        sentences[1].starts_with("Best accuracy: 0.76 ["),
         "{sentences:?}"
     );
     let best = [
@@ -200,7 +200,7 @@ fn each_condition_has_a_best_of_its_own_and_one_answer_to_fewest_measurements() 
     ] {
         let best = format!("Best accuracy with noise {noise} %: {best}");
         let frugal = format!(
-            "Within the interval of the best with noise {noise} %, with the fewest measurements: {frugal}"
+            "Within the interval of the best with noise {noise} %, for the least measurements a decision: {frugal}"
         );
         says(&said, &[best, frugal]);
     }

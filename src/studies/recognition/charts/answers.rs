@@ -1,6 +1,6 @@
 //! Findings of a recognition study as sentences, derived from its tables.
 
-use crate::report::advice::{Candidate, Candidates};
+use crate::report::advice::Candidates;
 use crate::report::csv_tables::{CAPPED_FITS, LIMITS_FILE, MISSED_TOUCHES};
 use crate::report::study_folder::words_of;
 use crate::report::terminal::paragraph;
@@ -12,7 +12,7 @@ use crate::studies::recognition::tables::table_files::{
 };
 use crate::table::{Table, Value, short_number};
 
-/// Maximum number of values that a sentence lists; also the maximum number of conditions for which sentences are written.
+/// Maximum number of values that a sentence lists.
 const MAX_LISTED: usize = 8;
 
 /// Returns the findings of a study as sentences: best and cheapest configurations under each condition, effects of settings, and remarks.
@@ -24,8 +24,10 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
     let mut sentences = match change_words(configurations, breaking.clone()) {
         Some(sentences) => sentences,
         None => {
-            let bests = bests(configurations).unwrap_or_default();
-            bests.into_iter().chain(breaking).collect()
+            let columns = ("accuracy", "measurements_per_decision");
+            let best = Candidates::of_columns(configurations, columns.0, columns.1);
+            let best = best.map_or_else(Vec::new, |best| best.sentences());
+            best.into_iter().chain(breaking).collect()
         }
     };
     let best = best_row(configurations).map(|row| configurations.number("accuracy", row));
@@ -115,53 +117,6 @@ pub(super) fn limits(tables: &[Table]) -> Vec<(&str, String)> {
 fn limit_words(tables: &[Table], limit: &str) -> Option<String> {
     let mut limits = limits(tables).into_iter();
     limits.find_map(|(name, words)| (name == limit).then_some(words))
-}
-
-/// Returns sentences on the best configuration for each condition, which is a combination of external settings such as noise. If there are many conditions,
-/// only the first ones have sentences.
-fn bests(configurations: &Table) -> Option<Vec<String>> {
-    let (accuracy, _) = configurations.column("accuracy")?;
-    let (measurements, _) = configurations.column("measurements_per_decision")?;
-    let offers = Candidates::of_columns(configurations, accuracy, measurements);
-    let conditions = offers.by_condition();
-    let listed = conditions.iter().take(MAX_LISTED);
-    let mut sentences: Vec<String> = listed
-        .filter_map(|choices| best(&offers, choices))
-        .flatten()
-        .collect();
-    if conditions.len() > MAX_LISTED {
-        let n = conditions.len() - MAX_LISTED;
-        sentences.push(format!(
-            "The best of {n} more conditions are in the tables."
-        ));
-    }
-    Some(sentences)
-}
-
-/// Returns sentences on two configurations: the one with the fewest measurements within the confidence interval of the best, and the most accurate one.
-fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
-    let [best, as_good] = offers.best_and_as_good(choices)?;
-    let accuracy = |offer: &Candidate| offers.table.bounded(offers.value, offer.row);
-    if offers.table.n_rows == 1 {
-        return Some(vec![format!("Accuracy {}.", accuracy(&best))]);
-    }
-    let (with, colon) = match &offers.condition(&best)[..] {
-        "" => (String::new(), ""),
-        words => (format!(" with {words}"), ":"),
-    };
-    let said = |offer: &Candidate| match &offers.choices(offer)[..] {
-        "" => accuracy(offer),
-        words => format!("{} at {words}", accuracy(offer)),
-    };
-    let mut sentences = vec![format!("Best accuracy{with}{colon} {}.", said(&best))];
-    if as_good != best {
-        let as_good = said(&as_good);
-        let cheapest = format!(
-            "Within the interval of the best{with}, with the fewest measurements: {as_good}."
-        );
-        sentences.insert(0, cheapest);
-    }
-    Some(sentences)
 }
 
 /// Returns the accuracy of an answer that is always the same object, if objects have unequal numbers of test rows; `None` if they are about equal.

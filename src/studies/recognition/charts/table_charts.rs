@@ -75,11 +75,8 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
 /// Returns a horizontal line at the chance level of the accuracy. If configurations differ in it, the line has one level per configuration.
 fn chance(configurations: &Table, confusion: Option<&Table>) -> Option<Rule> {
     if configurations.numbers(CHANCE).is_some() {
-        return Some(Rule {
-            along: Along::Y,
-            at: At::Column(CHANCE.to_owned()),
-            words: "chance of each configuration".to_owned(),
-        });
+        let words = "chance of each configuration";
+        return Some(Rule::constant(Along::Y, At::Column(CHANCE), words));
     }
     let confusion = confusion?;
     let first = confusion.number("configuration", 0);
@@ -249,17 +246,16 @@ fn change_chart(configurations: &Table, chart: &ChartSpec) -> Option<ChartSpec> 
     let accuracy = |row: usize| configurations.number("accuracy", row);
     let [low, high] = configurations.interval(configurations.column("accuracy")?.0, base)?;
     let words = format!("unchanged, {:.2}, and its 95 % interval", accuracy(base));
-    let rule = |at: f64, words: &str| Rule::at(Along::X, at, words);
-    let mut rules: Vec<Rule> = [accuracy(base), low, high]
-        .map(|at| rule(at, &words))
-        .into();
+    let unchanged = |at: f64| Rule::at(Along::X, at, words.clone());
+    let mut rules: Vec<Rule> = [accuracy(base), low, high].map(unchanged).into();
     if let Some(&Rule {
         at: At::Value(chance),
         ..
     }) = chart.rules.first()
     {
         let half = 0.5 * (chance + accuracy(base));
-        rules.push(rule(half, "half of the accuracy above chance is lost"));
+        let words = "half of the accuracy above chance is lost";
+        rules.push(Rule::at(Along::X, half, words));
     }
     Some(ChartSpec {
         name: "accuracy_by_change".to_owned(),
@@ -419,9 +415,7 @@ fn time_charts(configurations: &Table, chart: &ChartSpec, pareto: Option<bool>) 
     ];
     let n_costs = 1 + usize::from(is_asked(n_groups(&["classifier"])));
     let charts = costs.into_iter().take(n_costs).filter_map(|(name, what, x)| {
-        let accuracy = configurations.column("accuracy")?.0;
-        let cost = configurations.column(x)?.0;
-        let best = Candidates::of_columns(configurations, accuracy, cost).as_good_words(&rows);
+        let best = Candidates::of_columns(configurations, "accuracy", x)?.as_good_words(&rows);
         Some(ChartSpec {
             name: format!("pareto_{name}"),
             title: format!("Accuracy against the time {what}: {best}, within the interval of the best"),
@@ -472,9 +466,7 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
             words.join(", ")
         ),
         shown: confusion.shown("configuration", row).into_iter().collect(),
-        mark: Mark::Tiles {
-            fill: "count".to_owned(),
-        },
+        mark: Mark::Tiles { fill: "count" },
         ..confusion.chart("confusion", "Confusion matrix", ("object", "predicted"))
     })
 }
