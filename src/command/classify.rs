@@ -4,6 +4,7 @@ use crate::command::options::classifier_parameters::ParameterOptions;
 use crate::command::options::study_args::set_threads;
 use crate::command::options::unused::check_used;
 use crate::command::terminal::streams::say;
+use bubbletouch::engine::program::PROGRAM;
 use bubbletouch::files::check_single_output;
 use bubbletouch::quantile::quantile;
 use bubbletouch::random::Seed;
@@ -227,20 +228,6 @@ pub fn classify(args: &Args) -> Result<()> {
     }
 }
 
-/// Values that `bubbletouch classify --model` prints; in JSON, one key per field.
-#[derive(Serialize)]
-struct Applied {
-    program: &'static str,
-    classifier: ClassifierKind,
-    n_rows: usize,
-    n_measurements: usize,
-    /// Number of correct predictions; `None` without labels.
-    n_correct: Option<usize>,
-    accuracy: Option<f64>,
-    /// Time of each repetition to predict all rows, including scaling, s.
-    predict_s: Vec<f64>,
-}
-
 impl Args {
     /// Applies a trained classifier to the rows of the folder.
     fn apply(&self, model: &Path) -> Result<()> {
@@ -264,28 +251,27 @@ impl Args {
         let n_correct = labels
             .as_ref()
             .map(|labels| labels.iter().zip(&predicted).filter(is_correct).count());
-        let n_rows = predicted.len();
-        let applied = Applied {
-            program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")),
-            classifier: model.kind,
-            n_rows,
-            n_measurements: features.ncols(),
-            n_correct,
-            accuracy: n_correct.map(|n| n as f64 / n_rows as f64),
-            predict_s,
-        };
+        let (n_rows, n_measurements) = (predicted.len(), features.ncols());
+        let accuracy = n_correct.map(|n| n as f64 / n_rows as f64);
         if self.json {
-            return say(serde_json::to_string(&applied).expect("numbers have a JSON form"));
+            // Without labels, the accuracy is null.
+            return say(serde_json::json!({
+                "program": PROGRAM,
+                "classifier": model.kind,
+                "n_rows": n_rows,
+                "n_measurements": n_measurements,
+                "n_correct": n_correct,
+                "accuracy": accuracy,
+                "predict_s": predict_s,
+            }));
         }
-        let mut lines = vec![(
-            "rows",
-            format!("{n_rows}, {} measurements each", features.ncols()),
-        )];
-        if let (Some(n_correct), Some(accuracy)) = (n_correct, applied.accuracy) {
+        let rows = format!("{n_rows}, {n_measurements} measurements each");
+        let mut lines = vec![("rows", rows)];
+        if let (Some(n_correct), Some(accuracy)) = (n_correct, accuracy) {
             let found = format!("{accuracy:.4}: {n_correct} of {n_rows}");
             lines.push(("accuracy", found));
         }
-        let predict_s = quantile(&mut applied.predict_s.clone(), 0.5);
+        let predict_s = quantile(&mut predict_s, 0.5);
         lines.push(("testing", testing_time(predict_s, n_rows)));
         say_lines(&lines)
     }
@@ -329,7 +315,7 @@ impl Args {
         let (interval, n_test_groups) =
             interval_of([n_correct, n_test], tested.as_slice(), CONFIDENCE)?;
         let findings = Findings {
-            program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")),
+            program: PROGRAM,
             classifier: kind,
             multiclass: is_svm.then_some(classifier.multiclass),
             scaling: self.scaling,
@@ -397,6 +383,7 @@ impl Args {
         Ok(())
     }
 
+    /// Returns the classifier with the values of the options.
     fn classifier(&self, kind: ClassifierKind) -> Result<Classifier> {
         let usual = self.parameters.applied_to(Classifier::new(kind))?;
         Ok(Classifier {

@@ -67,8 +67,7 @@ impl Stage {
 /// Progress bar on a terminal: one line with the current stage and the number of finished work items.
 struct Bar {
     bar: ProgressBar,
-    /// Numbers of finished and of all work items of the run.
-    items: Mutex<(usize, usize)>,
+    clock: Mutex<RunClock>,
 }
 
 impl Bar {
@@ -78,12 +77,12 @@ impl Bar {
         let style = style.with_key("left", write_left);
         Self {
             bar: ProgressBar::with_draw_target(Some(0), target).with_style(style),
-            items: Mutex::default(),
+            clock: Mutex::new(RunClock::start(0)),
         }
     }
 
-    fn items(&self) -> MutexGuard<'_, (usize, usize)> {
-        self.items.lock().unwrap_or_else(PoisonError::into_inner)
+    fn clock(&self) -> MutexGuard<'_, RunClock> {
+        self.clock.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -100,13 +99,13 @@ impl Progress for Bar {
     }
 
     fn expect(&self, n_items: usize) {
-        *self.items() = (0, n_items);
+        *self.clock() = RunClock::start(n_items);
     }
 
     fn item_finished(&self) {
-        let mut items = self.items();
-        items.0 += 1;
-        let (done, all) = *items;
+        let mut clock = self.clock();
+        clock.item_finished();
+        let (done, all) = clock.counts();
         self.bar
             .set_message(format!("; {done} of {all} work items"));
     }
@@ -306,9 +305,7 @@ impl RunClock {
         match (n_pending, self.n_finished) {
             (0, _) => Some(0.0),
             (_, 0) => None,
-            (n_pending, n_finished) => {
-                Some(self.elapsed_s(now) * n_pending as f64 / n_finished as f64)
-            }
+            (_, n_finished) => Some(self.elapsed_s(now) * n_pending as f64 / n_finished as f64),
         }
     }
 }

@@ -81,9 +81,13 @@ impl Table {
             }
             _ => column.tick(number),
         };
+        let unit = match column.number_words(value).rsplit_once(' ') {
+            Some((_, unit)) if unit == column.unit => format!(" {unit}"),
+            _ => String::new(),
+        };
         match interval {
             _ if value.is_nan() => self.words(&column.name, row),
-            Some([low, high]) => format!("{} [{}, {}]", said(value), said(low), said(high)),
+            Some([low, high]) => format!("{} [{}, {}]{unit}", said(value), said(low), said(high)),
             None if is_share => said(value),
             None => column.number_words(value),
         }

@@ -21,7 +21,7 @@ pub struct Answer {
 /// # Errors
 /// If no condition has advice; returns the error of the first condition.
 pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Vec<Answer>> {
-    let conditions = offers.conditions();
+    let conditions = offers.all_conditions();
     let n = conditions.len();
     if worst && n > 1 {
         let (choices, n_left_out) = offers.worst()?;

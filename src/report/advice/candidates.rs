@@ -129,14 +129,12 @@ impl<'a> Candidates<'a> {
                 ));
             }
         }
-        match kept.is_empty() {
-            true => {
-                let given = format!("no {} and {}", self.value.words, self.cost.words);
-                let allowed = "at least one choice whose value and costs are known";
-                Err(Error::input(self.table.file, given, allowed))
-            }
-            false => Ok(kept),
+        if kept.is_empty() {
+            let given = format!("no {} and {}", self.value.words, self.cost.words);
+            let allowed = "at least one choice whose value and costs are known";
+            return Err(Error::input(self.table.file, given, allowed));
         }
+        Ok(kept)
     }
 
     /// Creates candidates from all rows of a table, given the names of its value column and its cost column; `None` without such columns.
@@ -172,19 +170,29 @@ impl<'a> Candidates<'a> {
     /// Returns the candidates in one group per condition, in the order in which the conditions first occur in the table. A condition in which no row has both
     /// a value and a cost is omitted.
     pub fn by_condition(&self) -> Vec<Vec<Candidate>> {
-        let conditions = self.conditions().into_iter();
+        self.by_condition_of(&self.rows)
+    }
+
+    /// Returns the candidates among the given rows as [`Candidates::by_condition`] does.
+    pub(crate) fn by_condition_of(&self, rows: &[usize]) -> Vec<Vec<Candidate>> {
+        let conditions = self.conditions(rows).into_iter();
         let candidates = conditions.map(|(_, candidates)| candidates);
         candidates.filter(|of_one| !of_one.is_empty()).collect()
     }
 
-    /// Returns each condition as text, with its candidates.
-    pub(crate) fn conditions(&self) -> Vec<(String, Vec<Candidate>)> {
-        let conditions = self.swept.by_condition(&self.rows).into_iter();
+    /// Returns each condition of the given rows as text, with its candidates.
+    fn conditions(&self, rows: &[usize]) -> Vec<(String, Vec<Candidate>)> {
+        let conditions = self.swept.by_condition(rows).into_iter();
         let candidates = |rows: Vec<usize>| {
             let candidates = rows.iter().filter_map(|&row| self.candidate(row));
             (self.swept.condition_words(rows[0]), candidates.collect())
         };
         conditions.map(candidates).collect()
+    }
+
+    /// Returns each condition as text, with its candidates.
+    pub(crate) fn all_conditions(&self) -> Vec<(String, Vec<Candidate>)> {
+        self.conditions(&self.rows)
     }
 
     /// Returns, for each choice, a candidate that has the worst value and the highest cost over all conditions, and the number of choices that are left out,
@@ -196,7 +204,7 @@ impl<'a> Candidates<'a> {
         let choices = Setting::groups(&self.swept.free_choices(), self.table, &self.rows);
         let mut within: HashMap<usize, Candidate> = HashMap::new();
         let mut counts = Vec::new();
-        for (condition, candidates) in self.conditions() {
+        for (condition, candidates) in self.all_conditions() {
             let kept = self.within_limits(&candidates);
             let kept = kept.map_err(|error| error.under(format!("with {condition}: ")))?;
             counts.push((kept.len(), condition));
@@ -204,20 +212,12 @@ impl<'a> Candidates<'a> {
         }
         let worse = |a: Candidate, b: Candidate| Candidate {
             cost: a.cost.max(b.cost),
-            ..if self.is_better(a.value, b.value) {
-                b
-            } else {
-                a
-            }
+            ..[a, b][usize::from(self.is_better(a.value, b.value))]
         };
         let worst = choices.iter().filter_map(|rows| {
-            let measured: Vec<&Candidate> = rows.iter().filter_map(|row| within.get(row)).collect();
-            let is_everywhere = measured.len() == counts.len();
-            measured
-                .into_iter()
-                .copied()
-                .reduce(worse)
-                .filter(|_| is_everywhere)
+            let measured = rows.iter().filter_map(|row| within.get(row)).copied();
+            let is_everywhere = measured.clone().count() == counts.len();
+            measured.reduce(worse).filter(|_| is_everywhere)
         });
         let worst: Vec<Candidate> = worst.collect();
         let n_conditions = counts.len();
@@ -291,10 +291,8 @@ impl<'a> Candidates<'a> {
     /// Returns the Pareto front, cheapest first: each candidate on the front is better than all candidates of equal or lower cost. Among equal candidates, only
     /// the first is returned.
     pub fn front(&self, candidates: &[Candidate]) -> Vec<Candidate> {
-        let points: Vec<(f64, f64)> = candidates
-            .iter()
-            .map(|candidate| (candidate.cost, candidate.value))
-            .collect();
+        let points = candidates.iter().map(|one| (one.cost, one.value));
+        let points: Vec<(f64, f64)> = points.collect();
         let is_on = front(&points, |a, b| self.is_better(a, b));
         let on = candidates.iter().zip(is_on).filter(|(_, is_on)| *is_on);
         let mut front: Vec<Candidate> = on.map(|(candidate, _)| *candidate).collect();
@@ -317,13 +315,9 @@ impl<'a> Candidates<'a> {
     /// Returns, for conditions of the given rows, the cheapest candidate within the interval of the best as text, such as `0.98 in 34 µs (noise 10 %)`. If
     /// there are more than three conditions, only the first and the last are named.
     pub(crate) fn as_good_words(&self, rows: &[usize]) -> String {
-        let mut conditions = self.by_condition();
-        conditions.retain(|of_one| rows.contains(&of_one[0].row));
+        let mut conditions = self.by_condition_of(rows);
         if conditions.len() > 3 {
-            conditions = vec![
-                conditions.swap_remove(0),
-                conditions.remove(conditions.len() - 1),
-            ];
+            conditions.drain(1..conditions.len() - 1);
         }
         let is_one = conditions.len() == 1;
         let said = conditions.iter().filter_map(|of_one| {
@@ -340,7 +334,7 @@ impl<'a> Candidates<'a> {
     }
 
     fn is_less_better(&self) -> bool {
-        self.value.role == Role::Value(Better::Less)
+        matches!(self.value.role, Role::Value(Better::Less) | Role::Cost)
     }
 
     fn is_better(&self, a: f64, b: f64) -> bool {

@@ -84,7 +84,8 @@ impl Chart {
         groups.iter().map(|rows| self.spec(table, rows)).collect()
     }
 
-    fn spec(&self, table: &Table, rows: &[usize]) -> ChartSpec {
+    /// Returns the specification of the chart for one combination of the values of the columns `each`, which the given rows have.
+    pub fn spec(&self, table: &Table, rows: &[usize]) -> ChartSpec {
         let filled = |text: &str, words: &dyn Fn(&Setting) -> String| {
             Setting::all(table).fold(text.to_owned(), |text, one| {
                 let place = format!("{{{}}}", one.column.name);

@@ -1,8 +1,9 @@
 //! Pareto front of a chart's points. Each panel has one front per condition of the world, because a designer cannot choose the condition.
 
 use super::view::{Place, View};
+use crate::report::advice::Candidates;
 use crate::report::swept::{Setting, Swept, without};
-use crate::table::{Better, Role, front};
+use crate::table::{Better, Role};
 use std::collections::HashMap;
 
 /// Pareto fronts of a chart: the points that no other point under the same condition surpasses in both axes.
@@ -32,28 +33,25 @@ pub(super) fn words(view: &View) -> String {
 
 impl<'a> Front<'a> {
     /// Computes the Pareto fronts of a chart; the result is empty if the chart has none.
-    pub fn new(view: &'a View) -> Self {
-        let conditions = Setting::of_roles(view.table, &[Role::Condition]);
-        let conditions: Vec<Setting> = conditions.collect();
-        let more = is_more_better(view);
-        let mut fronts = Vec::new();
-        let panels = (0..view.panels.names.len()).filter(|_| view.spec.front);
-        for panel in panels {
-            let here = view.here(panel);
-            let places: HashMap<usize, &Place> =
-                here.clone().map(|place| (place.row, place)).collect();
-            let rows: Vec<usize> = here.map(|place| place.row).collect();
-            for group in Setting::groups(&conditions, view.table, &rows) {
-                let group = group.iter().map(|row| places[row]);
-                // The mapping of values to positions is monotonic, so positions replace values here.
-                let points: Vec<(f64, f64)> = group.clone().map(|p| (p.x, p.y)).collect();
-                let is_on = front(&points, |a, b| if more { a > b } else { a < b });
-                let on = group.zip(is_on).filter(|(_, is_on)| *is_on);
-                let mut on: Vec<&Place> = on.map(|(place, _)| place).collect();
-                on.sort_by(|a, b| a.x.total_cmp(&b.x));
-                fronts.push((panel, on));
-            }
-        }
+    pub fn new(view: &'a View<'a>) -> Self {
+        let candidates = Candidates::of_columns(view.table, &view.spec.y, &view.spec.x);
+        let of_panel = |candidates: &Candidates, panel: usize| {
+            let places = view.here(panel).map(|place| (place.row, place));
+            let places: HashMap<usize, &Place> = places.collect();
+            let rows: Vec<usize> = view.here(panel).map(|place| place.row).collect();
+            let conditions = candidates.by_condition_of(&rows).into_iter();
+            let fronts = conditions.map(|of_one| {
+                let front = candidates.front(&of_one).into_iter();
+                (panel, front.map(|one| places[&one.row]).collect())
+            });
+            fronts.collect::<Vec<_>>()
+        };
+        let fronts = candidates.filter(|_| view.spec.front).map(|candidates| {
+            let panels = 0..view.panels.names.len();
+            panels
+                .flat_map(|panel| of_panel(&candidates, panel))
+                .collect()
+        });
         let Swept {
             free,
             one_at_a_time,
@@ -65,7 +63,7 @@ impl<'a> Front<'a> {
             view,
             settings: without(&free, &shown.collect::<Vec<_>>()),
             one_at_a_time,
-            fronts,
+            fronts: fronts.unwrap_or_default(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Tables of a page, as HTML. Each cell shows a rounded value with its unit and also contains the exact value from the file.
 
 use crate::report::pictures::drawing::escape;
+use crate::report::swept::{Setting, constant_phrases};
 use crate::table::{Better, Column, Data, Role, Table};
 
 /// Number of rows that the page shows of a table if the table is too large to be shown completely.
@@ -50,11 +51,8 @@ pub(crate) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
     let names = table.columns.iter().map(|column| &column.name[..]);
     let names = escape(&names.collect::<Vec<_>>().join(","));
     let heads: String = shown.iter().map(|one| one.head(first.as_ref())).collect();
-    let once = shown
-        .iter()
-        .filter(|one| one.is_said_once() && one.column.role != Role::Note);
-    let once = once.filter_map(|one| Some(one.column.phrase(&table.data[one.held[0]].value(0)?)));
-    let once = match &once.collect::<Vec<_>>().join(", ")[..] {
+    let is_once = |_: &Setting| table.n_rows > 1;
+    let once = match &constant_phrases(table, &table.all_rows(), is_once).join(", ")[..] {
         "" => String::new(),
         words => format!("<p class=\"quiet\">All rows: {}.</p>", escape(words)),
     };

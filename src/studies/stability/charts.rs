@@ -146,7 +146,7 @@ pub(super) const CHARTS: &[Chart] = &[
     Chart {
         table: METHODS.name(),
         name: "stability_{scene}_time",
-        title: "Right results against time, {scene}: {best}",
+        title: "Right of the same scenes against time, {scene}: {best}",
         each: &["part"],
         x: "median_s",
         y: "n_right",

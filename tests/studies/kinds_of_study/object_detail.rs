@@ -115,7 +115,7 @@ fn a_mesh_that_cannot_be_packed_is_named_with_what_it_lacks() {
 fn detail_tables_obey_their_laws() {
     let case = case(DETAIL);
     let (said, _) = case.succeeds("run study.toml --out 1");
-    says(&said, &["Best deflection error: ", "method packing"]);
+    says(&said, &["Best deflection error: ", "model packing"]);
     let configurations: Vec<DetailConfiguration> = case.rows("1/object_detail.csv");
     let scores: Vec<DetailScore> = case.rows("1/object_detail.csv");
     assert_eq!(configurations.len(), 2 * (1 + 1 + 3 + 3 + 3));

@@ -4,20 +4,66 @@
 //! setting with the most values. Lines and panels show the settings with the next most values; in a tie, texts come before numbers. Each combination of the
 //! remaining settings has its own chart. If a setting applies only to some values of another setting, one line represents a pair of their values.
 
-use crate::report::advice::Candidates;
+use crate::report::chart::Chart;
 use crate::report::pictures::colours::LINES;
 use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
 use crate::studies::recognition::tables::chance::ChanceLevels;
 use crate::studies::recognition::tables::robustness::{LOG_RATIO, ROBUSTNESS, breaks};
 use crate::studies::recognition::tables::table_files::{
-    CHANCE, CHANGED, CHANGED_TO, CONFIGURATIONS, OVER_FOLDS, OVER_TRIAL, SELECTED_TAXELS,
-    UNCHANGED, filled, note_of_groups,
+    CHANCE, CHANGED, CHANGED_TO, CONFIGURATIONS, CONFUSION, OVER_FOLDS, OVER_TRIAL,
+    SELECTED_TAXELS, UNCHANGED, filled, note_of_groups,
 };
 use crate::table::{
     Along, At, ChartSpec, Column, Dot, Mark, Role, Rule, Scale, Shown, Table, Value,
 };
 use std::cmp::Reverse;
+
+/// Charts of accuracy against the time of a decision, and against the time to train.
+const TIMES: [Chart; 2] = [
+    Chart {
+        name: "pareto_prediction",
+        title: "Accuracy against the time of a decision: {best}, within the interval of the best",
+        x: "predict_us_per_decision",
+        ..TIME
+    },
+    Chart {
+        name: "pareto_training",
+        title: "Accuracy against the time to train: {best}, within the interval of the best",
+        x: "fit_s",
+        ..TIME
+    },
+];
+
+const TIME: Chart = Chart {
+    table: CONFIGURATIONS,
+    note: "Times are means of the trials on this machine; one of training is of all training touches, one of a decision has its touches measured.",
+    y: "accuracy",
+    ..Chart::FRONT
+};
+
+/// Chart of the confusions between objects in one configuration.
+const CONFUSIONS: Chart = Chart {
+    table: CONFUSION.name(),
+    name: "confusion",
+    title: "Confusion matrix",
+    each: &["configuration"],
+    x: "predicted",
+    y: "object",
+    mark: Mark::Tiles { fill: "count" },
+    ..Chart::LINES
+};
+
+/// Chart of the positions of the selected taxels.
+const PLACES: Chart = Chart {
+    table: SELECTED_TAXELS,
+    name: "selected_taxels",
+    title: "Selected taxels",
+    x: "x_mm",
+    y: "y_mm",
+    mark: Mark::Points,
+    ..Chart::LINES
+};
 
 /// Maximum number of charts of selected taxels; further combinations of settings are only in the table.
 const MAX_PLACES: usize = 4;
@@ -58,7 +104,7 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     if 2 * n_broken <= all.len() {
         charts.splice(0..0, change_chart(configurations, &chart));
     }
-    let mut others: Vec<ChartSpec> = time_charts(configurations, &chart, pareto);
+    let mut others: Vec<ChartSpec> = time_charts(configurations, pareto);
     let first = others.len().min(1);
     charts.splice(
         charts.len().min(1)..charts.len().min(1),
@@ -386,7 +432,7 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
 /// Returns charts of accuracy against the time of a decision and, if classifiers are compared, against training time. Each value of the first condition has a
 /// panel. Colours show the classifier or, if there is one, the choice on whose values the mean accuracy depends most. If conditions vary one at a time, the
 /// charts have the first value of each.
-fn time_charts(configurations: &Table, chart: &ChartSpec, pareto: Option<bool>) -> Vec<ChartSpec> {
+fn time_charts(configurations: &Table, pareto: Option<bool>) -> Vec<ChartSpec> {
     let mut rows = configurations.all_rows();
     let mut alone = Swept::of(configurations).one_at_a_time;
     alone.retain(|one| one.column.role == Role::Condition);
@@ -409,27 +455,12 @@ fn time_charts(configurations: &Table, chart: &ChartSpec, pareto: Option<bool>) 
     let classifier = of(Role::Choice).find(|one| one.column.name == "classifier");
     let few = of(Role::Choice).filter(|one| one.levels(&rows).len() <= LINES.len());
     let lines = classifier.or_else(|| few.max_by(|a, b| spread(a).total_cmp(&spread(b))));
-    let costs = [
-        ("prediction", "of a decision", "predict_us_per_decision"),
-        ("training", "to train", "fit_s"),
-    ];
     let n_costs = 1 + usize::from(is_asked(n_groups(&["classifier"])));
-    let charts = costs.into_iter().take(n_costs).filter_map(|(name, what, x)| {
-        let best = Candidates::of_columns(configurations, "accuracy", x)?.as_good_words(&rows);
-        Some(ChartSpec {
-            name: format!("pareto_{name}"),
-            title: format!("Accuracy against the time {what}: {best}, within the interval of the best"),
-            note: "Times are means of the trials on this machine; one of training is of all training touches, one of a decision has its touches measured."
-                .to_owned(),
-            shown: alone.iter().map(first_value).collect(),
-            x: x.to_owned(),
-            lines: lines.map(name_of).into_iter().collect(),
-            panels: of(Role::Condition).next().map(name_of),
-            mark: Mark::Points,
-            rules: Vec::new(),
-            front: true,
-            ..chart.clone()
-        })
+    let charts = TIMES.iter().take(n_costs).map(|chart| ChartSpec {
+        shown: alone.iter().map(first_value).collect(),
+        lines: lines.map(name_of).into_iter().collect(),
+        panels: of(Role::Condition).next().map(name_of),
+        ..chart.spec(configurations, &rows)
     });
     charts.collect()
 }
@@ -465,9 +496,7 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
             "Rows: touched object; columns: recognised object; all trials together. Most accurate configuration ({}).",
             words.join(", ")
         ),
-        shown: confusion.shown("configuration", row).into_iter().collect(),
-        mark: Mark::Tiles { fill: "count" },
-        ..confusion.chart("confusion", "Confusion matrix", ("object", "predicted"))
+        ..CONFUSIONS.spec(confusion, &[row])
     })
 }
 
@@ -488,9 +517,8 @@ fn selected_charts(selected: &Table) -> Vec<ChartSpec> {
     let chart = ChartSpec {
         lines: method.as_ref().map(name_of).into_iter().collect(),
         panels: condition.as_ref().map(name_of),
-        mark: Mark::Points,
         square: true,
-        ..selected.chart("selected_taxels", "Selected taxels", ("y_mm", "x_mm"))
+        ..PLACES.spec(selected, &rows)
     };
     let charts = for_each(selected, &rows, &fixed, chart);
     charts.take(MAX_PLACES).collect()

@@ -47,7 +47,8 @@ pub(crate) const OVER_TRIAL: &str =
 /// Note for studies with folds but without held-out groups: the test rows from which the intervals in `summary.csv` are computed.
 pub(crate) const OVER_FOLDS: &str =
     "Intervals are 95 % Wilson intervals at the test decisions of all folds, each touch once.";
-const CONFUSION: File<Confusion> = File::new("confusion.csv", "Confusion matrix", "").summary();
+pub(crate) const CONFUSION: File<Confusion> =
+    File::new("confusion.csv", "Confusion matrix", "").summary();
 const COMPARISON: File<Comparison> = File::new(
     "comparison.csv",
     "Configurations against the best of their condition",
