@@ -1,6 +1,6 @@
 //! `bubbletouch advise`: recommends a setting that meets a requirement.
 
-use crate::command::terminal::streams::say;
+use crate::command::terminal::say;
 use bubbletouch::report::advice::{
     Advice, AdviceQuery, Answer, Candidates, Requirement, answers, answers_json,
 };

@@ -1,9 +1,9 @@
 //! `bubbletouch audit`: checks whether recorded frames with labels can carry a claim about recognition.
 
+use crate::command::options::recorded_args::{RecordedArgs, range};
 use crate::command::options::study_args::set_threads;
 use crate::command::program;
-use crate::command::terminal::output::terminal_width;
-use crate::command::terminal::streams::{say, write_out};
+use crate::command::terminal::{say, terminal_width, write_out};
 use bubbletouch::audit::{
     AUDIT_FILES, AuditFiles, AuditOptions, audit as audited, audit_files, audit_text, has_fault,
 };
@@ -45,31 +45,12 @@ pub struct Args {
     /// Without times, the order in the file is taken as the order in time.
     #[arg(long, value_name = "FILE", help_heading = "Input")]
     times: Option<PathBuf>,
-    /// Name the axes of the frames [default: "n y x" or "n t y x"]
-    ///
-    /// One letter for each axis: n touches, t frames, y rows, x columns, c taxels.
-    #[arg(long, value_name = "ORDER", help_heading = "Input")]
-    order: Option<String>,
-    /// Take these columns of a table as readings, such as "taxel_*"
-    ///
-    /// Names or patterns, separated by commas: * stands for any text, # for a number.
-    #[arg(long, value_name = "NAMES", help_heading = "Input")]
-    columns: Option<String>,
-    /// Set rows and columns of frames that are flat lists
-    #[arg(long, value_name = "ROWS,COLUMNS", value_parser = super::calibrate::grid, help_heading = "Input")]
-    grid: Option<[usize; 2]>,
-    /// Set the reading at full scale [default: find a plateau]
-    #[arg(
-        long,
-        value_name = "READING",
-        allow_negative_numbers = true,
-        help_heading = "Input"
-    )]
-    full_scale: Option<f64>,
+    #[command(flatten)]
+    recorded: RecordedArgs,
     /// Take these frames of each touch as before contact
     ///
     /// Frames are counted from 0. The range excludes its end. If the class can be read from them, this is a fault.
-    #[arg(long, value_name = "FROM..TO", value_parser = super::calibrate::range::<usize>, help_heading = "Claim")]
+    #[arg(long, value_name = "FROM..TO", value_parser = range::<usize>, help_heading = "Claim")]
     before_contact: Option<Range<usize>>,
     /// Name the taxels that nothing touches, such as 0,5,10..14
     ///
@@ -131,10 +112,10 @@ pub fn audit(args: &Args, words: &[OsString]) -> Result<u8> {
         given: RecordedSpec {
             labels: args.labels.clone().unwrap_or_default(),
             groups: args.groups.clone(),
-            order: args.order.clone(),
-            columns: args.columns.clone(),
-            grid: args.grid,
-            full_scale: args.full_scale,
+            order: args.recorded.order.clone(),
+            columns: args.recorded.columns.clone(),
+            grid: args.recorded.grid,
+            full_scale: args.recorded.full_scale,
             ..RecordedSpec::default()
         },
         sessions: args.sessions.clone(),
@@ -174,9 +155,7 @@ pub fn audit(args: &Args, words: &[OsString]) -> Result<u8> {
 fn taxels(text: &str) -> std::result::Result<Range<usize>, String> {
     match text.trim().parse() {
         Ok(taxel) => Ok(taxel..taxel + 1),
-        Err(_) => {
-            super::calibrate::range(text).map_err(|_| "numbers of taxels, or FROM..TO".to_owned())
-        }
+        Err(_) => range(text).map_err(|_| "numbers of taxels, or FROM..TO".to_owned()),
     }
 }
 

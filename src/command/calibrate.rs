@@ -1,15 +1,15 @@
 //! `bubbletouch calibrate`: estimates the signal chain of a skin from recorded frames.
 
-use crate::command::terminal::output::check_ending;
-use crate::command::terminal::streams::{note, write_out};
+use crate::command::options::recorded_args::{RecordedArgs, range};
+use crate::command::terminal::{check_ending, note, write_out};
 use bubbletouch::calibration::{NotIdentifiable, calibrate as estimated};
 use bubbletouch::files::write_bytes;
 use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames};
 use bubbletouch::{Error, Result};
 use bubbletouch_sim::text::spelling::counted;
+use bubbletouch_sim::text::spelling::counted;
 use std::ops::Range;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 /// Estimate a sensor's noise and errors from recorded frames
 ///
@@ -24,19 +24,8 @@ pub struct Args {
     ///
     /// The shape is n × rows × columns or n × F × rows × columns.
     frames: PathBuf,
-    /// Name the axes of the frames [default: "n y x" or "n t y x"]
-    ///
-    /// One letter for each axis: n touches, t frames, y rows, x columns, c taxels.
-    #[arg(long, value_name = "ORDER", help_heading = "Input")]
-    order: Option<String>,
-    /// Take these columns of a table as readings, such as "taxel_*"
-    ///
-    /// Names or patterns, separated by commas: * stands for any text, # for a number.
-    #[arg(long, value_name = "NAMES", help_heading = "Input")]
-    columns: Option<String>,
-    /// Set rows and columns of frames that are flat lists
-    #[arg(long, value_name = "ROWS,COLUMNS", value_parser = grid, help_heading = "Input")]
-    grid: Option<[usize; 2]>,
+    #[command(flatten)]
+    recorded: RecordedArgs,
     /// Read frames of the untouched skin, from the same session
     #[arg(
         long,
@@ -73,14 +62,6 @@ pub struct Args {
         help_heading = "Sensor"
     )]
     zero: Option<f64>,
-    /// Set the reading at full scale [default: the largest reading]
-    #[arg(
-        long,
-        value_name = "READING",
-        allow_negative_numbers = true,
-        help_heading = "Sensor"
-    )]
-    full_scale: Option<f64>,
     /// Set the deflection at full scale
     #[arg(long, value_name = "MM", help_heading = "Sensor")]
     stroke_mm: Option<f64>,
@@ -110,9 +91,9 @@ pub fn calibrate(args: &Args) -> Result<()> {
     }
     let files = RecordedSkinFiles {
         frames: args.frames.clone(),
-        order: args.order.clone(),
-        columns: args.columns.clone(),
-        grid: args.grid,
+        order: args.recorded.order.clone(),
+        columns: args.recorded.columns.clone(),
+        grid: args.recorded.grid,
         untouched: match &args.untouched {
             Some(path) if args.untouched_times.is_empty() => {
                 let given = format!("{} without --untouched-times", path.display());
@@ -128,13 +109,15 @@ pub fn calibrate(args: &Args) -> Result<()> {
         },
         forces: args.forces.clone(),
         zero: args.zero,
-        full_scale: args.full_scale,
+        full_scale: args.recorded.full_scale,
         stroke_mm: args.stroke_mm,
     };
     let (skin, zero) = files.read()?;
     let mut found =
         estimated(&skin).map_err(|error| error.under(format!("{}: ", args.frames.display())))?;
-    if args.full_scale.is_none() && found.converter.as_ref().is_ok_and(|bits| bits.value > 0.0) {
+    if args.recorded.full_scale.is_none()
+        && found.converter.as_ref().is_ok_and(|bits| bits.value > 0.0)
+    {
         let why = "the full scale of the converter is not given (--full-scale)";
         found.converter = Err(NotIdentifiable::from(why));
     }
@@ -160,26 +143,5 @@ pub fn calibrate(args: &Args) -> Result<()> {
             ));
             Ok(())
         }
-    }
-}
-
-/// `ROWS,COLUMNS`.
-pub fn grid(text: &str) -> std::result::Result<[usize; 2], String> {
-    let sides = text.split_once([',', 'x', '×']);
-    let sides = sides.map(|(rows, columns)| (rows.trim().parse(), columns.trim().parse()));
-    match sides {
-        Some((Ok(rows), Ok(columns))) => Ok([rows, columns]),
-        _ => Err("ROWS,COLUMNS in whole numbers".to_owned()),
-    }
-}
-
-/// `FROM..TO`.
-pub fn range<T: FromStr>(text: &str) -> std::result::Result<Range<T>, String> {
-    let ends = text
-        .split_once("..")
-        .map(|(from, to)| (from.trim().parse(), to.trim().parse()));
-    match ends {
-        Some((Ok(from), Ok(to))) => Ok(from..to),
-        _ => Err("FROM..TO in numbers".to_owned()),
     }
 }

@@ -3,7 +3,7 @@
 use crate::command::options::classifier_parameters::ParameterOptions;
 use crate::command::options::study_args::set_threads;
 use crate::command::options::unused::check_used;
-use crate::command::terminal::streams::say;
+use crate::command::terminal::say;
 use bubbletouch::engine::program::PROGRAM;
 use bubbletouch::files::check_single_output;
 use bubbletouch::quantile::quantile;

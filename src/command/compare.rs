@@ -1,7 +1,6 @@
 //! `bubbletouch compare`: compares two result folders.
 
-use crate::command::terminal::output::{check_ending, terminal_width};
-use crate::command::terminal::streams::{say, write_out};
+use crate::command::terminal::{check_ending, say, terminal_width, write_out};
 use bubbletouch::files::{CsvFile, check_output, write_bytes};
 use bubbletouch::report::comparison::compared::Comparison;
 use bubbletouch::report::comparison::differences::differences;
@@ -50,7 +49,7 @@ pub fn compare(args: &Args) -> Result<()> {
         found => found.map_err(|error| error.under(place))?,
     };
     let names = [&first_name[..], &second_name];
-    let comparison = Comparison::new([&first, &second], names, (found, ranks))?;
+    let comparison = Comparison::new([&first, &second], (found, ranks))?;
     let mut outputs = args.out.iter().chain(&args.html);
     outputs.try_for_each(|path| check_output(path))?;
     if let Some(out) = &args.out {

@@ -1,7 +1,7 @@
 //! `bubbletouch features`: writes the feature rows with which a configuration of a study is trained and tested.
 
 use crate::command::options::study_args::StudyArgs;
-use crate::command::terminal::output::output_folder;
+use crate::command::terminal::output_folder;
 use bubbletouch::Result;
 use bubbletouch::files::DataFolder;
 use bubbletouch::kinds::recognition::load_study;

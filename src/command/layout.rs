@@ -1,6 +1,6 @@
 //! `bubbletouch layout`: describes a layout file, draws it, and writes it in another format.
 
-use crate::command::terminal::streams::{note, say};
+use crate::command::terminal::{note, say};
 use bubbletouch::Result;
 use bubbletouch::geometry::Aabb;
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutFormat, LayoutOptions};
@@ -83,36 +83,25 @@ fn describe(file: &LayoutFile) -> Result<()> {
         size.y,
         size.z
     ))?;
-    match &file.radii {
+    say(match &file.radii {
         Some(radii) => {
-            let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
-            let largest = radii.iter().copied().fold(0.0, f64::max);
+            let least = 1e3 * radii.iter().copied().fold(f64::INFINITY, f64::min);
+            let largest = 1e3 * radii.iter().copied().fold(0.0, f64::max);
             match least == largest {
-                true => say(format_args!("radius {:.3} mm", 1e3 * least))?,
-                false => say(format_args!(
-                    "radii {:.3} to {:.3} mm",
-                    1e3 * least,
-                    1e3 * largest
-                ))?,
+                true => format!("radius {least:.3} mm"),
+                false => format!("radii {least:.3} to {largest:.3} mm"),
             }
         }
         None => {
             let radius = 1e3 * file.default_radius();
-            say(format_args!(
-                "no radii; by default {radius:.3} mm, half the distance between neighbours"
-            ))?;
+            format!("no radii; by default {radius:.3} mm, half the distance between neighbours")
         }
-    }
+    })?;
     match (layout.sides(), file.image()) {
         (Some([rows, columns]), _) => say(format_args!("image of {rows} × {columns} pixels"))?,
         (None, Some(pixels)) => {
-            let [rows, columns] = [0, 1].map(|side| {
-                pixels
-                    .iter()
-                    .map(|pixel| pixel[side] + 1)
-                    .max()
-                    .unwrap_or_default()
-            });
+            let sides = [0, 1].map(|side| pixels.iter().map(move |pixel| pixel[side] + 1));
+            let [rows, columns] = sides.map(|side| side.max().unwrap_or_default());
             say(format_args!(
                 "image of {rows} × {columns} pixels, of which {} are taxels",
                 pixels.len()

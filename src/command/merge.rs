@@ -1,7 +1,7 @@
 //! `bubbletouch merge`: combines the results of the shards of a study.
 
 use crate::command::options::study_run::{RunArgs, StudyRun};
-use crate::command::terminal::output::output_folder;
+use crate::command::terminal::output_folder;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::work_items::{Part, RunOptions};
 use bubbletouch::{Error, Result};

@@ -95,7 +95,7 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
     let name = name.unwrap_or_default().to_string_lossy().into_owned();
     *PROGRAM.lock().unwrap_or_else(PoisonError::into_inner) = name;
     dispatch(&arguments).unwrap_or_else(|error| {
-        terminal::streams::note(format_args!("error: {error}"));
+        terminal::note(format_args!("error: {error}"));
         error.exit_code()
     })
 }
@@ -107,7 +107,7 @@ fn dispatch(arguments: &[OsString]) -> Result<u8> {
         Ok(line) => line,
         // Handles --help and --version.
         Err(asked) if !asked.use_stderr() => {
-            return terminal::streams::written(asked.print()).map(|()| 0);
+            return terminal::written(asked.print()).map(|()| 0);
         }
         Err(wrong) => {
             let _ = wrong.print();

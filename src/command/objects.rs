@@ -2,8 +2,7 @@
 
 use crate::command::options::unused::check_used;
 use crate::command::options::which_object::{WhichObject, catalogue};
-use crate::command::terminal::output::check_ending;
-use crate::command::terminal::streams::say;
+use crate::command::terminal::{check_ending, say};
 use crate::inputs::units::MM;
 use bubbletouch::Result;
 use bubbletouch::files::{write_bytes, write_whole};

@@ -1,8 +1,7 @@
 //! `bubbletouch plan`: prints the size of a study without running it.
 
-use crate::command::options::memory_limit::MemoryLimit;
-use crate::command::options::study_args::StudyArgs;
-use crate::command::terminal::streams::say;
+use crate::command::options::study_args::{MemoryLimit, StudyArgs};
+use crate::command::terminal::say;
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::report::progress::RunClock;
 

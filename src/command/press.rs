@@ -3,8 +3,7 @@
 use super::classify::word;
 use crate::command::options::unused::check_used;
 use crate::command::options::which_object::catalogue;
-use crate::command::terminal::output::{check_ending, terminal_width};
-use crate::command::terminal::streams::{note, say, write_out};
+use crate::command::terminal::{check_ending, note, say, terminal_width, write_out};
 use crate::inputs::units::MM;
 use crate::numbers_csv::NumberTable;
 use bubbletouch::contact::{Contact, Press, Until, Workspace};

@@ -2,8 +2,7 @@
 
 use super::classify::word;
 use crate::command::options::unused::check_used;
-use crate::command::terminal::output::{check_ending, terminal_width};
-use crate::command::terminal::streams::{note, write_out};
+use crate::command::terminal::{check_ending, note, terminal_width, write_out};
 use bubbletouch::files::write_bytes;
 use bubbletouch::objects::Model;
 use bubbletouch::report::pressure_map::pressure_text;

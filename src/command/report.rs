@@ -3,7 +3,7 @@
 use super::classify::word;
 use crate::command::options::results_folder::{checked_manifest, load_study};
 use crate::command::program;
-use crate::command::terminal::streams::{note, say};
+use crate::command::terminal::{note, say};
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::shell_line::shell_line;

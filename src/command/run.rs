@@ -2,9 +2,7 @@
 
 use crate::command::options::study_args::QUICKSTART_FILE;
 use crate::command::options::study_run::{RunArgs, StudyRun};
-use crate::command::terminal::output::output_folder;
-use crate::command::terminal::signals::keep_journal_on_signals;
-use crate::command::terminal::streams::say;
+use crate::command::terminal::{keep_journal_on_signals, output_folder, say};
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal, rename_old_results};

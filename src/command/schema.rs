@@ -1,6 +1,6 @@
 //! `bubbletouch schema`: JSON Schemas of study and scene files.
 
-use super::terminal::streams::say;
+use crate::command::terminal::say;
 use bubbletouch::Result;
 use bubbletouch::schema::{scene_schema, study_schema};
 use clap::ValueEnum;

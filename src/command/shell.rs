@@ -1,7 +1,6 @@
 //! `bubbletouch completions` and `bubbletouch man`: write shell completions and manual pages.
 
-use crate::command::terminal::output::output_folder;
-use crate::command::terminal::streams::{say, write_out};
+use crate::command::terminal::{output_folder, say, write_out};
 use bubbletouch::files::write_bytes;
 use bubbletouch::{Error, Result};
 use clap::Command;

@@ -1,7 +1,6 @@
 //! `bubbletouch simulate`: simulates a scene file and writes its folder of results.
 
-use crate::command::terminal::output::output_folder;
-use crate::command::terminal::streams::{note, say, write_out};
+use crate::command::terminal::{note, output_folder, say, write_out};
 use bubbletouch::Result;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::report::scene_files::{SceneFiles, scene_table};

@@ -1,8 +1,7 @@
 //! `bubbletouch slurm`: submits the shards of a study as an array of cluster jobs, followed by a job that merges them.
 
 use crate::command::options::study_run::ResultsArgs;
-use crate::command::terminal::output::output_folder;
-use crate::command::terminal::streams::{note, say};
+use crate::command::terminal::{note, output_folder, say};
 use bubbletouch::files::write_bytes;
 use bubbletouch::kinds::{self, AnyStudy};
 use bubbletouch::shell_line::shell_line;

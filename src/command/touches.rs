@@ -1,7 +1,7 @@
 //! `bubbletouch touches`: writes the touches of a study as a data set.
 
 use crate::command::options::study_args::StudyArgs;
-use crate::command::terminal::output::output_folder;
+use crate::command::terminal::output_folder;
 use bubbletouch::files::DataFolder;
 use bubbletouch::inputs::content_hash::identity;
 use bubbletouch::kinds::recognition::{load_study, read_plans, touch_content};

@@ -1,10 +1,9 @@
 //! `bubbletouch verify`: checks that a result folder can be reproduced.
 
-use crate::command::options::memory_limit::MemoryLimit;
 use crate::command::options::results_folder::{check_page, checked_manifest, load_study};
-use crate::command::options::study_args::set_threads;
+use crate::command::options::study_args::{MemoryLimit, set_threads};
 use crate::command::program;
-use crate::command::terminal::streams::say;
+use crate::command::terminal::say;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::shell_line::shell_line;
 use bubbletouch::study::provenance::{MANIFEST_FILE, SOURCE};

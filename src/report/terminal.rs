@@ -1,6 +1,6 @@
 //! Text output on the terminal: tables that fit the width of the terminal.
 
-use crate::report::pictures::colours::Rgb;
+use crate::report::pictures::Rgb;
 use crate::report::swept::{Setting, Swept, constant_phrases, without};
 use crate::report::text_width::break_lines;
 use crate::table::{Better, Role, Table, Value};

@@ -75,7 +75,7 @@ impl Bootstrap {
             }
         };
         means.sort_unstable_by(f64::total_cmp);
-        let tail = tail(n, confidence)?;
+        let tail = tail(n, confidence);
         Ok(Some(Interval {
             low: of_sorted(&means, tail),
             high: of_sorted(&means, 1.0 - tail),
@@ -129,10 +129,10 @@ fn means_of_blocks(scores: ArrayView2<f64>, rows: &[u32], columns: &[u32]) -> Ve
 }
 
 /// Returns the fraction of the sorted resampled means that is excluded at each end of the confidence interval; `n` is the number of trials.
-fn tail(n: usize, confidence: f64) -> Result<f64> {
+fn tail(n: usize, confidence: f64) -> f64 {
     let n = n as f64;
-    let t = student(n - 1.0)?.inverse_cdf(0.5 + 0.5 * confidence);
-    Ok(Normal::standard().cdf(-(n / (n - 1.0)).sqrt() * t))
+    let t = student(n - 1.0).inverse_cdf(0.5 + 0.5 * confidence);
+    Normal::standard().cdf(-(n / (n - 1.0)).sqrt() * t)
 }
 
 #[cfg(test)]

@@ -69,7 +69,7 @@ pub fn compare(
         variance: (1.0 / n + overlap(sizes)) * variance,
         freedom: n - 1.0,
     };
-    estimate.test(n_trials, confidence).map(Some)
+    Ok(Some(estimate.test(n_trials, confidence)))
 }
 
 /// Tests whether the scores of two configurations differ, if their trials combine every split with every projection. Splits are the rows of `a` and `b`,
@@ -117,7 +117,7 @@ pub fn compare_crossed(
         let fewest = (n_splits - 1.0).min(n_projections - 1.0);
         estimate.freedom = part(estimate.variance, parts).max(fewest);
     }
-    estimate.test(a.len(), confidence).map(Some)
+    Ok(Some(estimate.test(a.len(), confidence)))
 }
 
 /// Threshold of a difference between two configurations, in standard deviations over trials; above it, nearly all trials agree on the sign.
@@ -138,21 +138,16 @@ const MAX_TRIALS: usize = 1000;
 pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usize>> {
     check(&[], &[], sizes)?;
     check_confidence(confidence)?;
-    let is_enough = |n_trials: usize| -> Result<bool> {
+    let is_enough = |&n_trials: &usize| {
         let n = n_trials as f64;
-        let quantile = student(n - 1.0)?.inverse_cdf(0.5 + 0.5 * confidence);
-        Ok(quantile * (1.0 / n + overlap(sizes)).sqrt() <= AGREED)
+        let quantile = student(n - 1.0).inverse_cdf(0.5 + 0.5 * confidence);
+        quantile * (1.0 / n + overlap(sizes)).sqrt() <= AGREED
     };
     // If the maximum is too few, every smaller number is too few.
-    if !is_enough(MAX_TRIALS)? {
-        return Ok(None);
-    }
-    for n_trials in 2..MAX_TRIALS {
-        if is_enough(n_trials)? {
-            return Ok(Some(n_trials));
-        }
-    }
-    Ok(Some(MAX_TRIALS))
+    Ok(match is_enough(&MAX_TRIALS) {
+        true => (2..=MAX_TRIALS).find(is_enough),
+        false => None,
+    })
 }
 
 /// Returns the ratio of test rows to training rows, averaged over trials; the ratio corrects the variance for shared touches.
@@ -183,11 +178,11 @@ struct Estimate {
 }
 
 impl Estimate {
-    fn test(&self, n_trials: usize, confidence: f64) -> Result<Comparison> {
+    fn test(&self, n_trials: usize, confidence: f64) -> Comparison {
         let (mean, error) = (self.mean, self.variance.sqrt());
-        let student = student(self.freedom)?;
+        let student = student(self.freedom);
         let half_width = student.inverse_cdf(0.5 + 0.5 * confidence) * error;
-        Ok(Comparison {
+        Comparison {
             mean_difference: mean,
             interval: Interval {
                 low: mean - half_width,
@@ -195,14 +190,16 @@ impl Estimate {
             },
             p_value: (2.0 * student.sf((mean / error).abs())).min(1.0),
             n_trials,
-        })
+        }
     }
 }
 
 /// Returns Student's t distribution with the given degrees of freedom.
-pub(super) fn student(freedom: f64) -> Result<StudentsT> {
-    StudentsT::new(0.0, 1.0, freedom)
-        .map_err(|error| Error::input("comparison", error, "at least two trials are needed"))
+///
+/// # Panics
+/// If the degrees of freedom are not positive, as for a single trial.
+pub(super) fn student(freedom: f64) -> StudentsT {
+    StudentsT::new(0.0, 1.0, freedom).expect("at least two trials")
 }
 
 fn check(a: &[f64], b: &[f64], sizes: &[TrialSize]) -> Result<()> {
@@ -302,7 +299,7 @@ mod tests {
             .unwrap()
             .unwrap();
         let error = ((1.0 / 4.0 + 1.0 / 3.0) / (12.0 * 400.0_f64)).sqrt();
-        let expected = 2.0 * student(3.0).unwrap().sf(0.05 / error);
+        let expected = 2.0 * student(3.0).sf(0.05 / error);
         assert!((test.p_value - expected).abs() < 1e-9, "{}", test.p_value);
     }
 

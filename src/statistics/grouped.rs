@@ -26,10 +26,11 @@
 //!
 //! Several tests may split one set of touches, so a group can be tested several times. The number n counts the rows of each group once.
 
+use crate::statistics::comparison::student;
 use crate::{Error, Result};
 use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::ContinuousCDF;
 use std::collections::BTreeMap;
 
 /// Minimum number of groups for an informative interval. With four groups, the 95 % quantile of Student's t is 3.2, whereas the normal quantile is 2.
@@ -104,14 +105,15 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
         n_rows,
         n_groups,
     } = clustered(tests)?;
-    let interval = match student(n_groups) {
-        Some(student) => {
-            Interval::score(share, n_rows, student.inverse_cdf(0.5 + 0.5 * confidence))
-        }
-        None => Interval {
+    let interval = match n_groups {
+        0 | 1 => Interval {
             low: 0.0,
             high: 1.0,
         },
+        _ => {
+            let student = student(n_groups as f64 - 1.0);
+            Interval::score(share, n_rows, student.inverse_cdf(0.5 + 0.5 * confidence))
+        }
     };
     Ok((interval, n_groups))
 }
@@ -124,11 +126,6 @@ struct Clustered {
     n_rows: f64,
     /// Number of distinct groups in all tests.
     n_groups: usize,
-}
-
-/// Returns Student's t distribution with `n_groups` − 1 degrees of freedom; `None` for a single group.
-fn student(n_groups: usize) -> Option<StudentsT> {
-    StudentsT::new(0.0, 1.0, n_groups as f64 - 1.0).ok()
 }
 
 fn clustered(tests: &[GroupedTest]) -> Result<Clustered> {

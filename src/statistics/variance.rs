@@ -56,14 +56,14 @@ pub fn components(scores: ArrayView2<f64>, confidence: f64) -> Result<Components
     let squares = MeanSquares::new(scores)?;
     let (n_rows, n_columns) = scores.dim();
     Ok(Components {
-        rows: squares.effect(squares.rows, (n_rows, n_columns), confidence)?,
-        columns: squares.effect(squares.columns, (n_columns, n_rows), confidence)?,
+        rows: squares.effect(squares.rows, (n_rows, n_columns), confidence),
+        columns: squares.effect(squares.columns, (n_columns, n_rows), confidence),
         rest: Component {
             n_levels: scores.len(),
             degrees_of_freedom: squares.rest_freedom(),
             mean_square: squares.rest,
             estimate: squares.rest,
-            interval: squares.rest_interval(confidence)?,
+            interval: squares.rest_interval(confidence),
             p_value: None,
         },
     })
@@ -126,12 +126,12 @@ impl MeanSquares {
         mean_square: f64,
         (n_levels, n_each): (usize, usize),
         confidence: f64,
-    ) -> Result<Component> {
+    ) -> Component {
         let freedom = (n_levels - 1, self.rest_freedom());
         let n_each = n_each as f64;
-        let interval = difference_interval((mean_square, self.rest), freedom, confidence)?;
-        let f = fisher(freedom)?;
-        Ok(Component {
+        let interval = difference_interval((mean_square, self.rest), freedom, confidence);
+        let f = fisher(freedom);
+        Component {
             n_levels,
             degrees_of_freedom: freedom.0,
             mean_square,
@@ -145,18 +145,18 @@ impl MeanSquares {
                 (true, false) => 0.0,
                 (true, true) => f.sf(mean_square / self.rest),
             }),
-        })
+        }
     }
 
-    fn rest_interval(&self, confidence: f64) -> Result<Interval> {
+    fn rest_interval(&self, confidence: f64) -> Interval {
         let freedom = self.rest_freedom();
-        let chi = chi_squared(freedom)?;
+        let chi = chi_squared(freedom);
         let square = freedom as f64 * self.rest;
         let tail = 0.5 - 0.5 * confidence;
-        Ok(Interval {
+        Interval {
             low: square / chi.inverse_cdf(1.0 - tail),
             high: square / chi.inverse_cdf(tail),
-        })
+        }
     }
 }
 
@@ -166,36 +166,34 @@ fn difference_interval(
     (first, second): (f64, f64),
     freedom: (usize, usize),
     confidence: f64,
-) -> Result<Interval> {
+) -> Interval {
     let tail = 0.5 - 0.5 * confidence;
-    let f = fisher(freedom)?;
+    let f = fisher(freedom);
     // χ² divided by its degrees of freedom: the F distribution with infinitely many denominator degrees of freedom.
-    let far =
-        |n: usize, share: f64| -> Result<f64> { Ok(chi_squared(n)?.inverse_cdf(share) / n as f64) };
-    let g1 = 1.0 - 1.0 / far(freedom.0, 1.0 - tail)?;
-    let g2 = 1.0 - 1.0 / far(freedom.1, 1.0 - tail)?;
-    let h1 = 1.0 / far(freedom.0, tail)? - 1.0;
-    let h2 = 1.0 / far(freedom.1, tail)? - 1.0;
+    let far = |n: usize, share: f64| chi_squared(n).inverse_cdf(share) / n as f64;
+    let g1 = 1.0 - 1.0 / far(freedom.0, 1.0 - tail);
+    let g2 = 1.0 - 1.0 / far(freedom.1, 1.0 - tail);
+    let h1 = 1.0 / far(freedom.0, tail) - 1.0;
+    let h2 = 1.0 / far(freedom.1, tail) - 1.0;
     let (upper, lower) = (f.inverse_cdf(1.0 - tail), f.inverse_cdf(tail));
     let g12 = ((upper - 1.0).powi(2) - (g1 * upper).powi(2) - h2 * h2) / upper;
     let h12 = ((1.0 - lower).powi(2) - (h1 * lower).powi(2) - g2 * g2) / lower;
     let below = (g1 * first).powi(2) + (h2 * second).powi(2) + g12 * first * second;
     let above = (h1 * first).powi(2) + (g2 * second).powi(2) + h12 * first * second;
     let difference = first - second;
-    Ok(Interval {
+    Interval {
         low: difference - below.max(0.0).sqrt(),
         high: difference + above.max(0.0).sqrt(),
-    })
+    }
 }
 
-fn fisher((first, second): (usize, usize)) -> Result<FisherSnedecor> {
-    FisherSnedecor::new(first as f64, second as f64)
-        .map_err(|error| Error::input("variance components", error, "at least 2 × 2 scores"))
+/// Returns the F distribution with the degrees of freedom of two mean squares, which [`MeanSquares::new`] makes positive.
+fn fisher((first, second): (usize, usize)) -> FisherSnedecor {
+    FisherSnedecor::new(first as f64, second as f64).expect("at least 2 × 2 scores")
 }
 
-fn chi_squared(freedom: usize) -> Result<ChiSquared> {
-    ChiSquared::new(freedom as f64)
-        .map_err(|error| Error::input("variance components", error, "at least 2 × 2 scores"))
+fn chi_squared(freedom: usize) -> ChiSquared {
+    ChiSquared::new(freedom as f64).expect("at least 2 × 2 scores")
 }
 
 #[cfg(test)]

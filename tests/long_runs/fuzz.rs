@@ -223,7 +223,7 @@ fn tables_of_results() {
             advice.map(|advice| offers.in_words(&advice.choice)).ok();
         }
         let found = differences(&tables, &read)?;
-        let comparison = Comparison::new([&tables, &read], ["a", "b"], (found, None))?;
+        let comparison = Comparison::new([&tables, &read], (found, None))?;
         comparison.text(80);
         Ok(())
     };

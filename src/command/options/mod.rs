@@ -1,7 +1,7 @@
 //! Options that several subcommands share.
 
 pub(crate) mod classifier_parameters;
-pub(crate) mod memory_limit;
+pub(crate) mod recorded_args;
 pub(crate) mod results_folder;
 pub(crate) mod study_args;
 pub(crate) mod study_run;

@@ -1,6 +1,6 @@
 //! Result folder: checks that its files are those of its run, and reads the study to which they belong.
 
-use crate::command::terminal::output::packings_beside;
+use crate::command::terminal::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};
 use bubbletouch::study::provenance::{Manifest, SOURCE};
 use bubbletouch::study::{file_content, is_built_in};

@@ -1,10 +1,8 @@
 //! Start and end of a run of a study, which the commands `run` and `merge` share.
 
 use crate::command::classify::word;
-use crate::command::options::memory_limit::MemoryLimit;
-use crate::command::options::study_args::StudyArgs;
-use crate::command::terminal::output::terminal_width;
-use crate::command::terminal::streams::{say, write_out};
+use crate::command::options::study_args::{MemoryLimit, StudyArgs};
+use crate::command::terminal::{say, terminal_width, write_out};
 use bubbletouch::kinds::{self, AnyStudy, Outcome, Source};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
 use bubbletouch::report::progress::{json_lines, to_stderr};

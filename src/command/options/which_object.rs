@@ -1,7 +1,7 @@
 //! Object for which a command is run: a mesh file or a built-in object. The object is packed with a progress display.
 
 use crate::command::options::unused::check_used;
-use crate::command::terminal::streams::note;
+use crate::command::terminal::note;
 use bubbletouch::Result;
 use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface};
 use bubbletouch::objects::{Catalogue, SphereUnion};

@@ -38,6 +38,8 @@ pub struct Chart {
     pub rules: &'static [Rule],
     /// Whether the Pareto front of the points is drawn.
     pub front: bool,
+    /// Whether both axes have the same range and length.
+    pub square: bool,
 }
 
 impl Chart {
@@ -57,6 +59,7 @@ impl Chart {
         right: None,
         rules: &[],
         front: false,
+        square: false,
     };
 
     /// Points with their Pareto front, for the fields that a constant leaves out.
@@ -123,6 +126,7 @@ impl Chart {
             right: self.right.map(|(column, word)| Shown::new(column, word)),
             rules: self.rules.to_vec(),
             front: self.front,
+            square: self.square,
             ..table.chart(name, title.replace("{best}", &best), (self.y, self.x))
         }
     }

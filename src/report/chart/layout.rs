@@ -3,8 +3,7 @@
 use super::legend::{Heading, LEFT, LegendEntry, RIGHT};
 use super::scale::{AxisScale, Tick, thin};
 use super::view::View;
-use crate::report::pictures::colours::{GRID, INK, MUTED, PAPER};
-use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::pictures::{Align, Area, Drawing, GRID, INK, MUTED, PAPER, Stroke, TextStyle};
 use crate::report::text_width::{shorten, text_width, wrap};
 
 /// Font size of the labels of axis ticks, pixels.

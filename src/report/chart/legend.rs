@@ -1,7 +1,6 @@
 //! Heading of a chart: title, fixed settings, and the legend.
 
-use crate::report::pictures::colours::{INK, LINES, MUTED};
-use crate::report::pictures::drawing::{Area, Drawing, Stroke, TextStyle};
+use crate::report::pictures::{Area, Drawing, INK, LINES, MUTED, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
 
 /// Left margin of all charts, pixels.

@@ -18,7 +18,7 @@ pub use declared::Chart;
 pub use view::Place;
 
 use crate::error::{Error, Result};
-use crate::report::pictures::drawing::Drawing;
+use crate::report::pictures::Drawing;
 use crate::table::{ChartSpec, Table};
 use view::View;
 

@@ -2,8 +2,7 @@
 
 use super::legend::LegendEntry;
 use super::view::View;
-use crate::report::pictures::colours::MUTED;
-use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
+use crate::report::pictures::{Area, Drawing, MUTED, Point, Stroke};
 use crate::table::{Along, At, Rule};
 
 /// Dash patterns of the reference lines in a chart: length of a dash and of a gap, pixels.

@@ -1,6 +1,6 @@
 //! Axis scale of charts: maps values to fractions of an axis.
 
-use crate::report::pictures::picture_axes::{even_ticks, tick_step};
+use crate::report::pictures::{even_ticks, tick_step};
 use crate::table::{Along, Column, Role, Scale};
 
 /// Fraction of the length of a logarithmic axis that is reserved for the value zero.

@@ -6,8 +6,7 @@ use super::legend::{FRONT, Heading, LEFT, LegendEntry, MARKER_RADIUS, line_strok
 use super::rules;
 use super::view::{Place, View};
 use crate::error::Result;
-use crate::report::pictures::colours::{INK, MUTED, Rgb};
-use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke, TextStyle};
+use crate::report::pictures::{Area, Drawing, INK, MUTED, Point, Rgb, Stroke, TextStyle};
 use crate::report::text_width::{shorten, text_width, wrap};
 
 /// Number of points in a chart above which all markers are small.

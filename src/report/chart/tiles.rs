@@ -4,8 +4,9 @@ use super::layout::Layout;
 use super::legend::LegendEntry;
 use super::view::View;
 use crate::error::Result;
-use crate::report::pictures::colours::{INK, LINES, PAPER, Rgb, text_on, tint};
-use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::pictures::{
+    Align, Area, Drawing, INK, LINES, PAPER, Rgb, Stroke, TextStyle, text_on, tint,
+};
 use crate::report::swept::Setting;
 use crate::report::text_width::text_width;
 use crate::table::{Data, Value};

@@ -2,7 +2,7 @@
 
 use super::scale::AxisScale;
 use crate::error::{Error, Result};
-use crate::report::pictures::drawing::Drawing;
+use crate::report::pictures::Drawing;
 use crate::report::swept::{Setting, constant_phrases};
 use crate::table::{Along, At, ChartSpec, Data, Mark, Scale, Table, Value};
 use std::collections::{HashMap, HashSet};

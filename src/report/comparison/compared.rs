@@ -5,16 +5,37 @@ use super::differences::Difference;
 use super::rank_agreement::RankAgreement;
 use crate::engine::program::PROGRAM;
 use crate::error::Result;
+use crate::report::chart::Chart;
 use crate::report::page::StudyAbout;
 use crate::report::study_folder::Found;
 use crate::report::study_folder::{Beyond, files_with, words_of};
 use crate::spelling::counted;
-use crate::table::{Along, At, ChartSpec, File, Mark, Role, Rule, Shown, Table};
+use crate::table::{Along, At, File, Mark, Role, Rule, Table};
 
 const TABLES: File<ComparedTable> = File::new("tables.csv", "Rows of both runs", "");
 const CHANGES: File<ChangedColumn> = File::new("changes.csv", "Columns that differ", "");
 const VALUES: File<Difference> = File::new("differences.csv", "Values of both runs", "");
 const COSTS: File<Difference> = File::new("costs.csv", "Costs of both runs", "");
+
+/// Chart of a column: values of the second run against values of the first run.
+const CHART: Chart = Chart {
+    table: VALUES.name(),
+    name: "{table}_{column}",
+    title: "{column} in both runs",
+    note: "{note} Up: second. Across: first. Each point is a setting.",
+    each: &["table", "column"],
+    x: "first",
+    y: "second",
+    lines: &["significance"],
+    mark: Mark::Points,
+    square: true,
+    rules: &[Rule::constant(
+        Along::Y,
+        At::Column("first"),
+        "no difference",
+    )],
+    ..Chart::LINES
+};
 
 /// Comparison of two result folders.
 pub struct Comparison {
@@ -23,51 +44,37 @@ pub struct Comparison {
     ranks: Option<RankAgreement>,
     /// Tables of the rows, the changed columns, the values and the costs.
     tables: [Table; 4],
-    charts: Vec<ChartSpec>,
 }
 
 impl Comparison {
-    /// Compares the tables of two result folders with the given names, given their differences of means and the agreement of their rankings.
+    /// Compares the tables of two result folders, given their differences of means and the agreement of their rankings.
     ///
     /// # Errors
     /// If rows cannot be serialised as CSV.
     pub fn new(
         [first, second]: [&[Table]; 2],
-        names: [&str; 2],
         (differences, ranks): (Vec<Difference>, Option<RankAgreement>),
     ) -> Result<Self> {
-        let column = |row: &Difference| {
+        let is_cost = |row: &Difference| {
             let table = second.iter().find(|table| table.file == row.table);
-            table
-                .and_then(|table| table.column(&row.column))
-                .map(|(column, _)| column)
+            let column = table.and_then(|table| table.column(&row.column));
+            column.is_some_and(|(column, _)| column.role == Role::Cost)
         };
-        let is_cost = |row: &Difference| column(row).is_some_and(|one| one.role == Role::Cost);
         let of = |costs: bool| {
             let rows = differences.iter().filter(|row| is_cost(row) == costs);
             most_significant_first(rows.cloned().collect())
         };
-        let values = VALUES.table(&of(false))?;
-        let mut charted: Vec<&Difference> =
-            differences.iter().filter(|row| !is_cost(row)).collect();
-        charted.dedup_by_key(|row| (&row.table, &row.column));
-        let charts = charted.into_iter().map(|row| {
-            let words = column(row).map_or_else(String::new, |column| column.words.to_string());
-            chart(&values, row, &words, names)
-        });
-        let charts = charts.collect();
         let (compared, changed) = changes(first, second);
         let tables = [
             TABLES.table(&compared)?,
             CHANGES.table(&changed)?,
-            values,
+            VALUES.table(&of(false))?,
             COSTS.table(&of(true))?,
         ];
         Ok(Self {
             differences,
             ranks,
             tables,
-            charts,
         })
     }
 
@@ -90,9 +97,10 @@ impl Comparison {
         };
         let note = format!("First: {first}; second: {second}.");
         let tables = self.tables.each_ref();
+        let tables = tables.map(|table| table.clone().noted(&note));
         let found = Found {
-            tables: &tables.map(|table| table.clone().noted(&note)),
-            charts: &self.charts,
+            tables: &tables,
+            charts: &CHART.specs(&tables),
             answers: &self.answers(),
         };
         // The page is the last file.
@@ -110,32 +118,6 @@ impl Comparison {
         }
         answers.extend(self.ranks.iter().flat_map(RankAgreement::words));
         answers
-    }
-}
-
-/// Returns a chart of one column: values of the second run against values of the first run.
-fn chart(
-    values: &Table,
-    Difference { table, column, .. }: &Difference,
-    words: &str,
-    [first, second]: [&str; 2],
-) -> ChartSpec {
-    let name = format!("{}_{column}", table.trim_end_matches(".csv"));
-    ChartSpec {
-        note: format!("Up: {second}. Across: {first}. Each point is a setting of {table}."),
-        shown: vec![
-            Shown::new("table", &table[..]),
-            Shown::new("column", &column[..]),
-        ],
-        lines: vec!["significance".to_owned()],
-        mark: Mark::Points,
-        square: true,
-        rules: vec![Rule::constant(
-            Along::Y,
-            At::Column("first"),
-            "no difference",
-        )],
-        ..values.chart(name, format!("{words} in both runs"), ("second", "first"))
     }
 }
 

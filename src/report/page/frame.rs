@@ -1,6 +1,6 @@
 //! Common parts of all pages: head, question, table of contents, sections and footer.
 
-use crate::report::pictures::drawing::escape;
+use crate::report::pictures::escape;
 use crate::report::study_folder::StudyAbout;
 
 /// JavaScript files of the page. The file `elements.js` comes first, because the other scripts use it.

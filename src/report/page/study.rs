@@ -4,7 +4,7 @@ use super::frame::{Section, definition, figure, html, png_element, sentences_htm
 use super::table::table_html;
 use crate::engine::provenance::Manifest;
 use crate::report::advice::{AdviceQuery, Candidates};
-use crate::report::pictures::drawing::escape;
+use crate::report::pictures::escape;
 use crate::report::study_folder::{Beyond, ChartFormat, Found, NamedPicture, StudyAbout};
 use crate::spelling::counted;
 use crate::table::{ChartSpec, Table, short_number};

@@ -1,6 +1,6 @@
 //! Tables of a page, as HTML. Each cell shows a rounded value with its unit and also contains the exact value from the file.
 
-use crate::report::pictures::drawing::escape;
+use crate::report::pictures::escape;
 use crate::report::swept::{Setting, constant_phrases};
 use crate::table::{Better, Column, Data, Role, Table};
 

@@ -4,8 +4,7 @@
 //! powers of ten, but a sweep needs ticks at its own values. Second, the plots number clip paths per process, so that equal tables could give different bytes.
 
 use crate::error::Result;
-use crate::report::pictures::colours::{INK, PAPER, Rgb};
-use crate::report::pictures::picture::{Picture, unfit};
+use crate::report::pictures::{INK, PAPER, Picture, Rgb, unfit};
 use bubbletouch_sim::raster::pixels::darken;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;

@@ -5,10 +5,9 @@ use crate::mesh::Surface;
 use crate::objects::{Solid, SphereUnion};
 use crate::packing::Body;
 use crate::quantile::quantile;
-use crate::report::pictures::colours::{PAINT, diverging};
-use crate::report::pictures::drawing::{Align, Area, Drawing, TextStyle};
-use crate::report::pictures::picture::Picture;
-use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
+use crate::report::pictures::{
+    Align, Area, Drawing, PAINT, Picture, TextStyle, diverging, draw_colours, draw_scale_bar,
+};
 use crate::spelling::counted;
 use crate::table::short_number;
 use bubbletouch_sim::raster::{Canvas, Hit, Lighting, three_quarter_view};

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::files::{write_bytes, write_whole};
-use crate::report::pictures::heat_map::{ColourScale, check_frame};
 use crate::report::pictures::pressure_map::peak_sentence;
+use crate::report::pictures::{ColourScale, check_frame};
 use crate::report::recording::skin_picture::SkinPicture;
 use crate::report::recording::{ForceKind, RecordedPatch};
 use crate::signal::Quantity;

@@ -1,7 +1,7 @@
 //! Heat map of a frame: its colour scale, and the averaging of large frames over blocks of taxels.
 
 use crate::error::{Error, Result};
-use crate::report::pictures::colours::{Rgb, heat};
+use crate::report::pictures::{Rgb, heat};
 use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::{Array2, ArrayView2};

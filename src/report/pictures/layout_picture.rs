@@ -2,9 +2,10 @@
 
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
-use crate::report::pictures::colours::{GRID, INK, LINES, MUTED, PAINT, Rgb, text_on};
-use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
-use crate::report::pictures::picture_axes::{draw_scale_bar, round_up};
+use crate::report::pictures::{
+    Align, Area, Drawing, GRID, INK, LINES, MUTED, PAINT, Point, Rgb, Stroke, TextStyle,
+    draw_scale_bar, round_up, text_on,
+};
 use crate::report::recording::cells::{Cells, typical_spacing, view_from};
 use crate::report::recording::{ForceKind, RecordedPatch};
 use crate::report::text_width::text_width;

@@ -2,10 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::objects::SphereUnion;
-use crate::report::pictures::colours::PAINT;
-use crate::report::pictures::drawing::{Align, Drawing, TextStyle};
 pub use crate::report::pictures::picture::Picture;
-use crate::report::pictures::picture_axes::draw_scale_bar;
+use crate::report::pictures::{Align, Drawing, PAINT, TextStyle, draw_scale_bar};
 use bubbletouch_sim::raster::{Canvas, Lighting, three_quarter_view};
 use glam::DVec2;
 

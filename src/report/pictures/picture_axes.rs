@@ -1,8 +1,8 @@
 //! Axes, colour bars and scale bars of pictures.
 
-use crate::report::pictures::colours::{INK, Rgb, heat};
-use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
-use crate::report::pictures::heat_map::ColourScale;
+use crate::report::pictures::{
+    Align, Area, ColourScale, Drawing, INK, Point, Rgb, Stroke, TextStyle, heat,
+};
 use crate::table::short_number;
 
 /// Side of an area (below, left or right) at which an axis is drawn.

@@ -1,10 +1,7 @@
 //! Pressure map of one frame as text for the terminal.
 
 use crate::error::Result;
-use crate::report::pictures::colours::heat;
-use crate::report::pictures::heat_map::{
-    ColourScale, check_frame, grid_sentence, largest_of_blocks,
-};
+use crate::report::pictures::{ColourScale, check_frame, grid_sentence, heat, largest_of_blocks};
 use crate::report::terminal::Ink;
 use crate::signal::Quantity;
 use crate::table::short_number;

@@ -1,11 +1,10 @@
 //! Picture of several frames side by side with a common colour scale, as in Figure 4 of \[BT\].
 
 use crate::error::{Error, Result};
-use crate::report::pictures::colours::{INK, MUTED};
-use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
-use crate::report::pictures::heat_map::{ColourScale, check_frame, largest_of_blocks};
-use crate::report::pictures::picture::Picture;
-use crate::report::pictures::picture_axes::{Side, draw_colour_bar, draw_map_axis};
+use crate::report::pictures::{
+    Align, Area, ColourScale, Drawing, INK, MUTED, Picture, Side, Stroke, TextStyle, check_frame,
+    draw_colour_bar, draw_map_axis, largest_of_blocks,
+};
 use crate::report::recording::cells::{Cells, whole_pixels};
 use crate::report::text_width::shorten;
 use crate::signal::Quantity;

@@ -8,7 +8,7 @@ use super::skin_picture::{Picture, SkinPicture};
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::objects::Model;
-use crate::report::pictures::heat_map::ColourScale;
+use crate::report::pictures::ColourScale;
 use crate::signal::Quantity;
 use bubbletouch_sim::raster::pixels::changed_rows;
 use png::{BitDepth, BlendOp, ColorType, Encoder, EncodingError};

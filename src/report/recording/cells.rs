@@ -3,11 +3,10 @@
 //! A skin is seen along the mean of its axes or, if there is none, on its broad side. If some taxels face away, the picture also shows the view from behind.
 
 use super::header::RecordedPatch;
-use crate::report::pictures::colours::{GRID, INK, Rgb};
-use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
-use crate::report::pictures::heat_map::{block_sentence, grid_sentence};
-use crate::report::pictures::picture::Picture;
-use crate::report::pictures::picture_axes::{Side, draw_map_axis, draw_scale_bar};
+use crate::report::pictures::{
+    Area, Drawing, GRID, INK, Picture, Point, Rgb, Side, Stroke, block_sentence, draw_map_axis,
+    draw_scale_bar, grid_sentence,
+};
 use crate::world::Grid;
 use bubbletouch_sim::raster::pixels::{CellShape, paint_cells};
 use glam::{DMat3, DVec2, DVec3};

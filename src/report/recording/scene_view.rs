@@ -5,11 +5,9 @@ use super::reader::RecordingFile;
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere};
-use crate::report::pictures::colours::{INK, LINES, PAINT};
-use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
-use crate::report::pictures::heat_map::ColourScale;
-use crate::report::pictures::picture::Picture;
-use crate::report::pictures::picture_axes::{Side, draw_axis};
+use crate::report::pictures::{
+    Area, ColourScale, Drawing, INK, LINES, PAINT, Picture, Point, Side, Stroke, draw_axis,
+};
 use crate::signal::Quantity;
 use bubbletouch_sim::raster::{Canvas, Hit, Lighting, Rgb, three_quarter_view};
 use glam::{DVec2, DVec3};

@@ -3,11 +3,10 @@
 use super::cells::{Cells, LEFT};
 use super::header::RecordedPatch;
 use crate::error::{Error, Result};
-use crate::report::pictures::colours::{INK, MUTED, Rgb};
-use crate::report::pictures::drawing::{Area, Drawing, TextStyle};
-use crate::report::pictures::heat_map::{ColourScale, largest_of_blocks};
 pub use crate::report::pictures::picture::Picture;
-use crate::report::pictures::picture_axes::draw_colour_bar;
+use crate::report::pictures::{
+    Area, ColourScale, Drawing, INK, MUTED, Rgb, TextStyle, draw_colour_bar, largest_of_blocks,
+};
 use crate::report::text_width::text_width;
 use crate::world::Grid;
 use ndarray::ArrayView2;

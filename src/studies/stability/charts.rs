@@ -5,6 +5,7 @@
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
 use crate::report::advice::Candidates;
+use crate::report::swept::Setting;
 use crate::studies::prelude::*;
 use crate::studies::stability::plan::*;
 use crate::studies::stability::rows::*;
@@ -26,6 +27,9 @@ pub(super) const METHODS: File<MethodScore> = File::new(
 /// Number of array sizes from which a part of the study is a series of growing arrays, which has charts of its own.
 const MANY_SIZES: usize = 3;
 
+/// Columns that distinguish the methods of a part.
+const METHOD: [&str; 2] = ["method", "solver_iterations"];
+
 /// Columns that distinguish the scenes of a part.
 const SCENE: [&str; 5] = [
     "stiffness_n_per_m",
@@ -41,29 +45,23 @@ const SCENE: [&str; 5] = [
 /// If a row cannot be written to a table.
 pub(super) fn with_common(mut tables: Vec<Table>) -> Result<Vec<Table>> {
     let (configurations, timing) = (&tables[0], &tables[2]);
-    let (mut scenes, mut methods) = (Vec::new(), Vec::new());
-    for rows in configurations.groups(&["part"], 0..configurations.n_rows.min(timing.n_rows)) {
-        let of_part = scored_methods(configurations, timing, &rows);
-        for (score, of_method) in of_part {
-            methods.push(score);
-            scenes.extend(of_method);
-        }
-    }
+    let parts = configurations.groups(&["part"], 0..configurations.n_rows.min(timing.n_rows));
+    let scenes = parts
+        .iter()
+        .map(|rows| common_scenes(configurations, timing, rows));
+    let scenes: Vec<CommonScene> = scenes.flatten().collect();
+    let is_same = |a: &CommonScene, b: &CommonScene| (a.part, &a.method) == (b.part, &b.method);
+    let methods: Vec<MethodScore> = scenes.chunk_by(is_same).map(score).collect();
     for table in [SCENES.table(&scenes)?, METHODS.table(&methods)?] {
         tables.push(table.with((table.file, table.title), None));
     }
     Ok(tables)
 }
 
-/// Returns the score and the outcomes of each method of a part in its common scenes: the method with the most correct results first, and the faster one first
-/// among equals.
-fn scored_methods(
-    configurations: &Table,
-    timing: &Table,
-    rows: &[usize],
-) -> Vec<(MethodScore, Vec<CommonScene>)> {
+/// Returns the outcomes of each method of a part in the scenes that all its methods have computed, method by method.
+fn common_scenes(configurations: &Table, timing: &Table, rows: &[usize]) -> Vec<CommonScene> {
     let groups = |columns: &[&str]| configurations.groups(columns, rows.iter().copied());
-    let mut by_method = groups(&["method", "solver_iterations"]);
+    let mut by_method = groups(&METHOD);
     let n_scenes = groups(&SCENE).len();
     by_method.retain(|rows| 2 * rows.len() >= n_scenes);
     let compared = by_method.iter().flatten().copied();
@@ -83,62 +81,41 @@ fn scored_methods(
         let order = key(a).partial_cmp(&key(b));
         order.expect("all are numbers")
     });
-    let varies = |column: &str| groups(&[column]).len() > 1;
-    let words = |columns: &[&str], row: usize| {
-        let varying = columns.iter().filter(|column| varies(column));
-        let words = varying.map(|column| configurations.words(column, row));
-        words.collect::<Vec<_>>().join(", ")
+    let varying = |columns: &[&str]| -> Vec<Setting> {
+        let settings = Setting::all(configurations);
+        let settings = settings.filter(|one| columns.contains(&&one.column.name[..]));
+        settings.filter(|one| one.varies(rows)).collect()
     };
-    let mut n_iterations = groups(&["solver_iterations"]);
-    n_iterations.retain(|rows| {
-        configurations
-            .number("solver_iterations", rows[0])
-            .is_finite()
-    });
-    let method_words = |row: usize| {
-        let method = configurations.words("method", row);
-        match &configurations.words("solver_iterations", row)[..] {
-            n if n_iterations.len() > 1 && !n.is_empty() => {
-                format!("{method}, {n} iterations")
-            }
-            _ => method,
-        }
-    };
-    let scene = |row: usize| configurations.word("scene", row).to_owned();
-    let scored = by_method.iter().map(|of_method| {
+    let [method, step, load] = [&METHOD[..], &SCENE[3..], &SCENE[..3]].map(varying);
+    let scenes = by_method.iter().flat_map(|of_method| {
         let own = common
             .iter()
             .filter_map(|rows| rows.iter().find(|row| of_method.contains(row)));
-        let scenes = own.map(|&row| CommonScene {
+        own.map(|&row| CommonScene {
             part: configurations.number("part", row) as usize,
-            scene: scene(row),
-            method: method_words(row),
-            step: words(&SCENE[3..], row),
-            load: words(&SCENE[..3], row),
+            scene: configurations.word("scene", row).to_owned(),
+            method: Setting::short_words(&method, row),
+            step: Setting::short_words(&step, row),
+            load: Setting::short_words(&load, row),
             outcome: configurations.word("outcome", row).to_owned(),
             wall_s: timing.number("wall_s", row),
-        });
-        let scenes: Vec<CommonScene> = scenes.collect();
-        let mut times: Vec<f64> = scenes.iter().map(|scene| scene.wall_s).collect();
-        let score = MethodScore {
-            part: scenes[0].part,
-            scene: scene(rows[0]),
-            method: scenes[0].method.clone(),
-            n_scenes: scenes.len(),
-            n_right: scenes
-                .iter()
-                .filter(|scene| scene.outcome == "right")
-                .count(),
-            median_s: quantile(&mut times, 0.5),
-        };
-        (score, scenes)
+        })
     });
-    let mut scored: Vec<_> = scored.collect();
-    scored.sort_by(|(a, _), (b, _)| {
-        let by_right = b.n_right.cmp(&a.n_right);
-        by_right.then(a.median_s.total_cmp(&b.median_s))
-    });
-    scored
+    scenes.collect()
+}
+
+/// Returns the number of correct results and the median time of a method in its scenes.
+fn score(scenes: &[CommonScene]) -> MethodScore {
+    let mut times: Vec<f64> = scenes.iter().map(|scene| scene.wall_s).collect();
+    let right = scenes.iter().filter(|scene| scene.outcome == "right");
+    MethodScore {
+        part: scenes[0].part,
+        scene: scenes[0].scene.clone(),
+        method: scenes[0].method.clone(),
+        n_scenes: scenes.len(),
+        n_right: right.count(),
+        median_s: quantile(&mut times, 0.5),
+    }
 }
 
 /// Charts of each part of the study in the scenes that all its methods have computed, followed by charts of growing arrays.

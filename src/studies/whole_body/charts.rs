@@ -1,10 +1,9 @@
 //! Charts, answers and the picture of a whole-body study.
 
 use crate::objects::Sphere;
-use crate::report::pictures::colours::{PAINT, Rgb, tint};
-use crate::report::pictures::drawing::{Align, Area, Drawing, TextStyle};
-use crate::report::pictures::picture::Picture;
-use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
+use crate::report::pictures::{
+    Align, Area, Drawing, PAINT, Picture, Rgb, TextStyle, draw_colours, draw_scale_bar, tint,
+};
 use crate::studies::prelude::*;
 use crate::studies::whole_body::plan::*;
 use crate::studies::whole_body::rows::*;

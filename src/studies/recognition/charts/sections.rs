@@ -1,7 +1,7 @@
 //! Page sections that only recognition studies have: settings, and the limits that were reached.
 
 use crate::report::page::{Section, definition, sentences_html};
-use crate::report::pictures::drawing::escape;
+use crate::report::pictures::escape;
 use crate::report::swept::Swept;
 use crate::studies::recognition::charts::answers::limits;
 use crate::studies::recognition::tables::table_files::{CONFIGURATIONS, filled};

@@ -5,7 +5,7 @@
 //! remaining settings has its own chart. If a setting applies only to some values of another setting, one line represents a pair of their values.
 
 use crate::report::chart::Chart;
-use crate::report::pictures::colours::LINES;
+use crate::report::pictures::LINES;
 use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
 use crate::studies::recognition::tables::chance::ChanceLevels;
@@ -62,6 +62,7 @@ const PLACES: Chart = Chart {
     x: "x_mm",
     y: "y_mm",
     mark: Mark::Points,
+    square: true,
     ..Chart::LINES
 };
 
@@ -517,7 +518,6 @@ fn selected_charts(selected: &Table) -> Vec<ChartSpec> {
     let chart = ChartSpec {
         lines: method.as_ref().map(name_of).into_iter().collect(),
         panels: condition.as_ref().map(name_of),
-        square: true,
         ..PLACES.spec(selected, &rows)
     };
     let charts = for_each(selected, &rows, &fixed, chart);

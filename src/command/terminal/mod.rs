@@ -1,5 +1,0 @@
-//! Terminal output of the command, and handling of signals.
-
-pub(crate) mod output;
-pub(crate) mod signals;
-pub(crate) mod streams;
