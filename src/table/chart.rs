@@ -1,6 +1,6 @@
 //! Specification of a chart: its columns, and the type of its marks.
 
-use super::{Column, Table, Value};
+use super::{Table, Value};
 use std::borrow::Cow;
 
 /// Specification of a chart, which is drawn as SVG and PNG; the result page contains the SVG.
@@ -18,8 +18,8 @@ pub struct ChartSpec {
     pub shown: Vec<Shown>,
     /// Name of the column along the x axis; the column defines the scale of the axis.
     pub x: String,
-    /// Description of the x axis; replaces the description of the x column if that column contains several quantities.
-    pub x_is: Option<Column>,
+    /// Whether the x axis is logarithmic, whatever the scale of the column.
+    pub log_x: bool,
     /// Name of the column along the y axis. If the column has an interval, the chart shows a band or error bars.
     pub y: String,
     /// Column whose texts are written above the points; `None` for points without such labels.
@@ -36,9 +36,9 @@ pub struct ChartSpec {
     pub rules: Vec<Rule>,
     /// Markers on the lines that are not rows of the table, such as the place at which an accuracy is halved.
     pub dots: Vec<Dot>,
-    /// Small charts of the same table in groups with a heading each. They share the title, the legend and the y axis of this chart and replace its panels. Empty
-    /// for a chart with panels of its own.
-    pub parts: Vec<(&'static str, Vec<ChartSpec>)>,
+    /// Small charts of the same table. They share the title, the legend and the y axis of this chart and replace its panels. Empty for a chart with panels of
+    /// its own.
+    pub parts: Vec<ChartSpec>,
     /// Whether both axes have the same range and length, as for places on a skin and for two values of one quantity.
     pub square: bool,
     /// Whether the Pareto front of the points is drawn. The x axis is the cost, and the role of the y column defines the better direction.

@@ -30,6 +30,19 @@ impl Table {
         Some(Shown::new(column, self.column(column)?.1.value(row)?))
     }
 
+    /// Returns the rows that pass all filters; numbers are compared with a small tolerance. An empty word selects absent values.
+    pub fn rows_shown(&self, shown: &[Shown]) -> Vec<usize> {
+        let passes = |row: usize, one: &Shown| {
+            let value = self
+                .column(&one.column)
+                .and_then(|(_, data)| data.value(row));
+            value.unwrap_or_else(|| "".into()).agrees(&one.value)
+        };
+        let mut rows = self.all_rows();
+        rows.retain(|&row| shown.iter().all(|one| passes(row, one)));
+        rows
+    }
+
     /// Returns the indices of all rows.
     pub fn all_rows(&self) -> Vec<usize> {
         (0..self.n_rows).collect()

@@ -7,7 +7,7 @@ use crate::table::{ChartSpec, Mark, Rule, Shown, Table};
 /// Chart of a kind of study, as a constant. [`Chart::specs`] returns its specifications for the tables of a study.
 ///
 /// In the texts, the name of a column in braces stands for the column's value in the first drawn row, such as `{noise_std}`. In the title, `{x}` and `{y}` stand
-/// for the names of the axes, and `{best}` for the cheapest value within the interval of the best. In the note, `{note}` stands for the note of the table.
+/// for the names of the axes, `{best}` for the cheapest value within the interval of the best, and `{choice}` for the choice that has it. In the note, `{note}` stands for the note of the table.
 #[derive(Clone, Copy)]
 pub struct Chart {
     /// File name of the table that the chart shows. A study without this table lacks the chart.
@@ -105,7 +105,13 @@ impl Chart {
             true => Candidates::of_columns(table, self.y, self.x),
             false => None,
         };
-        let best = best.map_or_else(String::new, |best| best.as_good_words(rows));
+        let (best, choice) = best.map_or_else(Default::default, |best| {
+            let as_good = best.by_condition_of(rows).into_iter().next();
+            let as_good = as_good.and_then(|of_one| best.best_and_as_good(&of_one));
+            let choice = as_good.map(|[_, cheapest]| best.choices(&cheapest));
+            (best.as_good_words(rows), choice.unwrap_or_default())
+        });
+        let title = title.replace("{best}", &best).replace("{choice}", &choice);
         let note = filled(self.note, &|one| one.label(rows[0]));
         let words = self.shown.iter();
         let words = words.map(|(column, word)| Shown::new(*column, *word));
@@ -127,7 +133,7 @@ impl Chart {
             rules: self.rules.to_vec(),
             front: self.front,
             square: self.square,
-            ..table.chart(name, title.replace("{best}", &best), (self.y, self.x))
+            ..table.chart(name, title, (self.y, self.x))
         }
     }
 }

@@ -63,33 +63,25 @@ fn draw_panels(drawing: &mut Drawing, view: &View, layout: &Layout) {
     }
 }
 
-/// Draws a chart of small charts: the shared heading, and below it the groups. Each small chart has its title and its note above its panel.
+/// Draws a chart of small charts: the shared heading, and below it the small charts, each with its title and its note above its panel.
 fn draw_parts(view: &View) -> Result<Drawing> {
-    let groups = &view.spec.parts;
+    let parts = &view.spec.parts;
     let inner = PARTS_ACROSS as f64 * PART_PITCH.0;
     let settings = wrap(&view.constants(), CAPTION, inner);
     let heading = Heading::new(&view.spec.title, settings, legend(view), inner);
-    let n_rows = |parts: &Vec<_>| parts.len().div_ceil(PARTS_ACROSS) as f64;
-    let rows: f64 = groups.iter().map(|(_, parts)| n_rows(parts)).sum();
-    let below = 20.0 * groups.len() as f64 + PART_PITCH.1 * rows;
+    let below = PART_PITCH.1 * parts.len().div_ceil(PARTS_ACROSS) as f64;
     let mut drawing = Drawing::new(LEFT + inner, heading.height() + below + 10.0);
     heading.draw(&mut drawing);
     let quiet = TextStyle::new(CAPTION as u32).colour(MUTED);
-    let mut top = heading.height();
-    for (title, parts) in groups {
-        drawing.text((LEFT, top + 12.0), title, quiet);
-        top += 20.0;
-        for row in parts.chunks(PARTS_ACROSS) {
-            for (column, part) in row.iter().enumerate() {
-                let view = View::new(part, std::slice::from_ref(view.table))?;
-                let (x, y) = (LEFT + column as f64 * PART_PITCH.0, top + 40.0);
-                let title = shorten(&part.title, 1.12 * CAPTION, PART_PITCH.0 - 10.0);
-                drawing.bold_text((x, y - 23.0), &title, TextStyle::new(CAPTION as u32));
-                drawing.text((x, y - 7.0), &part.note, quiet);
-                draw_panels(&mut drawing, &view, &Layout::of_part(&view, (x, y), PART));
-            }
-            top += PART_PITCH.1;
-        }
+    for (number, part) in parts.iter().enumerate() {
+        let (row, column) = (number / PARTS_ACROSS, number % PARTS_ACROSS);
+        let x = LEFT + column as f64 * PART_PITCH.0;
+        let y = heading.height() + 40.0 + row as f64 * PART_PITCH.1;
+        let view = View::new(part, std::slice::from_ref(view.table))?;
+        let title = shorten(&part.title, 1.12 * CAPTION, PART_PITCH.0 - 10.0);
+        drawing.bold_text((x, y - 23.0), &title, TextStyle::new(CAPTION as u32));
+        drawing.text((x, y - 7.0), &part.note, quiet);
+        draw_panels(&mut drawing, &view, &Layout::of_part(&view, (x, y), PART));
     }
     Ok(drawing)
 }

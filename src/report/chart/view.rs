@@ -98,8 +98,7 @@ impl<'a> View<'a> {
         let (lines, panels) = (groups(&spec.lines)?, groups(spec.panels.as_slice())?);
         let fill = spec.mark.fill().map(column).transpose()?;
         let is_tiles = fill.is_some();
-        let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
-        x.column = spec.x_is.as_ref().unwrap_or(x.column);
+        let (x, y) = (column(&spec.x)?, column(&spec.y)?);
         let y_values = values(&y, &rows, &[]);
         // Equal words have equal positions along x and y, so that matching pairs are on the diagonal.
         let x_values = values(&x, &rows, if is_tiles { &y_values.1 } else { &[] });
@@ -129,7 +128,13 @@ impl<'a> View<'a> {
             || one.column.scale == Scale::Words
         {
             true => AxisScale::of_levels(one.column, (&own.0, &own.1), side),
-            false => AxisScale::new(one.column, all, side),
+            false => {
+                let mut column = one.column.clone();
+                if spec.log_x && side == Along::X {
+                    column.scale = Scale::Log;
+                }
+                AxisScale::new(&column, all, side)
+            }
         };
         let x_scale = scale(&x, &x_values, &along[0], Along::X);
         let is_broken = x_scale.is_words || x.column.has_named_numbers();

@@ -81,17 +81,14 @@ fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
             let column = table.and_then(|table| table.column(name));
             column.map_or_else(String::new, |(column, _)| escape(&column.words))
         };
-        let x = match &chart.x_is {
-            Some(column) => escape(&column.words),
-            None => words(&chart.x),
-        };
         let kind = match chart.mark.fill().is_some() {
             true => "card chart tiles",
             false => "card chart",
         };
         let attributes = format!(
-            "class=\"{kind}\" data-table=\"{}\" data-x=\"{x}\" data-y=\"{}\"",
+            "class=\"{kind}\" data-table=\"{}\" data-x=\"{}\" data-y=\"{}\"",
             escape(chart.table),
+            words(&chart.x),
             words(&chart.y)
         );
         heading + &figure(&attributes, svg, &chart.title)

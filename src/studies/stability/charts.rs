@@ -123,7 +123,7 @@ pub(super) const CHARTS: &[Chart] = &[
     Chart {
         table: METHODS.name(),
         name: "stability_{scene}_time",
-        title: "Right of the same scenes against time, {scene}: {best}",
+        title: "Right of the same scenes, {scene}: {best} with {choice}",
         each: &["part"],
         x: "median_s",
         y: "n_right",
@@ -144,7 +144,7 @@ pub(super) const CHARTS: &[Chart] = &[
     Chart {
         table: JOINTS.name(),
         name: "stability_joints",
-        title: "Taxels on joints by {x}, {dt_s}",
+        title: "Time of a simulated second by {x}, {dt_s}",
         note: "Each taxel carries {load_kg}. {note}",
         each: &["dt_s"],
         x: "joints",

@@ -123,9 +123,7 @@ fn settings_that_break_recognition_are_small_charts_with_their_places_marked() {
     let all = charts(&made, None);
     assert_eq!(all[0].name, "accuracy_by_setting");
     assert!(all.iter().all(|chart| chart.name != "accuracy_by_change"));
-    let [(_, parts)] = &all[0].parts[..] else {
-        panic!("one group: {:?}", all[0].parts);
-    };
+    let parts = &all[0].parts;
     let svg = draw(&all[0], &made).unwrap().svg("");
     for (title, note) in [
         ("noise (%)", "breaks at 15 %"),

@@ -14,9 +14,7 @@ use crate::studies::recognition::tables::table_files::{
     CHANCE, CHANGED, CHANGED_TO, CONFIGURATIONS, CONFUSION, OVER_FOLDS, OVER_TRIAL,
     SELECTED_TAXELS, UNCHANGED, filled, note_of_groups,
 };
-use crate::table::{
-    Along, At, ChartSpec, Column, Dot, Mark, Role, Rule, Scale, Shown, Table, Value,
-};
+use crate::table::{Along, At, ChartSpec, Dot, Mark, Role, Rule, Shown, Table, Value};
 use std::cmp::Reverse;
 
 /// Charts of accuracy against the time of a decision, and against the time to train.
@@ -100,17 +98,19 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     let mut charts = accuracy_charts(configurations, &chart, robustness);
     // If most settings break recognition, the places where they do are the answer; otherwise the losses are.
     let all = charts.iter().flat_map(|chart| &chart.parts);
-    let all: Vec<&ChartSpec> = all.flat_map(|(_, parts)| parts).collect();
+    let all: Vec<&ChartSpec> = all.collect();
     let n_broken = all.iter().filter(|part| !part.dots.is_empty()).count();
     if 2 * n_broken <= all.len() {
         charts.splice(0..0, change_chart(configurations, &chart));
     }
-    let mut others: Vec<ChartSpec> = time_charts(configurations, pareto);
-    let first = others.len().min(1);
-    charts.splice(
-        charts.len().min(1)..charts.len().min(1),
-        others.drain(..first),
+    // Accuracy against time is the second chart.
+    let (mut charts, mut times) = (
+        charts.into_iter(),
+        time_charts(configurations, pareto).into_iter(),
     );
+    let first = charts.next().into_iter().chain(times.next());
+    let mut charts: Vec<ChartSpec> = first.chain(charts).collect();
+    let mut others: Vec<ChartSpec> = times.collect();
     others.extend(confusion.and_then(|table| confusion_chart(configurations, table)));
     others.extend(filled(tables, SELECTED_TAXELS).map_or_else(Vec::new, selected_charts));
     // Charts of accuracies are adjacent, and leave room for the other charts.
@@ -153,15 +153,11 @@ fn accuracy_charts(
     }
     let charts_of = |setting: &Setting| {
         let others = without(&signal, &[*setting]);
-        let is_first = |row: &usize| {
-            let mut others = others.iter();
-            others.all(|other| other.data.key(*row) == other.data.key(0))
-        };
-        let has_value = |row: &usize| setting.data.value(*row).is_some();
-        let rows = all.iter().copied().filter(is_first);
-        let rows: Vec<usize> = rows.filter(has_value).collect();
+        let shown: Vec<Shown> = others.iter().map(first_value).collect();
+        let mut rows = configurations.rows_shown(&shown);
+        rows.retain(|&row| setting.data.value(row).is_some());
         let chart = ChartSpec {
-            shown: others.iter().map(first_value).collect(),
+            shown,
             ..chart.clone()
         };
         charts_along(configurations, &chart, Some(*setting), &rows)
@@ -173,7 +169,7 @@ fn accuracy_charts(
     }
 }
 
-/// Returns a chart of small charts, one for each setting that is changed alone: settings of test touches alone first, and in each group the costliest first.
+/// Returns a chart of small charts, one for each setting that is changed alone, the costliest first.
 /// Their notes and dots show where the designs lose half of their accuracy above chance.
 fn sheet(
     configurations: &Table,
@@ -187,8 +183,8 @@ fn sheet(
         let Some((column, _)) = configurations.column(&part.x) else {
             continue;
         };
-        part.title = column.title().trim_start_matches("test ").to_owned();
-        part.x_is = log_axis(column, configurations.numbers(&part.x).unwrap_or_default());
+        part.title = column.title();
+        part.log_x = is_wide(configurations.numbers(&part.x).unwrap_or_default());
         let breaks = robustness.and_then(|table| breaks(table, column));
         part.note = match breaks.as_deref() {
             None => String::new(),
@@ -216,36 +212,21 @@ fn sheet(
     let lines = parts
         .first()
         .map_or_else(Vec::new, |part| part.lines.clone());
-    let (tests, others) = parts
-        .into_iter()
-        .partition(|part| part.x.starts_with("test_"));
-    let mut groups = vec![
-        ("Only in test touches", tests),
-        ("In training touches", others),
-    ];
-    groups.retain(|(_, parts): &(_, Vec<_>)| !parts.is_empty());
-    if let [(heading, _)] = &mut groups[..] {
-        *heading = "";
-    }
     ChartSpec {
         name: "accuracy_by_setting".to_owned(),
         title: "Accuracy by each setting alone: where it breaks, half of the accuracy above chance is lost".to_owned(),
         x: "configuration".to_owned(),
         lines,
-        parts: groups,
+        parts,
         ..chart.clone()
     }
 }
 
-/// Returns a logarithmic axis for the values of a setting that extend over a large range; `None` for others.
-fn log_axis(column: &Column, values: &[f64]) -> Option<Column> {
+/// Returns whether the values of a setting extend over a large range, which needs a logarithmic axis.
+fn is_wide(values: &[f64]) -> bool {
     let positive = values.iter().copied().filter(|&value| value > 0.0);
     let least = positive.fold(f64::INFINITY, f64::min);
-    let is_wide = values.iter().any(|&value| value >= LOG_RATIO * least);
-    is_wide.then(|| Column {
-        scale: Scale::Log,
-        ..column.clone()
-    })
+    values.iter().any(|&value| value >= LOG_RATIO * least)
 }
 
 /// Rows of a study in which single settings are changed, for the design that is most accurate without a change.
@@ -262,10 +243,8 @@ impl Changes {
     /// Returns the rows of the best design; `None` if the study does not change single settings.
     pub fn new(configurations: &Table) -> Option<Self> {
         let accuracy = |row: usize| configurations.number("accuracy", row);
-        let all = 0..configurations.n_rows;
-        let unchanged = all
-            .clone()
-            .filter(|&row| configurations.word(CHANGED, row) == UNCHANGED);
+        let is_unchanged = |row: &usize| configurations.word(CHANGED, *row) == UNCHANGED;
+        let unchanged = configurations.all_rows().into_iter().filter(is_unchanged);
         let base = unchanged.max_by(|&a, &b| accuracy(a).total_cmp(&accuracy(b)))?;
         let Swept {
             free,
@@ -273,15 +252,10 @@ impl Changes {
             ..
         } = Swept::of(configurations);
         let others = without(&free, &one_at_a_time);
-        let shown = others
-            .iter()
-            .filter_map(|one| configurations.shown(&one.column.name, base));
+        let shown = others.iter();
+        let shown = shown.filter_map(|one| configurations.shown(&one.column.name, base));
         let shown: Vec<Shown> = shown.collect();
-        let is_shown = |row: &usize| {
-            let mut shown = shown.iter();
-            shown.all(|one| configurations.has_setting(&one.column, *row, &one.value))
-        };
-        let drawn = all.filter(is_shown).collect();
+        let drawn = configurations.rows_shown(&shown);
         Some(Self { shown, base, drawn })
     }
 }
@@ -434,10 +408,10 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
 /// panel. Colours show the classifier or, if there is one, the choice on whose values the mean accuracy depends most. If conditions vary one at a time, the
 /// charts have the first value of each.
 fn time_charts(configurations: &Table, pareto: Option<bool>) -> Vec<ChartSpec> {
-    let mut rows = configurations.all_rows();
     let mut alone = Swept::of(configurations).one_at_a_time;
     alone.retain(|one| one.column.role == Role::Condition);
-    rows.retain(|&row| alone.iter().all(|one| one.data.key(row) == one.data.key(0)));
+    let shown: Vec<Shown> = alone.iter().map(first_value).collect();
+    let rows = configurations.rows_shown(&shown);
     let n_groups = |columns: &[&str]| configurations.groups(columns, rows.iter().copied()).len();
     let is_asked = |n: usize| pareto.unwrap_or(n >= MANY);
     if !is_asked(n_groups(&configurations.of_role(Role::Choice))) {
@@ -458,7 +432,7 @@ fn time_charts(configurations: &Table, pareto: Option<bool>) -> Vec<ChartSpec> {
     let lines = classifier.or_else(|| few.max_by(|a, b| spread(a).total_cmp(&spread(b))));
     let n_costs = 1 + usize::from(is_asked(n_groups(&["classifier"])));
     let charts = TIMES.iter().take(n_costs).map(|chart| ChartSpec {
-        shown: alone.iter().map(first_value).collect(),
+        shown: shown.clone(),
         lines: lines.map(name_of).into_iter().collect(),
         panels: of(Role::Condition).next().map(name_of),
         ..chart.spec(configurations, &rows)
@@ -486,8 +460,8 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
         return None;
     }
     let configuration = configurations.number("configuration", best);
-    let mut cells_there = confusion.numbers("configuration")?.iter();
-    let row = cells_there.position(|known| *known == configuration)?;
+    let mut rows = confusion.all_rows().into_iter();
+    let row = rows.find(|&row| confusion.number("configuration", row) == configuration)?;
     let swept = Swept::of(configurations);
     let mut words = vec![swept.condition_words(best), swept.choice_words(best)];
     words.retain(|words| !words.is_empty());
@@ -507,14 +481,11 @@ fn selected_charts(selected: &Table) -> Vec<ChartSpec> {
     let mut rows = selected.all_rows();
     rows.retain(|&row| selected.number("x_mm", row).is_finite());
     let swept = Swept::new(selected, &rows);
-    let of = |wanted: &dyn Fn(&Setting) -> bool| swept.free.iter().find(|one| wanted(one)).copied();
-    let method = of(&|one| one.column.name == "selection");
-    let condition = of(&|one| one.column.role == Role::Condition);
-    let is_fixed = |one: &&Setting| {
-        let mut used = [method, condition].into_iter().flatten();
-        used.all(|used| used.column.name != one.column.name)
-    };
-    let fixed: Vec<Setting> = swept.free.iter().filter(is_fixed).copied().collect();
+    let mut free = swept.free.iter().copied();
+    let method = free.clone().find(|one| one.column.name == "selection");
+    let condition = free.find(|one| one.column.role == Role::Condition);
+    let others = without(&swept.free, method.as_slice());
+    let fixed = without(&others, condition.as_slice());
     let chart = ChartSpec {
         lines: method.as_ref().map(name_of).into_iter().collect(),
         panels: condition.as_ref().map(name_of),
