@@ -3,14 +3,12 @@
 use crate::command::options::study_args::{MemoryLimit, StudyArgs};
 use crate::command::terminal::say;
 use bubbletouch::kinds::AnyStudy;
-use bubbletouch::report::progress::RunClock;
-
-use bubbletouch::study::progress::Progress;
+use bubbletouch::report::progress::{RunState, locked};
 use bubbletouch::study::work_items::RunOptions;
 use bubbletouch::{Error, Result};
 use bubbletouch_sim::text::spelling::duration;
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -67,7 +65,7 @@ pub fn plan(
 /// # Errors
 /// If a work item of the sample fails.
 fn sample(study: Box<dyn AnyStudy>, seconds: f64) -> Result<String> {
-    let sample = Arc::new(Sample::default());
+    let sample = Arc::new(Mutex::new(RunState::default()));
     let (sender, ended) = mpsc::channel();
     let progress = sample.clone();
     thread::spawn(move || {
@@ -87,78 +85,29 @@ fn sample(study: Box<dyn AnyStudy>, seconds: f64) -> Result<String> {
         }
     }
     let n_threads = rayon::current_num_threads();
-    Ok(sample.counts().describe(Instant::now(), seconds, n_threads))
+    Ok(describe(&locked(&sample), seconds, n_threads))
 }
 
-/// Progress listener that counts finished work items and the steps of the current stage.
-#[derive(Default)]
-struct Sample(Mutex<Counts>);
-
-#[derive(Default)]
-struct Counts {
-    clock: Option<RunClock>,
-    stage: String,
-    n_steps: u64,
-    n_done: u64,
-}
-
-impl Sample {
-    fn counts(&self) -> MutexGuard<'_, Counts> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Progress for Sample {
-    fn stage(&self, name: &str, total: u64) {
-        let mut counts = self.counts();
-        (counts.stage, counts.n_steps, counts.n_done) = (name.to_owned(), total, 0);
-    }
-
-    fn advance(&self, n: u64) {
-        self.counts().n_done += n;
-    }
-
-    fn expect(&self, n_items: usize) {
-        self.counts().clock = Some(RunClock::start(n_items));
-    }
-
-    fn item_finished(&self) {
-        if let Some(clock) = &mut self.counts().clock {
-            clock.item_finished();
-        }
-    }
-
-    fn finish(&self, _message: &str) {}
-}
-
-impl Counts {
-    /// Returns a text with the estimated time of the whole run and a description of the sample from which it was estimated.
-    fn describe(&self, now: Instant, seconds: f64, n_threads: usize) -> String {
-        let estimate = self.clock.as_ref().and_then(|clock| {
-            let (n_finished, n_items) = clock.counts();
-            let (elapsed_s, left_s) = (clock.elapsed_s(now), clock.left_s(now)?);
-            let total_s = (elapsed_s + left_s).max(1.0);
-            let total = duration(total_s);
-            let cores = cores(total_s, n_threads);
-            Some(format!(
-                "about {total} ({n_finished} of {n_items} work items took {elapsed_s:.1} s)\n  cores    {cores}"
-            ))
+/// Returns a text with the estimated time of the whole run and a description of the sample from which it was estimated.
+fn describe(sample: &RunState, seconds: f64, n_threads: usize) -> String {
+    let now = Instant::now();
+    let estimate = sample.clock.as_ref().and_then(|clock| {
+        let (n_finished, n_items) = clock.counts();
+        let (elapsed_s, left_s) = (clock.elapsed_s(now), clock.left_s(now)?);
+        let total_s = (elapsed_s + left_s).max(1.0);
+        let total = duration(total_s);
+        let cores = cores(total_s, n_threads);
+        Some(format!(
+            "about {total} ({n_finished} of {n_items} work items took {elapsed_s:.1} s)\n  cores    {cores}"
+        ))
+    });
+    estimate.unwrap_or_else(|| {
+        let longer = (10.0 * seconds).ceil();
+        let during = sample.stage.as_ref().map_or_else(String::new, |stage| {
+            format!(" ({}: {} of {})", stage.name, stage.done, stage.total)
         });
-        estimate.unwrap_or_else(|| {
-            let Self {
-                stage,
-                n_steps,
-                n_done,
-                ..
-            } = self;
-            let longer = (10.0 * seconds).ceil();
-            let during = match stage.is_empty() {
-                true => String::new(),
-                false => format!(" ({stage}: {n_done} of {n_steps})"),
-            };
-            format!("no work item finished in {seconds} s{during}; --time={longer} samples longer")
-        })
-    }
+        format!("no work item finished in {seconds} s{during}; --time={longer} samples longer")
+    })
 }
 
 /// Returns the computing time of a run in core hours, as clusters bill it.

@@ -35,24 +35,18 @@ pub fn json_lines(writer: impl Write + Send + 'static) -> Box<dyn Progress> {
     Box::new(Events::new(Form::Json, writer))
 }
 
-/// Current stage of a run, such as the training of classifiers.
-struct Stage {
-    name: String,
-    total: u64,
-    done: u64,
+/// Stage of a run, such as the training of classifiers.
+pub struct Stage {
+    /// Name of the stage.
+    pub name: String,
+    /// Number of steps of the stage.
+    pub total: u64,
+    /// Number of finished steps.
+    pub done: u64,
     start: Instant,
 }
 
 impl Stage {
-    fn start(name: &str, total: u64) -> Self {
-        Self {
-            name: name.to_owned(),
-            total,
-            done: 0,
-            start: Instant::now(),
-        }
-    }
-
     fn seconds(&self) -> f64 {
         self.start.elapsed().as_secs_f64()
     }
@@ -62,6 +56,50 @@ impl Stage {
         let Self { name, done, .. } = self;
         format!("{name:>14}: {done} in {:.1} s", self.seconds())
     }
+}
+
+/// State of a run: its current stage, and the number of its finished work items.
+#[derive(Default)]
+pub struct RunState {
+    /// Current stage; `None` before the first one.
+    pub stage: Option<Stage>,
+    /// Clock of the run; `None` until the number of its work items is known.
+    pub clock: Option<RunClock>,
+}
+
+/// Progress listener that keeps the state of a run and writes nothing.
+impl Progress for Mutex<RunState> {
+    fn stage(&self, name: &str, total: u64) {
+        locked(self).stage = Some(Stage {
+            name: name.to_owned(),
+            total,
+            done: 0,
+            start: Instant::now(),
+        });
+    }
+
+    fn advance(&self, n: u64) {
+        if let Some(stage) = &mut locked(self).stage {
+            stage.done += n;
+        }
+    }
+
+    fn expect(&self, n_items: usize) {
+        locked(self).clock = Some(RunClock::start(n_items));
+    }
+
+    fn item_finished(&self) {
+        if let Some(clock) = &mut locked(self).clock {
+            clock.item_finished();
+        }
+    }
+
+    fn finish(&self, _message: &str) {}
+}
+
+/// Locks a mutex, also after a panic of another thread.
+pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Progress bar on a terminal: one line with the current stage and the number of finished work items.
@@ -80,10 +118,6 @@ impl Bar {
             clock: Mutex::new(RunClock::start(0)),
         }
     }
-
-    fn clock(&self) -> MutexGuard<'_, RunClock> {
-        self.clock.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
 impl Progress for Bar {
@@ -99,11 +133,11 @@ impl Progress for Bar {
     }
 
     fn expect(&self, n_items: usize) {
-        *self.clock() = RunClock::start(n_items);
+        *locked(&self.clock) = RunClock::start(n_items);
     }
 
     fn item_finished(&self) {
-        let mut clock = self.clock();
+        let mut clock = locked(&self.clock);
         clock.item_finished();
         let (done, all) = clock.counts();
         self.bar
@@ -147,95 +181,88 @@ enum Form {
     Json,
 }
 
-/// Progress listener that writes plain lines or JSON events. All threads of a run share its state.
-struct Events<W: Write>(Arc<Mutex<State<W>>>);
+/// Progress listener that writes plain lines or JSON events. All threads of a run share its output.
+struct Events<W: Write>(Arc<Output<W>>);
 
-struct State<W: Write> {
+struct Output<W: Write> {
     form: Form,
-    writer: W,
-    clock: Option<RunClock>,
-    stage: Option<Stage>,
+    run: Mutex<RunState>,
+    writer: Mutex<W>,
 }
 
 impl<W: Write + Send + 'static> Events<W> {
     fn new(form: Form, writer: W) -> Self {
-        let state = Arc::new(Mutex::new(State {
+        let output = Arc::new(Output {
             form,
-            writer,
-            clock: None,
-            stage: None,
-        }));
+            run: Mutex::default(),
+            writer: Mutex::new(writer),
+        });
         if form == Form::Json {
-            let state = Arc::downgrade(&state);
-            thread::spawn(move || report_regularly(&state));
+            let output = Arc::downgrade(&output);
+            thread::spawn(move || report_regularly(&output));
         }
-        Self(state)
-    }
-
-    fn state(&self) -> MutexGuard<'_, State<W>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        Self(output)
     }
 }
 
 impl<W: Write + Send + 'static> Progress for Events<W> {
     fn stage(&self, name: &str, total: u64) {
-        let mut state = self.state();
-        state.end_stage();
-        state.stage = Some(Stage::start(name, total));
-        if state.form == Form::Json {
-            state.write(&json!({ "event": "stage", "name": name, "total": total }));
+        self.0.end_stage();
+        // No progress of the stage is written before its start.
+        if self.0.form == Form::Json {
+            let event = json!({ "event": "stage", "name": name, "total": total });
+            self.0.write(&event);
         }
+        self.0.run.stage(name, total);
     }
 
     fn advance(&self, n: u64) {
-        if let Some(stage) = self.state().stage.as_mut() {
-            stage.done += n;
-        }
+        self.0.run.advance(n);
     }
 
     fn expect(&self, n_items: usize) {
-        self.state().clock = Some(RunClock::start(n_items));
+        self.0.run.expect(n_items);
     }
 
     fn item_finished(&self) {
-        if let Some(clock) = self.state().clock.as_mut() {
-            clock.item_finished();
-        }
+        self.0.run.item_finished();
     }
 
     fn finish(&self, message: &str) {
-        let mut state = self.state();
-        state.end_stage();
-        match (message.is_empty(), state.form) {
+        self.0.end_stage();
+        match (message.is_empty(), self.0.form) {
             (true, _) => {}
-            (false, Form::Json) => state.write(&json!({ "event": "message", "text": message })),
-            (false, Form::Lines) => state.write(&message),
+            (false, Form::Json) => self
+                .0
+                .write(&json!({ "event": "message", "text": message })),
+            (false, Form::Lines) => self.0.write(&message),
         }
     }
 }
 
 /// Writes a progress event at regular intervals until the run ends.
-fn report_regularly<W: Write>(state: &Weak<Mutex<State<W>>>) {
+fn report_regularly<W: Write>(output: &Weak<Output<W>>) {
     loop {
         thread::sleep(INTERVAL);
-        let Some(state) = state.upgrade() else {
+        let Some(output) = output.upgrade() else {
             return;
         };
-        let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.write_progress();
+        output.write_progress();
     }
 }
 
-impl<W: Write> State<W> {
+impl<W: Write> Output<W> {
     /// Writes and flushes a complete line, so that readers never receive an incomplete line. If the output is closed, the run continues.
-    fn write(&mut self, line: &impl std::fmt::Display) {
-        let written = self.writer.write_all(format!("{line}\n").as_bytes());
-        let _ = written.and_then(|()| self.writer.flush());
+    fn write(&self, line: &impl std::fmt::Display) {
+        let mut writer = locked(&self.writer);
+        let written = writer.write_all(format!("{line}\n").as_bytes());
+        let _ = written.and_then(|()| writer.flush());
     }
 
     /// Writes the progress event of the current stage.
-    fn write_progress(&mut self) {
-        let Some(stage) = &self.stage else {
+    fn write_progress(&self) {
+        let run = locked(&self.run);
+        let Some(stage) = &run.stage else {
             return;
         };
         let mut event = json!({
@@ -244,7 +271,7 @@ impl<W: Write> State<W> {
             "total": stage.total,
             "elapsed_s": round_to_ms(stage.seconds()),
         });
-        if let Some(clock) = &self.clock {
+        if let Some(clock) = &run.clock {
             let now = Instant::now();
             event["run_elapsed_s"] = round_to_ms(clock.elapsed_s(now)).into();
             if let Some(left_s) = clock.left_s(now) {
@@ -255,11 +282,12 @@ impl<W: Write> State<W> {
     }
 
     /// Writes the line that reports the end of a stage.
-    fn end_stage(&mut self) {
+    fn end_stage(&self) {
         if self.form == Form::Json {
             self.write_progress();
         }
-        if let (Some(stage), Form::Lines) = (self.stage.take(), self.form) {
+        let stage = locked(&self.run).stage.take();
+        if let (Some(stage), Form::Lines) = (stage, self.form) {
             self.write(&stage.summary());
         }
     }

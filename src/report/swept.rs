@@ -29,7 +29,7 @@ pub struct Swept<'a> {
     /// Settings that have equal values in all rows.
     pub fixed: Vec<Setting<'a>>,
     /// Varying choices, without those that the conditions alone determine, such as a number of training touches that follows from the split.
-    choices: Vec<Setting<'a>>,
+    pub choices: Vec<Setting<'a>>,
 }
 
 impl<'a> Setting<'a> {

@@ -43,6 +43,29 @@ impl Table {
         rows
     }
 
+    /// Returns a table of the given rows and columns, without a file; columns that the table lacks are left out.
+    pub fn select(
+        &self,
+        (file, title): (&'static str, &'static str),
+        rows: &[usize],
+        columns: &[&str],
+    ) -> Self {
+        let kept = columns.iter().filter_map(|name| self.column(name));
+        let kept = kept.map(|(column, data)| (column.clone(), data.select(rows)));
+        let (columns, data) = kept.unzip();
+        Self {
+            file,
+            title,
+            note: String::new(),
+            repeats: self.repeats,
+            is_summary: true,
+            columns,
+            data,
+            n_rows: rows.len(),
+            csv: Vec::new(),
+        }
+    }
+
     /// Returns the indices of all rows.
     pub fn all_rows(&self) -> Vec<usize> {
         (0..self.n_rows).collect()

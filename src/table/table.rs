@@ -100,6 +100,17 @@ impl Data {
             .is_some_and(|first| keys.any(|key| key != first))
     }
 
+    /// Returns the values in the given rows.
+    pub(super) fn select(&self, rows: &[usize]) -> Self {
+        match self {
+            Self::Numbers(numbers) => Self::Numbers(rows.iter().map(|&row| numbers[row]).collect()),
+            Self::Words { levels, codes } => Self::Words {
+                levels: levels.clone(),
+                codes: rows.iter().map(|&row| codes[row]).collect(),
+            },
+        }
+    }
+
     /// Returns a number that identifies the value in a row; numbers are equal exactly if the values are equal.
     pub fn key(&self, row: usize) -> u64 {
         match self {

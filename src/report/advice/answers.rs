@@ -3,7 +3,7 @@
 use super::candidates::{Advice, Candidate, Candidates, Requirement};
 use crate::error::{Error, Result};
 use crate::report::swept::Setting;
-use crate::table::Value;
+use crate::table::{Role, Table, Value};
 
 /// Advice for one condition, or the reason why no advice exists.
 pub struct Answer {
@@ -99,6 +99,21 @@ impl Candidates<'_> {
             sentences.push(more);
         }
         sentences
+    }
+
+    /// Returns the best-of table: the Pareto front of each condition, cheapest first, with the settings that vary, the value and the cost.
+    pub(crate) fn front_table(&self) -> Table {
+        let conditions = self.by_condition();
+        let fronts = conditions.iter().flat_map(|of_one| self.front(of_one));
+        let rows: Vec<usize> = fronts.map(|candidate| candidate.row).collect();
+        let settings = self.swept.of_role(Role::Condition);
+        let settings = settings.iter().chain(&self.swept.choices);
+        let settings = settings.map(|one| &one.column.name);
+        let ends = self.value.interval.iter().flatten();
+        let found = [&self.value.name, &self.cost.name].into_iter().chain(ends);
+        let columns: Vec<&str> = settings.chain(found).map(|name| &name[..]).collect();
+        let about = ("fronts.csv", "Pareto front of each condition");
+        self.table.select(about, &rows, &columns)
     }
 
     fn best_words(&self, [best, as_good]: [Candidate; 2]) -> Vec<String> {

@@ -191,36 +191,7 @@ fn choices_html(found: &Found) -> String {
         escape(table.title),
         escape(&value.words),
         escape(&offers.cost.words),
-        front_html(&offers)
-    )
-}
-
-fn front_html(offers: &Candidates) -> String {
-    let conditions = offers.by_condition();
-    let fronts = conditions.iter().flat_map(|of_one| offers.front(of_one));
-    // With one condition, the table has no column for it.
-    let first = usize::from(conditions.len() < 2);
-    let line = |tag: &str, cells: [String; 4]| {
-        let classes = [" class=word", "", "", " class=word"];
-        let cells = cells.iter().zip(classes).skip(first);
-        let cells = cells.map(|(cell, class)| format!("<{tag}{class}>{}</{tag}>", escape(cell)));
-        format!("<tr>{}</tr>\n", cells.collect::<String>())
-    };
-    let [value, cost] = [&offers.value.words, &offers.cost.words].map(|words| words.to_string());
-    let label = format!("Pareto front: {} and {}", escape(&value), escape(&cost));
-    let head = line(
-        "th",
-        ["condition".to_owned(), value, cost, "choice".to_owned()],
-    );
-    let rows = fronts.map(|offer| {
-        let [condition, setting] = [offers.condition(&offer), offers.setting(&offer)];
-        let value = offers.table.bounded(offers.value, offer.row);
-        let cost = offers.cost.number_words(offer.cost);
-        line("td", [condition, value, cost, setting])
-    });
-    format!(
-        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{label}\"><table><thead>{head}</thead><tbody>\n{}</tbody></table></div>",
-        rows.collect::<String>()
+        table_html(&offers.front_table(), MAX_OTHER_BYTES).html
     )
 }
 
