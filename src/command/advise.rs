@@ -28,27 +28,8 @@ pub struct Args {
     results: PathBuf,
     #[command(flatten)]
     wish: RequirementArgs,
-    /// Minimise this cost [default: decision_time, or the first cost]
-    ///
-    /// Any column of costs, such as decision_time, training_time, taxels or measurements (of a decision).
-    #[arg(long, value_name = "COST", help_heading = "Selection")]
-    cost: Option<String>,
-    /// Judge by this value [default: accuracy, or the first value]
-    #[arg(
-        long,
-        value_name = "COLUMN",
-        conflicts_with = "accuracy",
-        help_heading = "Selection"
-    )]
-    value: Option<String>,
-    /// Read this table, if several tables list choices
-    #[arg(long, value_name = "FILE", help_heading = "Selection")]
-    table: Option<String>,
-    /// Select a value of a condition, such as noise=0.05; repeatable
-    ///
-    /// Other forms: "noise=5 %", test_sensor=another_skin, and none for rows without a value.
-    #[arg(long, value_name = "CONDITION=VALUE", help_heading = "Selection")]
-    given: Vec<String>,
+    #[command(flatten)]
+    query: AdviceQuery,
     /// Give one answer that holds in every condition
     ///
     /// Each choice has the value of its worst condition.
@@ -98,16 +79,11 @@ struct RequirementArgs {
 pub fn advise(args: &Args) -> Result<()> {
     let place = format!("{}: ", args.results.display());
     let (_, tables) = kinds::read_tables(&args.results)?;
-    let asked = AdviceQuery {
-        table: args.table.clone(),
-        value: match args.wish.accuracy {
-            Some(_) => Some("accuracy".to_owned()),
-            None => args.value.clone(),
-        },
-        cost: args.cost.clone(),
-        given: args.given.clone(),
-        limits: args.limits(),
-    };
+    let mut asked = args.query.clone();
+    asked.limits = args.limits();
+    if args.wish.accuracy.is_some() {
+        asked.value = Some("accuracy".to_owned());
+    }
     let said = |error: Error| error.under(place.clone());
     let mut offers = Candidates::new(&tables, &asked).map_err(said)?;
     // Together with a required value, the budget is a limit.

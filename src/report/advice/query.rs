@@ -5,18 +5,28 @@ use crate::report::swept::Setting;
 use crate::table::{Better, Column, Role, Table, Value, column_name};
 use std::collections::HashSet;
 
-/// Query for advice about a design; fields that are `None` are filled in automatically.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// Query for advice about a design, with the options of `bubbletouch advise`. Fields that are `None` are filled in automatically.
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+#[command(next_help_heading = "Selection")]
 pub struct AdviceQuery {
-    /// File name of the table to search.
-    pub table: Option<String>,
-    /// Name of the value column to optimise.
-    pub value: Option<String>,
-    /// Name of the cost column to minimise: a column name, or a short name that all kinds of studies accept.
+    /// Minimise this cost [default: decision_time, or the first cost]
+    ///
+    /// Any column of costs, such as decision_time, training_time, taxels or measurements (of a decision).
+    #[arg(long, value_name = "COST")]
     pub cost: Option<String>,
-    /// Fixed conditions, each as text of the form `noise=0.05`.
+    /// Judge by this value [default: accuracy, or the first value]
+    #[arg(long, value_name = "COLUMN", conflicts_with = "accuracy")]
+    pub value: Option<String>,
+    /// Read this table, if several tables list choices
+    #[arg(long, value_name = "FILE")]
+    pub table: Option<String>,
+    /// Select a value of a condition, such as noise=0.05; repeatable
+    ///
+    /// Other forms: "noise=5 %", test_sensor=another_skin, and none for rows without a value.
+    #[arg(long, value_name = "CONDITION=VALUE")]
     pub given: Vec<String>,
     /// Upper bounds of cost columns, as pairs (column name, bound); choices above a bound are not advised.
+    #[arg(skip)]
     pub limits: Vec<(String, f64)>,
 }
 

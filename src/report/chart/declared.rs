@@ -26,7 +26,7 @@ pub struct Chart {
     pub lines: &'static [&'static str],
     /// Column that divides the rows into panels.
     pub panels: Option<&'static str>,
-    /// Columns of which each combination of values has its own chart. A combination with a single value along x has none.
+    /// Columns of which each combination of values has its own chart. A combination with a single value along x has no line chart.
     pub each: &'static [&'static str],
     /// Columns and the words that the drawn rows have in them.
     pub shown: &'static [(&'static str, &'static str)],
@@ -82,7 +82,8 @@ impl Chart {
         let mut groups = table.groups(self.each, rows);
         groups.retain(|rows| {
             let x = table.column(self.x);
-            self.each.is_empty() || x.is_some_and(|(_, x)| x.varies(rows.iter().copied()))
+            let is_line = self.mark == Mark::Line && !self.each.is_empty();
+            !is_line || x.is_some_and(|(_, x)| x.varies(rows.iter().copied()))
         });
         groups.iter().map(|rows| self.spec(table, rows)).collect()
     }
