@@ -82,8 +82,10 @@ fn common_scenes(configurations: &Table, timing: &Table, rows: &[usize]) -> Vec<
         order.expect("all are numbers")
     });
     let varying = |columns: &[&str]| -> Vec<Setting> {
-        let settings = Setting::all(configurations);
-        let settings = settings.filter(|one| columns.contains(&&one.column.name[..]));
+        let settings = columns
+            .iter()
+            .filter_map(|name| configurations.column(name));
+        let settings = settings.map(|(column, data)| Setting { column, data });
         settings.filter(|one| one.varies(rows)).collect()
     };
     let [method, step, load] = [&METHOD[..], &SCENE[3..], &SCENE[..3]].map(varying);
@@ -166,16 +168,13 @@ pub(super) const CHARTS: &[Chart] = &[
 
 /// Returns the constant charts. Charts of parts with another program name its version.
 pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
-    let methods = tables.iter().find(|table| table.file == METHODS.name());
-    let is_peer = |table: &Table, chart: &ChartSpec, row: usize| {
-        let mut shown = chart.shown.iter();
-        table.word("method", row).starts_with("MuJoCo")
-            && shown.any(|one| table.has_setting(&one.column, row, &one.value))
-    };
     let mut charts: Vec<ChartSpec> = CHARTS.iter().flat_map(|one| one.specs(tables)).collect();
+    let Some(methods) = tables.iter().find(|table| table.file == METHODS.name()) else {
+        return charts;
+    };
     for chart in &mut charts {
-        let is_compared = |table: &&Table| (0..table.n_rows).any(|row| is_peer(table, chart, row));
-        if methods.is_some_and(|table| is_compared(&table)) {
+        let mut shown = methods.rows_shown(&chart.shown).into_iter();
+        if shown.any(|row| methods.word("method", row).starts_with("MuJoCo")) {
             chart.note += &format!(" {}", tables[0].note);
         }
     }
