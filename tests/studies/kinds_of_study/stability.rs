@@ -54,7 +54,7 @@ fn ours_is_right_everywhere_and_the_others_break_where_they_must() {
     for chart in ["stability_rest_time", "stability_rest"] {
         let svg = case.read(&format!("1/{chart}.svg"));
         let is_time = chart.ends_with("time");
-        assert_eq!(svg.contains("right of the same"), is_time, "{chart}");
+        assert_eq!(svg.contains("Right of the same"), is_time, "{chart}");
         assert_eq!(svg.contains("time step, taxel mass"), !is_time, "{chart}");
     }
 }
