@@ -7,7 +7,6 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::study::{RecordedSkinFiles, UntouchedFrames};
 use bubbletouch::{Error, Result};
 use bubbletouch_sim::text::spelling::counted;
-use bubbletouch_sim::text::spelling::counted;
 use std::ops::Range;
 use std::path::PathBuf;
 
