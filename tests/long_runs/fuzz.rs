@@ -90,7 +90,7 @@ fn read_study(input: &[u8]) -> Result<()> {
             let spec = StabilityStudySpec::parse(PLACE, text)?;
             StabilityPlan::new(PLACE, Path::new(""), spec).map(drop)
         }
-        _ => Plan::new(PLACE, StudySpec::parse(PLACE, text)?).map(drop),
+        _ => Plan::variants(PLACE, StudySpec::parse(PLACE, text)?).map(drop),
     }
 }
 

@@ -129,14 +129,13 @@ pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
     }
     for axis in &axes.axes {
         let values = toml::Value::Array(axis.values.clone());
+        let is_kept = !axis.is_of_table && axes.combine == CombineSpec::OneAtATime;
         for key in axis.keys() {
-            let Some((inner, last)) = table_at(&mut table, &key) else {
-                continue;
-            };
-            if axis.is_of_table {
-                inner.insert(last.to_owned(), values.clone());
-            } else if axes.combine == CombineSpec::All {
-                inner.remove(last);
+            if !is_kept && let Some((inner, last)) = table_at(&mut table, &key) {
+                match axis.is_of_table {
+                    true => inner.insert(last.to_owned(), values.clone()),
+                    false => inner.remove(last),
+                };
             }
         }
         if !axis.is_of_table {
