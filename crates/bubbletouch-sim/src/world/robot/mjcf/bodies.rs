@@ -289,7 +289,10 @@ impl Bodies {
             }
         };
         // Names and free joints depend on the place to which the part is attached.
-        added.map_err(|fault| fault.under(format!("{}: ", element.place())))?;
+        added.map_err(|fault| match attach.model.depth {
+            0 => fault.under(format!("{}: ", element.place())),
+            _ => fault,
+        })?;
         self.couple(&part, first, !is_whole)?;
         self.ignored = ignored;
         // The attaching model names the joints as its own.
