@@ -258,10 +258,10 @@ fn a_program_that_starts_a_run_reads_json_lines_and_nothing_else() {
     let case = whole().case;
     let (output, error) = case.succeeds("run study.toml --out whole --json");
     assert_eq!(error, "");
-    let events = output
+    let mut events = output
         .lines()
         .map(serde_json::from_str::<serde_json::Value>);
-    let last = events.map(Result::unwrap).last().unwrap();
+    let last = events.next_back().unwrap().unwrap();
     assert_eq!(last["event"], "finished");
     for field in ["work_items", "finished_before"] {
         assert_eq!(last[field], 66);

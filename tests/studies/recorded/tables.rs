@@ -237,7 +237,7 @@ fn columns_of_several_kinds_are_refused_with_the_choice() {
     let given = "log.csv: columns of several kinds: `time_s`, `s*` (4), `acc_x`, `acc_y`; those that are readings, such as ";
     let options = format!("{given}--columns \"s*\", or --columns \"*\" for all");
     let refused = |name: &str, columns: Option<&str>, words: &str| {
-        let said = audited(&case, name, columns).err().expect(name);
+        let said = audited(&case, name, columns).expect_err(name);
         says(&said.to_string(), &[words]);
     };
     refused("log.csv", None, &options);

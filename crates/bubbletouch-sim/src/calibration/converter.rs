@@ -32,6 +32,9 @@ pub fn step(skin: &RecordedSkin, saturation: f64) -> Option<f64> {
 
 /// Estimates the number of bits of the analogue-to-digital converter; 0 if readings have no step. Readings of at least `saturation` are omitted, because the
 /// clipping level need not be a multiple of the step.
+///
+/// # Errors
+/// If there are too few different readings.
 pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
     let n = different_readings(skin, saturation).len();
     if n < FEWEST {

@@ -72,6 +72,9 @@ pub fn find(skin: &RecordedSkin) -> FoundFaults {
 
 impl FoundFaults {
     /// Estimates the fraction of taxels with faults for which `is_counted` returns true. The Wilson interval refers to other skins of this type.
+    ///
+    /// # Errors
+    /// If the state of half of the taxels is unknown.
     pub fn share(&self, is_counted: impl Fn(&Fault) -> bool) -> Estimate {
         let n_taxels = self.is_sound.len();
         if 2 * self.n_known < n_taxels {

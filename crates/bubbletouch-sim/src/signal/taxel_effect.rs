@@ -25,7 +25,10 @@ pub struct Moment {
 /// Step of a `BodyReadout`, prepared for one patch: a function that replaces the true values of the taxels in a chunk by readings, in the unit of the frames of the
 /// patch. The step acts on each taxel independently.
 #[derive(Clone)]
-pub struct TaxelEffect(Arc<dyn Fn(&mut Chunk, Moment, &mut [f64]) + Send + Sync>);
+pub struct TaxelEffect(Arc<Replace>);
+
+/// Function that replaces the values of the taxels in a chunk.
+type Replace = dyn Fn(&mut Chunk, Moment, &mut [f64]) + Send + Sync;
 
 impl TaxelEffect {
     pub(super) fn new(

@@ -22,12 +22,15 @@ pub(crate) struct Gram<'a, T> {
     memory: GramMemory<T>,
 }
 
+/// Function that writes the values of a row, given its index.
+type RowFunction<'a, T> = Box<dyn FnMut(usize, &mut [T]) + 'a>;
+
 /// Origin of the rows of a Gram matrix.
 enum Source<'a, T> {
     /// All rows are kept from the beginning.
     Kept,
     /// Function that writes the n values of a row, given its index.
-    Function(Box<dyn FnMut(usize, &mut [T]) + 'a>),
+    Function(RowFunction<'a, T>),
     /// Points whose kernel values exceed the memory limit.
     Points(&'a CenteredRows<T>, KernelFunction),
 }

@@ -141,12 +141,10 @@ impl SweptFace {
     /// Returns, for each side of the face, whether a position is more than `slack` metres beyond the side.
     #[inline(always)]
     pub fn is_outside(&self, at: DVec2, slack: f64) -> [bool; 3] {
-        let mut is_outside = [false; 3];
-        for k in 0..3 {
+        [0, 1, 2].map(|k| {
             let [side, length] = self.side(k, at);
-            is_outside[k] = side < -slack * length;
-        }
-        is_outside
+            side < -slack * length
+        })
     }
 
     /// Returns the height at which the plane of the face stops the ball, metres.

@@ -51,7 +51,7 @@ impl<'a> Path<'a> {
         let Press { until, record, .. } = *self.press;
         match until {
             Until::Pose => return Ok(Some(self.at(DVec3::ZERO, record))),
-            Until::Force(force) => return self.to_force(force),
+            Until::Force(force) => return self.until_force(force),
             Until::Depth(_) | Until::Travel(_) => {}
         }
         let travelling = self.travelling();
@@ -77,7 +77,7 @@ impl<'a> Path<'a> {
     pub fn travels(&mut self) -> Result<Option<[f64; 2]>> {
         let until = match self.press.until {
             Until::Pose => return Ok(Some([0.0; 2])),
-            Until::Force(force) => match self.to_force(force)? {
+            Until::Force(force) => match self.until_force(force)? {
                 Some(contact) => Until::Travel(contact.travel),
                 None => return Ok(None),
             },
@@ -193,7 +193,7 @@ impl<'a> Path<'a> {
     }
 
     /// Increases the travel until the springs carry `force` newtons, and records the contacts; returns `None` if the path misses all objects.
-    fn to_force(&mut self, force: f64) -> Result<Option<Contact>> {
+    fn until_force(&mut self, force: f64) -> Result<Option<Contact>> {
         self.workspace.hold([]);
         let travel = self.travel_to_force(force);
         let contact = travel.map(|travel| {
