@@ -2,7 +2,7 @@
 
 use crate::command::{Case, says};
 use bubbletouch::mesh::LengthUnit;
-use bubbletouch::objects::{Catalogue, surface_error};
+use bubbletouch::objects::{Catalogue, Solid, surface_error};
 use bubbletouch::study::{ModelSpec, ObjectsSpec, load_objects};
 
 const MM: f64 = 1e-3;
@@ -44,19 +44,20 @@ fn the_guide_has_every_shape_and_every_key() {
         let names = error.split('`').skip(1).step_by(2);
         names.map(str::to_owned).collect()
     };
-    let part = "[[object]]\nname = \"a\"\nsource = \"b\"\n[[object.part]]\n";
     // The error lists all valid names after the wrong one.
-    let shapes = listed(&format!("{part}shape = \"none\"\n"));
-    let keys = listed(&format!("{part}shape = \"ball\"\nnone = 1\n"));
+    let part = "[[object]]\nname = \"a\"\nsource = \"b\"\n[[object.part]]\nshape = \"ball\"\n";
+    let mut keys = listed(&format!("{part}none = 1\n"))[1..].to_vec();
+    let lengths = Solid::written_shapes().flat_map(|(_, lengths)| lengths);
+    keys.extend(lengths.map(|key| key.to_string()));
     let of_object = listed("[[object]]\nnone = 1\n");
-    assert!(shapes.len() > 11 && keys.len() > 18 && of_object.len() > 4);
+    assert!(keys.len() > 18 && of_object.len() > 4);
     let is_missing = |name: &&String| {
         let written = [format!("`{name}`"), format!("`{name} =")];
         *name != "none" && !written.iter().any(|text| GUIDE.contains(text))
     };
     let missing: Vec<&String> = keys.iter().chain(&of_object).filter(is_missing).collect();
     assert!(missing.is_empty(), "{missing:?}");
-    for shape in shapes.iter().filter(|name| *name != "none") {
+    for (shape, _) in Solid::written_shapes() {
         assert!(GUIDE.contains(&format!("| `\"{shape}\"` |")), "{shape}");
     }
 }

@@ -71,8 +71,13 @@ fn a_study_of_packed_meshes_packs_once() {
 fn packed_meshes_are_as_fine_as_a_tenth_of_the_finest_pitch_unless_a_study_says() {
     let settled = |text: &str| {
         let spec = StudySpec::parse("study.toml", text).unwrap();
-        let plan = Plan::new("study.toml", spec).unwrap();
-        plan.spec.objects.surface_error_mm
+        let plans = Plan::variants("study.toml", spec).unwrap();
+        let all = plans
+            .iter()
+            .map(|(_, plan)| plan.spec.objects.surface_error_mm);
+        let all: Vec<_> = all.collect();
+        assert!(all.iter().all(|one| *one == all[0]), "{all:?}");
+        all[0]
     };
     assert_eq!(settled(RECOGNITION), Some(2.0));
     let left_out = RECOGNITION.replace("surface_error_mm = 2.0\n", "");

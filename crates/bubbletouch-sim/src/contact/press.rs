@@ -79,8 +79,8 @@ pub enum Record {
 /// let fingertip = Patch::new("fingertip", layout, Taxels::Equal(taxel))?;
 /// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
 /// let objects = [SphereUnion::new(vec![marble])?.into()];
-/// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
-/// let press = Press::new(&fingertip, &objects, &[pose], Until::Pose);
+/// let poses = [Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8))];
+/// let press = Press::new(&fingertip, &objects, &poses, Until::Pose);
 /// let counts = press.with_contacts().run(&mut workspace)?;
 /// assert!(counts.is_some_and(|counts| counts.n_touched > 3 && counts.n_saturated == 0));
 ///

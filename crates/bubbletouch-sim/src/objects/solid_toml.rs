@@ -50,6 +50,11 @@ const MM: f64 = 1e-3;
 pub(super) struct WrittenPart(BTreeMap<String, Spanned<Value>>);
 
 impl Solid {
+    /// Returns the names of the shapes of object files, each with the keys of its lengths.
+    pub fn written_shapes() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+        SHAPES.into_iter()
+    }
+
     /// Reads a solid from the text of `[[part]]` tables, which have the keys of a [catalogue](super::Catalogue) file. The parts keep their written positions.
     ///
     /// # Errors
@@ -110,7 +115,7 @@ impl WrittenPart {
         let is_extra = |key: &&String| !COMMON.iter().chain(keys).any(|known| known == key);
         if let Some(key) = self.0.keys().find(is_extra) {
             let given = format!("given for a {name}");
-            let allowed = nearest_names(key, keys.iter().copied());
+            let allowed = nearest_names(key, keys.iter().chain(&COMMON).copied());
             return Err(Error::input(key, given, allowed));
         }
         let is_missing = |key: &&&str| **key != OPTIONAL && !self.0.contains_key(**key);
