@@ -71,27 +71,28 @@ impl Wavelet {
 impl Transform for Wavelet {
     fn analyse(&self, mut frame: ArrayViewMut2<f64>) {
         for (ny, nx) in levels(frame.dim()) {
-            let mut corner = frame.slice_mut(s![..ny, ..nx]);
-            for (axis, _) in [(Axis(1), nx), (Axis(0), ny)]
-                .iter()
-                .filter(|side| side.1 > 1)
-            {
-                let lanes = corner.lanes_mut(*axis).into_iter();
-                lanes.for_each(|lane| self.split(lane));
-            }
+            let corner = frame.slice_mut(s![..ny, ..nx]);
+            change_lanes(corner, [Axis(1), Axis(0)], |lane| self.split(lane));
         }
     }
 
     fn synthesise(&self, mut frame: ArrayViewMut2<f64>) {
         for (ny, nx) in levels(frame.dim()).into_iter().rev() {
-            let mut corner = frame.slice_mut(s![..ny, ..nx]);
-            for (axis, _) in [(Axis(0), ny), (Axis(1), nx)]
-                .iter()
-                .filter(|side| side.1 > 1)
-            {
-                let lanes = corner.lanes_mut(*axis).into_iter();
-                lanes.for_each(|lane| self.join(lane));
-            }
+            let corner = frame.slice_mut(s![..ny, ..nx]);
+            change_lanes(corner, [Axis(0), Axis(1)], |lane| self.join(lane));
+        }
+    }
+}
+
+/// Changes all lanes of a corner along one axis after the other; an axis with one taxel is left out.
+fn change_lanes(
+    mut corner: ArrayViewMut2<f64>,
+    axes: [Axis; 2],
+    change: impl Fn(ArrayViewMut1<f64>),
+) {
+    for axis in axes {
+        if corner.len_of(axis) > 1 {
+            corner.lanes_mut(axis).into_iter().for_each(&change);
         }
     }
 }

@@ -555,22 +555,17 @@ mod tests {
             normal: -3.0 * DVec3::Z,
             ..PointLoad::default()
         }];
-        carry_loads(
-            &patch,
-            (&deep, REACH),
-            (&loads, LoadPart::Normal),
-            &mut deflections,
-            &mut workspace,
-        );
+        let mut carry = |loads: &[PointLoad], deflections: &mut [f64]| {
+            deflections.fill(0.0);
+            let (deep, loads) = ((&deep[..], REACH), (loads, LoadPart::Normal));
+            carry_loads(&patch, deep, loads, deflections, &mut workspace)
+        };
+        carry(&loads, &mut deflections);
         let mut pressed = Workspace::new();
-        crate::contact::Press::new(
-            &patch,
-            &objects,
-            &[Pose::from_translation(at)],
-            crate::contact::Until::Force(3.0),
-        )
-        .run(&mut pressed)
-        .unwrap();
+        let poses = [Pose::from_translation(at)];
+        Press::new(&patch, &objects, &poses, Until::Force(3.0))
+            .run(&mut pressed)
+            .unwrap();
         let differences = deflections
             .iter()
             .zip(pressed.deflections())
@@ -579,14 +574,7 @@ mod tests {
 
         // 1 mm outside the outermost column: the force is on this column, and the torque of the offset is returned.
         loads[0].point = DVec3::new(9e-3, 0.0, 0.0);
-        deflections.fill(0.0);
-        let carried = carry_loads(
-            &patch,
-            (&deep, REACH),
-            (&loads, LoadPart::Normal),
-            &mut deflections,
-            &mut workspace,
-        );
+        let carried = carry(&loads, &mut deflections);
         let rest = share_friction(&patch, (&loads, LoadPart::Normal), &deflections, &mut []);
         assert!((carried.force - 3.0).abs() < 1e-11);
         assert!((rest.torque.y - 3e-3).abs() < 1e-4, "{rest:?}");
@@ -596,14 +584,7 @@ mod tests {
             normal: -1e4 * DVec3::Z,
             ..PointLoad::default()
         };
-        deflections.fill(0.0);
-        let carried = carry_loads(
-            &patch,
-            (&deep, REACH),
-            (&loads, LoadPart::Normal),
-            &mut deflections,
-            &mut workspace,
-        );
+        let carried = carry(&loads, &mut deflections);
         assert!(carried.force < carried.required && deflections.iter().all(|d| *d <= TAXEL.stroke));
     }
 }

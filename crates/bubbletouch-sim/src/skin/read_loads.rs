@@ -206,21 +206,4 @@ impl Skin {
             reading.counts.push(TouchCounts::of(&part.patch, frame));
         }
     }
-
-    /// Returns the force on each taxel in the frame of its patch, newtons, shape (n_sets, n_taxels): along its axis and, with friction forces of a simulator,
-    /// tangential.
-    pub fn forces_on_taxels(&self, reading: &SkinReading) -> impl Iterator<Item = DVec3> {
-        let n_sets = reading.deflections.len() / self.n_taxels();
-        let parts = (0..n_sets).flat_map(|set| self.parts.iter().map(move |part| (set, part)));
-        parts.flat_map(move |(set, part)| {
-            let first = set * self.n_taxels() + part.first;
-            let (axes, taxels) = (part.patch.layout().axes(), part.patch.taxels());
-            axes.iter().enumerate().map(move |(taxel, axis)| {
-                let tangential = reading.tangential.get(first + taxel).copied();
-                let deflection = reading.deflections[first + taxel];
-                let axial = -taxels.at(taxel).stiffness * deflection * *axis;
-                tangential.unwrap_or_default() + axial
-            })
-        })
-    }
 }

@@ -1,5 +1,6 @@
 //! Shear springs with friction of all taxels of a skin, from one read to the next.
 
+use super::parts::RigidObject;
 use super::skin::Skin;
 use crate::contact::{
     ContactMode, FrictionState, NormalForce, Press, TaxelContact, Until, Workspace, Wrench,
@@ -102,13 +103,10 @@ impl ShearState {
         workspace: &mut Workspace,
     ) -> Wrench {
         let patch = &skin.parts[number].patch;
-        let (models, poses): (&[Model], &[Pose]) = match is_near {
-            true => (&skin.models, placed),
-            false => (&[], &[]),
-        };
-        let objects = match is_near {
-            true => &skin.objects[number][..],
-            false => &[],
+        type Bodies<'a> = (&'a [Model], &'a [Pose], &'a [RigidObject]);
+        let (models, poses, objects): Bodies = match is_near {
+            true => (&skin.models, placed, &skin.objects[number]),
+            false => (&[], &[], &[]),
         };
         Press::new(patch, models, poses, Until::Pose)
             .with_contacts()

@@ -84,13 +84,13 @@ impl Skin {
         let carriers = carriers.unwrap_or_else(|| (0..n_patches).collect());
         let excluded = excluded.unwrap_or_else(|| vec![Vec::new(); n_patches]);
         let objects = objects.unwrap_or_else(|| (0..n_bodies).collect());
-        for (place, n, [allowed, what]) in [
-            ("carriers", carriers.len(), [n_patches, 0]),
-            ("excluded", excluded.len(), [n_patches, 0]),
-            ("objects", objects.len(), [n_bodies, 1]),
+        for (place, n, n_needed, owners) in [
+            ("carriers", carriers.len(), n_patches, "patches"),
+            ("excluded", excluded.len(), n_patches, "patches"),
+            ("objects", objects.len(), n_bodies, "bodies"),
         ] {
-            if n != allowed {
-                let allowed = format!("one for each of {allowed} {}", ["patches", "bodies"][what]);
+            if n != n_needed {
+                let allowed = format!("one for each of {n_needed} {owners}");
                 return Err(Error::input(place, format!("{n} indices"), allowed));
             }
         }
