@@ -143,13 +143,13 @@ impl Outline {
     }
 }
 
-/// Returns the reason why the vertices do not form a simple polygon; `None` if they do.
-pub(super) fn polygon_fault(vertices: &[DVec2]) -> Option<String> {
+/// Returns the reason why the vertices do not form a simple polygon with sides of at least `shortest`; `None` if they do.
+pub(super) fn polygon_fault(vertices: &[DVec2], shortest: f64) -> Option<String> {
     if vertices.len() < 3 {
         return Some(format!("{} corners", vertices.len()));
     }
     let pairs: Vec<_> = closed_pairs(vertices).collect();
-    if let Some(at) = pairs.iter().position(|(a, b)| a == b) {
+    if let Some(at) = pairs.iter().position(|(a, b)| a.distance(*b) < shortest) {
         return Some(format!("corner {} repeated", at + 1));
     }
     let n = pairs.len();
@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn a_bow_tie_is_not_a_polygon() {
         let bow = [[0., 0.], [1., 1.], [1., 0.], [0., 1.]].map(DVec2::from);
-        assert_eq!(polygon_fault(&bow).unwrap(), "side 1 crosses side 3");
-        assert!(polygon_fault(l_shape().vertices()).is_none());
+        assert_eq!(polygon_fault(&bow, 1e-9).unwrap(), "side 1 crosses side 3");
+        assert!(polygon_fault(l_shape().vertices(), 1e-9).is_none());
     }
 }

@@ -7,6 +7,10 @@ use super::solid::Form;
 use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 
+/// Smallest half width of the first cells of a wall, relative to the sum of both tolerances. Walls of thicker prisms begin with nearly square cells. If larger,
+/// packings of thin prisms change; if smaller, walls of very thin prisms have millions of cells.
+const NARROW: f64 = 1e-2;
+
 /// Polygon in the plane z = 0, extended by half the thickness along +z and −z.
 #[derive(Clone, Debug)]
 pub(super) struct Prism {
@@ -53,8 +57,8 @@ impl Form for Prism {
         for edge in 0..self.outline.edges.len() {
             let length = self.outline.edges[edge].length;
             // The first cells are nearly square, because walls are much longer than high.
-            let n = (0.5 * length / self.half).ceil();
-            for i in 0..n as usize {
+            let n = (0.5 * length / self.half.max(NARROW * fit.reach())).ceil();
+            for i in 0..(n as usize).min(MAX_SPHERES + 1) {
                 let cell = Cell {
                     middle: DVec2::new(length * (i as f64 + 0.5) / n, 0.0),
                     half: DVec2::new(0.5 * length / n, self.half),
@@ -72,7 +76,6 @@ impl Form for Prism {
 
     /// Returns the patches of the prism's surface: each wall, and a rectangle around each face. The parts of a rectangle beyond the outline are not part of
     /// the surface.
-    /// Returns a patch for each wall, and a rectangle around each face.
     fn patches(&self) -> Vec<SurfacePatch> {
         let walls = self.outline.edges.iter().map(|edge| {
             let middle = edge.point(0.5 * edge.length).extend(0.0);

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Deserializer};
 use std::fmt::Display;
 
-/// Shape in its own frame. All lengths are positive, in metres; shapes are centred on the origin unless stated otherwise.
+/// Shape in its own frame. All lengths are in metres, at least one nanometre; shapes are centred on the origin unless stated otherwise.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "shape", rename_all = "snake_case")]
 pub enum Shape {
@@ -20,7 +20,7 @@ pub enum Shape {
         /// Edge lengths along x, y, z.
         #[serde(deserialize_with = "vector")]
         size: DVec3,
-        /// Radius of edges and corners: 0 (sharp) to half the smallest edge length.
+        /// Radius of edges and corners: 0 (sharp), or up to half the smallest edge length.
         #[serde(default)]
         rounding: f64,
     },
@@ -117,6 +117,9 @@ pub(super) struct Wording {
     suffix: &'static str,
     /// Text after a number.
     unit: &'static str,
+    /// Shortest length: one nanometre, in the unit of the lengths. If shorter, rounding errors of coordinates are as large as the length, and squares of
+    /// lengths may be zero; if longer, thin layers are refused.
+    shortest: f64,
 }
 
 impl Wording {
@@ -124,11 +127,13 @@ impl Wording {
     const METRES: Self = Self {
         suffix: "",
         unit: " m",
+        shortest: 1e-9,
     };
     /// Messages with keys of object files and lengths in millimetres, such as `height_mm: -2`.
     pub const MILLIMETRE_KEYS: Self = Self {
         suffix: "_mm",
         unit: "",
+        shortest: 1e-6,
     };
 
     fn refuse<T>(self, name: &str, given: impl Display, allowed: impl Display) -> Result<T> {
@@ -139,16 +144,32 @@ impl Wording {
         ))
     }
 
-    /// Returns an error unless all lengths, given with their names, are positive.
-    fn positive<const N: usize>(self, lengths: [(&str, f64); N]) -> Result<()> {
-        let is_wrong = |&(_, length): &(&str, f64)| !(length.is_finite() && length > 0.0);
-        match lengths.into_iter().find(is_wrong) {
-            Some((name, length)) => {
-                let given = format_args!("{length}{}", self.unit);
-                self.refuse(name, given, "a finite positive length")
-            }
-            None => Ok(()),
+    /// Returns the shortest length as text, such as `1e-9 m`.
+    fn shortest(self) -> String {
+        format!("{:e}{}", self.shortest, self.unit)
+    }
+
+    /// Returns an error unless all lengths, given with their names, are at least the shortest length.
+    fn lengths<const N: usize>(self, lengths: [(&str, f64); N]) -> Result<()> {
+        let mut lengths = lengths.into_iter();
+        lengths.try_for_each(|(name, length)| self.length(name, length, ""))
+    }
+
+    /// Returns an error unless the length `name` is zero or at least the shortest length.
+    fn zero_or_length(self, name: &str, length: f64) -> Result<()> {
+        match length == 0.0 {
+            true => Ok(()),
+            false => self.length(name, length, "zero, or "),
         }
+    }
+
+    fn length(self, name: &str, length: f64, or: &str) -> Result<()> {
+        if length.is_finite() && length >= self.shortest {
+            return Ok(());
+        }
+        let given = format_args!("{length}{}", self.unit);
+        let allowed = format_args!("{or}a finite length of at least {}", self.shortest());
+        self.refuse(name, given, allowed)
     }
 
     /// Returns an error unless low ≤ length ≤ high for the length `name`; `high` may be infinite.
@@ -167,9 +188,12 @@ impl Wording {
     fn polygon(self, name: &str, corners: &[DVec2]) -> Result<()> {
         let infinite = corners.iter().position(|corner| !corner.is_finite());
         let infinite = infinite.map(|at| format!("corner {}, which is not finite", at + 1));
-        match infinite.or_else(|| polygon_fault(corners)) {
+        match infinite.or_else(|| polygon_fault(corners, self.shortest)) {
             Some(given) => {
-                let allowed = "at least three corners of a polygon that does not cross itself";
+                let shortest = self.shortest();
+                let allowed = format!(
+                    "at least three corners, {shortest} or more apart, of a polygon that does not cross itself"
+                );
                 self.refuse(name, given, allowed)
             }
             None => Ok(()),
@@ -184,16 +208,18 @@ impl Wording {
             return self.refuse("diameters", given, allowed);
         }
         for &diameter in diameters {
-            self.positive([("diameters", diameter)])?;
+            self.lengths([("diameters", diameter)])?;
         }
         if let Some(at) = points.iter().position(|point| !point.is_finite()) {
             let given = format_args!("point {}, which is not finite", at + 1);
             return self.refuse("points", given, "finite coordinates");
         }
-        match points.windows(2).position(|pair| pair[0] == pair[1]) {
+        let is_short = |pair: &[DVec3]| pair[0].distance(pair[1]) < self.shortest;
+        match points.windows(2).position(is_short) {
             Some(at) => {
                 let given = format_args!("point {} as the one before", at + 2);
-                self.refuse("points", given, "neighbouring points that differ")
+                let allowed = format!("neighbouring points {} or more apart", self.shortest());
+                self.refuse("points", given, allowed)
             }
             None => Ok(()),
         }
@@ -213,16 +239,17 @@ impl Shape {
     pub(super) fn check_worded(&self, wording: Wording) -> Result<()> {
         let at_least = |name, length, low| wording.between(name, length, low, f64::INFINITY);
         match *self {
-            Shape::Ball { diameter } => wording.positive([("diameter", diameter)]),
+            Shape::Ball { diameter } => wording.lengths([("diameter", diameter)]),
             Shape::Box { size, rounding } => {
-                wording.positive(size.to_array().map(|side| ("size", side)))?;
-                wording.between("rounding", rounding, 0.0, 0.5 * size.min_element())
+                wording.lengths(size.to_array().map(|side| ("size", side)))?;
+                wording.between("rounding", rounding, 0.0, 0.5 * size.min_element())?;
+                wording.zero_or_length("rounding", rounding)
             }
             Shape::Cylinder { diameter, height } => {
-                wording.positive([("diameter", diameter), ("height", height)])
+                wording.lengths([("diameter", diameter), ("height", height)])
             }
             Shape::Capsule { diameter, length } => {
-                wording.positive([("diameter", diameter)])?;
+                wording.lengths([("diameter", diameter)])?;
                 at_least("length", length, diameter)
             }
             Shape::ConeFrustum {
@@ -230,18 +257,17 @@ impl Shape {
                 top_diameter: top,
                 height,
             } => {
-                at_least("bottom_diameter", bottom, 0.0)?;
-                at_least("top_diameter", top, 0.0)?;
-                if bottom == 0.0 {
-                    wording.positive([("top_diameter", top)])?;
+                wording.zero_or_length("bottom_diameter", bottom)?;
+                if bottom == 0.0 || top != 0.0 {
+                    wording.lengths([("top_diameter", top)])?;
                 }
-                wording.positive([("height", height)])
+                wording.lengths([("height", height)])
             }
             Shape::Torus {
                 ring_diameter: ring,
                 tube_diameter: tube,
             } => {
-                wording.positive([("tube_diameter", tube)])?;
+                wording.lengths([("tube_diameter", tube)])?;
                 at_least("ring_diameter", ring, tube)
             }
             Shape::Tube {
@@ -249,17 +275,19 @@ impl Shape {
                 inner_diameter: inner,
                 height,
             } => {
-                wording.positive([("inner_diameter", inner), ("outer_diameter", outer)])?;
-                if inner >= outer {
-                    let unit = wording.unit;
-                    let allowed = format_args!("less than the outer diameter of {outer}{unit}");
+                wording.lengths([("inner_diameter", inner), ("outer_diameter", outer)])?;
+                if outer - inner < wording.shortest {
+                    let (unit, shortest) = (wording.unit, wording.shortest());
+                    let allowed = format_args!(
+                        "less than the outer diameter of {outer}{unit}, by at least {shortest}"
+                    );
                     return wording.refuse(
                         "inner_diameter",
                         format_args!("{inner}{unit}"),
                         allowed,
                     );
                 }
-                wording.positive([("height", height)])
+                wording.lengths([("height", height)])
             }
             Shape::Lathe { ref profile } => {
                 wording.polygon("profile", profile)?;
@@ -276,12 +304,12 @@ impl Shape {
                 thickness,
             } => {
                 wording.polygon("outline", outline)?;
-                wording.positive([("thickness", thickness)])
+                wording.lengths([("thickness", thickness)])
             }
             Shape::HexagonalPrism {
                 across_flats,
                 height,
-            } => wording.positive([("across_flats", across_flats), ("height", height)]),
+            } => wording.lengths([("across_flats", across_flats), ("height", height)]),
             Shape::SphereSweep {
                 ref points,
                 ref diameters,

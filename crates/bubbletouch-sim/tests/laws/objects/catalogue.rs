@@ -261,16 +261,16 @@ fn a_wrong_catalogue_names_file_line_and_object() {
         "cylinder" | "cilinder" | own.toml, line 5, object `mug`, part 1 (cilinder): shape: `cilinder`; perhaps `cylinder`
         "cylinder" | 3 | own.toml, line 5, object `mug`, part 1: shape: missing
         source = "us"; |  | own.toml, line 1, object "mug": missing field `source`
-        80 | -80 | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = -80; a finite positive
+        80 | -80 | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = -80; a finite length of at least 1e-6
         80 | nan | own.toml:6, key object.mug.part[1].diameter_mm: NaN; a finite number
-        height_mm = 90 | height_mm = -2 | own.toml, line 7, object `mug`, part 1 (cylinder): height_mm = -2; a finite positive
-        80 | 0 | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = 0; a finite positive
+        height_mm = 90 | height_mm = -2 | own.toml, line 7, object `mug`, part 1 (cylinder): height_mm = -2; a finite length of at least 1e-6
+        80 | 0 | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = 0; a finite length of at least 1e-6
         height_mm = 90; |  | own.toml, line 5, object `mug`, part 1 (cylinder): height_mm: missing
         "mug" | " " | own.toml, line 2, object ` `: an empty name
         90; | 90;length_mm = 3; | own.toml, line 8, object `mug`, part 1 (cylinder): length_mm: given for a cylinder
         90; | 90;position_mm = [0, 0, inf]; | own.toml:8, key object.mug.part[1].position_mm: inf; a finite number
         90; | 90;position_mm = [0, 0]; | own.toml, line 8, object `mug`, part 1 (cylinder): position_mm: [0, 0]; three finite numbers
-        90; | 90;[[object.subtract]];shape = "ball";diameter_mm = -42.67; | own.toml, line 10, object `mug`, subtract 1 (ball): diameter_mm = -42.67; a finite positive
+        90; | 90;[[object.subtract]];shape = "ball";diameter_mm = -42.67; | own.toml, line 10, object `mug`, subtract 1 (ball): diameter_mm = -42.67; a finite length of at least 1e-6
         90; | 90;[[object.subtract]];shape = "ball";diameter_mm = 900; | own.toml, line 2, object `mug`: subtract: shapes that take away all parts
         "cylinder";diameter_mm = 80 | "tube";inner_diameter_mm = 9;outer_diameter_mm = 8 | own.toml, line 6, object `mug`, part 1 (tube): inner_diameter_mm = 9; less than the outer diameter of 8
         "cylinder";diameter_mm = 80;height_mm = 90 | "prism";outline_mm = [[0, 0], [9, 9], [9, 0], [0, 9]];thickness_mm = 2 | own.toml, line 6, object `mug`, part 1 (prism): outline_mm: side 1 crosses side 3"#;

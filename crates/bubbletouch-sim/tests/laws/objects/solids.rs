@@ -215,20 +215,57 @@ fn dimensions_out_of_range_are_refused_by_name() {
         box size=[1,-2,3] | size: -2 m
         box size=[1,1,1] rounding=0.6 | rounding: 0.6 m; 0 m to 0.5 m
         capsule diameter=2 length=1 | length: 1 m; 2 m or more
-        cone_frustum bottom_diameter=0 top_diameter=0 height=1 | top_diameter: 0 m; a finite positive length
+        cone_frustum bottom_diameter=0 top_diameter=0 height=1 | top_diameter: 0 m; a finite length of at least 1e-9 m
         torus ring_diameter=1 tube_diameter=2 | ring_diameter: 1 m; 2 m or more
         tube outer_diameter=1 inner_diameter=1 height=1 | inner_diameter: 1 m; less than the outer diameter of 1 m
         lathe profile=[[0,0],[1,0]] | profile: 2 corners
         lathe profile=[[0,0],[-1,0],[0,1]] | profile: corner 2 left of the axis
         prism outline=[[0,0],[1,0],[nan,nan]] thickness=1 | outline: corner 3, which is not finite
         strand points=[[0,0,0]] diameters=[] | diameters: 1 points and 0 diameters
-        strand points=[[0,0,0],[0,0,0]] diameters=[1,1] | points: point 2 as the one before";
+        strand points=[[0,0,0],[0,0,0]] diameters=[1,1] | points: point 2 as the one before
+        box size=[1,1,1] rounding=1e-10 | rounding: 0.0000000001 m; zero, or a finite length of at least 1e-9 m
+        tube outer_diameter=1 inner_diameter=0.9999999999 height=1 | inner_diameter: 0.9999999999 m; less than the outer
+        prism outline=[[0,0],[1,0],[1,1e-10]] thickness=1 | outline: corner 2 repeated; at least three corners, 1e-9 m or
+        strand points=[[0,0,0],[0,0,1e-320]] diameters=[1,1] | points: point 2 as the one before";
     for case in cases.lines() {
         let (text, expected) = case.trim().split_once(" | ").unwrap();
         let error = Solid::from_shape(shape(text)).unwrap_err().to_string();
         assert!(
             error.starts_with(expected),
             "expected `{expected}` in: {error}"
+        );
+    }
+}
+
+/// Shapes in which each length `?` may be the shortest one, beside lengths of centimetres.
+const SHORT: [&str; 12] = [
+    "ball diameter=?",
+    "box size=[?,0.04,0.04]",
+    "box size=[0.03,0.04,0.04] rounding=?",
+    "cylinder diameter=0.05 height=?",
+    "capsule diameter=? length=0.05",
+    "cone_frustum bottom_diameter=0.05 top_diameter=? height=0.03",
+    "torus ring_diameter=0.05 tube_diameter=?",
+    "tube outer_diameter=0.05 inner_diameter=? height=0.03",
+    "lathe profile=[[0,0],[0.05,0],[0.05,?],[0,?]]",
+    "prism outline=[[0,0],[0.05,0],[0.02,0.05]] thickness=?",
+    "hexagonal_prism across_flats=0.05 height=?",
+    "strand points=[[0,0,0],[0.05,0,0]] diameters=[?,0.02]",
+];
+
+#[test]
+fn the_shortest_lengths_are_packed_and_shorter_ones_are_refused() {
+    for text in SHORT {
+        for length in ["1e-320", "1e-160", "9.9e-10"] {
+            let error = Solid::from_shape(shape(&text.replace('?', length)));
+            let error = error.unwrap_err().to_string();
+            assert!(error.contains("1e-9 m"), "{text}, {length}: {error}");
+        }
+        let solid = solid(&text.replace('?', "1e-9"));
+        assert_packs(&solid, 0.25 * MM, MM, text);
+        assert!(
+            pack(&solid, 0.25 * MM).unwrap().n_spheres() < 100_000,
+            "{text}"
         );
     }
 }
