@@ -5,31 +5,72 @@
 use crate::errors::bad_input;
 use bubbletouch::geometry::Aabb;
 use glam::DVec3;
-use ndarray::{Array2, ArrayViewD};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use ndarray::Array2;
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyAny;
 
+/// Object of Python.
+pub type Object<'py> = Bound<'py, PyAny>;
+
+/// NumPy array with one axis.
+pub type Vector<'py, T = f64> = Bound<'py, PyArray1<T>>;
+
+/// NumPy array with two axes.
+pub type Matrix<'py, T = f64> = Bound<'py, PyArray2<T>>;
+
 /// Converts the input to a NumPy array with `numpy.asarray`.
-fn asarray<'py>(py: Python<'py>, array: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+fn asarray<'py>(py: Python<'py>, array: &Object<'py>) -> PyResult<Object<'py>> {
     static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     ASARRAY.import(py, "numpy", "asarray")?.call1((array,))
+}
+
+/// Numbers of a NumPy array, borrowed for reading: float64 in C order.
+pub struct Numbers<'py>(PyReadonlyArrayDyn<'py, f64>);
+
+impl Numbers<'_> {
+    /// Returns the lengths of the array's axes.
+    pub fn shape(&self) -> &[usize] {
+        self.0.shape()
+    }
+
+    /// Returns the numbers of the array in C order.
+    pub fn values(&self) -> &[f64] {
+        self.0.as_slice().expect("the array is in C order")
+    }
+
+    /// Checks that all numbers are finite.
+    ///
+    /// # Errors
+    /// If a number is not finite; the message begins with `place`.
+    pub fn finite(self, place: &str, allowed: &str) -> PyResult<Self> {
+        match self.values().iter().find(|value| !value.is_finite()) {
+            Some(bad) => Err(bad_input(place, bad, allowed)),
+            None => Ok(self),
+        }
+    }
 }
 
 /// Converts an array of real numbers of any shape to float64, in C order.
 ///
 /// # Errors
-/// If the input is not an array of real numbers; the message begins with `place`.
-pub fn numbers<'py>(
-    place: &str,
-    given: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    if let Ok(array) = given.cast::<PyArrayDyn<f64>>()
-        && array.is_c_contiguous()
-    {
-        return Ok(array.clone());
-    }
+/// If the input is not an array of real numbers, or if somebody writes to it; the message begins with `place`.
+pub fn numbers<'py>(place: &str, given: &Object<'py>) -> PyResult<Numbers<'py>> {
+    let array = match given.cast::<PyArrayDyn<f64>>() {
+        Ok(array) if array.is_c_contiguous() => array.clone(),
+        _ => converted(place, given)?,
+    };
+    let array = array.try_readonly();
+    array
+        .map(Numbers)
+        .map_err(|error| bad_input(place, error, "an array that nobody writes to meanwhile"))
+}
+
+fn converted<'py>(place: &str, given: &Object<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let py = given.py();
     let array = asarray(py, given)
         .map_err(|error| bad_input(place, error.value(py), "an array of real numbers"))?;
@@ -43,25 +84,21 @@ pub fn numbers<'py>(
     Ok(array.cast_into::<PyArrayDyn<f64>>()?)
 }
 
-/// Converts an array of real numbers to float64 and passes a view of the result to the closure `look`.
+/// Converts an array of real numbers whose shape satisfies `is_shape` to float64, in C order.
 ///
 /// # Errors
-/// If the input is not an array of real numbers, or if its shape does not satisfy `is_shape`.
-pub fn view<T>(
+/// If the input is not an array of real numbers, or if it has another shape; `allowed` describes the allowed shapes.
+pub fn array<'py>(
     place: &str,
-    given: &Bound<PyAny>,
+    given: &Object<'py>,
     allowed: &str,
     is_shape: impl Fn(&[usize]) -> bool,
-    look: impl FnOnce(ArrayViewD<f64>) -> PyResult<T>,
-) -> PyResult<T> {
+) -> PyResult<Numbers<'py>> {
     let array = numbers(place, given)?;
-    if !is_shape(array.shape()) {
-        return Err(bad_input(place, shape_of(array.shape()), allowed));
+    match is_shape(array.shape()) {
+        true => Ok(array),
+        false => Err(bad_input(place, shape_of(array.shape()), allowed)),
     }
-    let array = array
-        .try_readonly()
-        .map_err(|error| bad_input(place, error, "an array that nobody writes to meanwhile"))?;
-    look(array.as_array())
 }
 
 /// Returns a shape as text in Python's notation, such as `shape (3, 7)`.
@@ -73,31 +110,73 @@ pub fn shape_of(shape: &[usize]) -> String {
     }
 }
 
-/// Reads n points or directions from an n × 3 array.
+/// Reads n rows of N numbers from an n × N array.
 ///
 /// # Errors
 /// If the shape is wrong. The library checks that the numbers are finite; its error names them.
-pub fn points(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<DVec3>> {
-    let is_shape = |shape: &[usize]| matches!(shape, [_, 3]);
-    view(place, given, "(n, 3)", is_shape, |array| {
-        let rows = array.rows().into_iter();
-        Ok(rows.map(|row| DVec3::new(row[0], row[1], row[2])).collect())
-    })
+pub fn rows<const N: usize>(place: &str, given: &Object) -> PyResult<Vec<[f64; N]>> {
+    let is_shape = |shape: &[usize]| matches!(shape, [_, n] if *n == N);
+    let array = array(place, given, &format!("(n, {N})"), is_shape)?;
+    Ok(array.values().as_chunks::<N>().0.to_vec())
+}
+
+/// Reads n points or directions from an n × 3 array.
+///
+/// # Errors
+/// If the shape is wrong.
+pub fn points(place: &str, given: &Object) -> PyResult<Vec<DVec3>> {
+    Ok(rows::<3>(place, given)?
+        .into_iter()
+        .map(DVec3::from)
+        .collect())
+}
+
+/// Reads one row of N numbers, or n rows. Returns the rows, and whether the argument was one row.
+///
+/// # Errors
+/// If the shape is wrong, or a number is not finite.
+pub fn one_or_rows<const N: usize>(place: &str, given: &Object) -> PyResult<(Vec<[f64; N]>, bool)> {
+    let row: &[usize] = if N == 1 { &[] } else { &[N] };
+    let allowed = match N {
+        1 => "a number, or (n,)".to_owned(),
+        _ => format!("({N},), or (n, {N})"),
+    };
+    let is_shape = |shape: &[usize]| shape == row || matches!(shape, [_, rest @ ..] if rest == row);
+    let array = array(place, given, &allowed, is_shape)?.finite(place, "finite numbers")?;
+    let rows = array.values().as_chunks::<N>().0.to_vec();
+    Ok((rows, array.shape() == row))
 }
 
 /// Returns n numbers from an array of n numbers, or from a single number that is repeated n times.
 ///
 /// # Errors
 /// If the shape is wrong.
-pub fn each(place: &str, given: &Bound<PyAny>, n: usize) -> PyResult<Vec<f64>> {
+pub fn each(place: &str, given: &Object, n: usize) -> PyResult<Vec<f64>> {
     let is_shape = |shape: &[usize]| shape.is_empty() || shape == [n];
     let allowed = format!("({n},), or one number for all");
-    view(place, given, &allowed, is_shape, |array| {
-        Ok(match array.ndim() {
-            0 => vec![array.first().copied().unwrap_or(f64::NAN); n],
-            _ => array.iter().copied().collect(),
-        })
+    let array = array(place, given, &allowed, is_shape)?;
+    Ok(match array.shape() {
+        [] => vec![array.values()[0]; n],
+        _ => array.values().to_vec(),
     })
+}
+
+/// Converts numbers of an array to whole numbers from 0.
+///
+/// # Errors
+/// If a number has a fractional part, is negative or is too large; `allowed` describes the allowed numbers.
+pub fn whole_numbers<T: TryFrom<u64>>(
+    place: &str,
+    values: &[f64],
+    allowed: &str,
+) -> PyResult<Vec<T>> {
+    let whole = |&value: &f64| {
+        let is_whole = value.fract() == 0.0 && (0.0..2f64.powi(53)).contains(&value);
+        let number = is_whole.then_some(value as u64);
+        let number = number.and_then(|number| T::try_from(number).ok());
+        number.ok_or_else(|| bad_input(place, value, allowed))
+    };
+    values.iter().map(whole).collect()
 }
 
 /// Converts an integer from Python to the integer type `T`; the error message contains `place`.
@@ -130,7 +209,7 @@ pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>)
 /// If the number of taxels is wrong, the frames of a grid have other sides than `sides` (rows, columns), or a number is not finite.
 pub fn frames(
     place: &str,
-    given: &Bound<PyAny>,
+    given: &Object,
     n_taxels: usize,
     sides: Option<[usize; 2]>,
 ) -> PyResult<Array2<f64>> {
@@ -139,39 +218,35 @@ pub fn frames(
         Some([ny, nx]) => format!("(n, {ny}, {nx}) or (n, {n_taxels}), or one frame"),
         None => format!("(n, …) with {n_taxels} taxels a frame"),
     };
-    view(place, given, &allowed, is_shape, |array| {
-        let n_frames = array.len() / n_taxels;
-        let values: Vec<f64> = array.iter().copied().collect();
-        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            let place = format!("{place}, frame {}, taxel {}", at / n_taxels, at % n_taxels);
-            return Err(bad_input(place, values[at], "only finite numbers"));
-        }
-        let frames = Array2::from_shape_vec((n_frames, n_taxels), values);
-        Ok(frames.expect("as many values as frames times taxels"))
-    })
+    let array = array(place, given, &allowed, is_shape)?;
+    let values = array.values();
+    if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+        let place = format!("{place}, frame {}, taxel {}", at / n_taxels, at % n_taxels);
+        return Err(bad_input(place, values[at], "only finite numbers"));
+    }
+    let frames = Array2::from_shape_vec((values.len() / n_taxels, n_taxels), values.to_vec());
+    Ok(frames.expect("as many values as frames times taxels"))
+}
+
+/// Converts rows of N numbers to an n × N array for Python.
+pub fn to_matrix<const N: usize>(py: Python<'_>, rows: Vec<[f64; N]>) -> Matrix<'_> {
+    Array2::from(rows).into_pyarray(py)
 }
 
 /// Converts points to an n × 3 array for Python.
-pub fn to_rows<'py>(
-    py: Python<'py>,
-    points: impl ExactSizeIterator<Item = DVec3>,
-) -> Bound<'py, PyArray2<f64>> {
-    let n = points.len();
-    let values: Vec<f64> = points.flat_map(|point| point.to_array()).collect();
-    let rows = Array2::from_shape_vec((n, 3), values).expect("three numbers a point");
-    rows.into_pyarray(py)
+pub fn to_rows<'py>(py: Python<'py>, points: impl Iterator<Item = DVec3>) -> Matrix<'py> {
+    to_matrix(py, points.map(DVec3::into).collect())
 }
 
 /// Converts n values to a NumPy array of shape (n,).
 pub fn to_column<T: numpy::Element>(
     py: Python<'_>,
     values: impl IntoIterator<Item = T>,
-) -> Bound<'_, PyArray1<T>> {
+) -> Vector<'_, T> {
     values.into_iter().collect::<Vec<T>>().into_pyarray(py)
 }
 
 /// Returns the corners of a box as a NumPy array `[[min], [max]]`, metres.
-pub fn corners<'py>(py: Python<'py>, bounds: &Aabb) -> Bound<'py, PyArray2<f64>> {
-    let corners: [DVec3; 2] = [bounds.min, bounds.max];
-    to_rows(py, corners.into_iter())
+pub fn corners<'py>(py: Python<'py>, bounds: &Aabb) -> Matrix<'py> {
+    to_rows(py, [bounds.min, bounds.max].into_iter())
 }

@@ -3,51 +3,17 @@
 use crate::errors::{exception, guarded};
 use crate::study::{ColumnsOfTable, columns};
 use crate::threads::aside;
-use bubbletouch::audit::{AuditData, AuditFiles, AuditOptions, Finding, audit, audit_files};
+use bubbletouch::audit::{AuditData, AuditFiles, AuditOptions, audit, audit_files};
 use bubbletouch::report::folder::write_files;
 use bubbletouch::study::RecordedSpec;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Finding of an audit: check, subject, verdict, value, interval, baseline, p-value, corrected p-value, sentence and advice.
-type SaidFinding = (
-    String,
-    String,
-    String,
-    f64,
-    [f64; 2],
-    f64,
-    Option<f64>,
-    Option<f64>,
-    String,
-    String,
-);
-
-fn said(finding: &Finding) -> SaidFinding {
-    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-    (
-        finding.check.clone(),
-        finding.subject.clone(),
-        finding.verdict.word(),
-        number(finding.value),
-        [finding.value_low, finding.value_high].map(number),
-        number(finding.baseline),
-        finding.p_value,
-        finding.p_holm,
-        finding.sentence.clone(),
-        finding.advice.clone(),
-    )
-}
-
 /// Audits files, by their names `data`, `labels`, `groups`, `sessions`, `times`, `lengths`, `frames_test`, `labels_test`, `groups_test` and `lengths_test`, as the
-/// command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the findings and the tables.
+/// command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the tables; the first one lists the findings.
 #[pyfunction]
 #[pyo3(signature = (files, order, columns, grid, full_scale, before_contact, untouched, split, not_claimed, seed, permutations, name, out))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "called by bubbletouch.audit alone"
-)]
 pub fn run_audit<'py>(
     py: Python<'py>,
     mut files: BTreeMap<String, PathBuf>,
@@ -63,7 +29,7 @@ pub fn run_audit<'py>(
     permutations: usize,
     name: String,
     out: PathBuf,
-) -> PyResult<(Vec<SaidFinding>, Vec<ColumnsOfTable<'py>>)> {
+) -> PyResult<Vec<ColumnsOfTable<'py>>> {
     guarded(|| {
         let mut file = |name: &str| files.remove(name);
         let files = AuditFiles {
@@ -104,20 +70,16 @@ fn audit_of<'py>(
     data: AuditData,
     options: AuditOptions,
     (name, out): (String, PathBuf),
-) -> PyResult<(Vec<SaidFinding>, Vec<ColumnsOfTable<'py>>)> {
+) -> PyResult<Vec<ColumnsOfTable<'py>>> {
     options.check(&data, str::to_owned).map_err(exception)?;
     let found = aside(py, move |_| -> bubbletouch::Result<_> {
         let found = audit(data, options)?;
-        let (findings, tables) = (found.findings.clone(), found.tables.clone());
+        let tables = found.tables.clone();
         let command = "bubbletouch.audit(frames, labels, …)";
         let files = audit_files(found, &name, command)?;
         write_files(&out, files)?;
-        Ok((findings, tables))
+        Ok(tables)
     });
-    let (findings, tables) = found?.map_err(exception)?;
-    let tables = tables.iter().map(|table| columns(py, table));
-    Ok((
-        findings.iter().map(said).collect(),
-        tables.collect::<PyResult<_>>()?,
-    ))
+    let tables = found?.map_err(exception)?;
+    tables.iter().map(|table| columns(py, table)).collect()
 }

@@ -69,27 +69,14 @@ pub fn for_each<T: Send, S: Send>(
     py.detach(|| {
         let most = n_items.div_ceil(LEAST_PER_THREAD);
         let scratch = || spare.take().unwrap_or_else(&new_scratch);
-        if most <= 1 || threads == Some(1) {
-            let mut scratch = scratch();
-            let mut interrupt = Interrupt::new();
-            let mut worked = Ok(());
-            for (number, item) in items.into_iter().enumerate() {
-                worked = work(number, item, &mut scratch);
-                if worked.is_err() {
-                    break;
-                }
-                worked = interrupt.check();
-                if worked.is_err() {
-                    break;
-                }
-            }
-            spare.give_back(scratch);
-            return worked;
-        }
-        let pool = pool()?;
-        let n_threads = threads
-            .unwrap_or_else(|| pool.current_num_threads())
-            .min(most);
+        let pool = match most <= 1 || threads == Some(1) {
+            true => None,
+            false => Some(pool()?),
+        };
+        let n_threads = pool.as_ref().map_or(1, |pool| {
+            let n = threads.unwrap_or_else(|| pool.current_num_threads());
+            n.min(most)
+        });
         let at_once = (n_items / (4 * n_threads)).clamp(1, MAX_AT_ONCE);
         let queue = Mutex::new(items.into_iter().enumerate());
         let failed: Mutex<Option<(usize, PyErr)>> = Mutex::new(None);
@@ -126,12 +113,16 @@ pub fn for_each<T: Send, S: Send>(
             }
             spare.give_back(scratch);
         };
-        pool.in_place_scope(|scope| {
-            for _ in 1..n_threads {
-                scope.spawn(|_| run(None));
-            }
-            run(Some(Interrupt::new()));
-        });
+        let here = || run(Some(Interrupt::new()));
+        match pool {
+            None => here(),
+            Some(pool) => pool.in_place_scope(|scope| {
+                for _ in 1..n_threads {
+                    scope.spawn(|_| run(None));
+                }
+                here();
+            }),
+        }
         match failed.into_inner() {
             Ok(Some((_, error))) => Err(error),
             _ => Ok(()),

@@ -1,12 +1,11 @@
 //! `Catalogue` and `Solid`: named objects as parametric solids with real dimensions.
 
-use crate::arrays::corners;
+use crate::arrays::{Matrix, corners};
 use crate::errors::{check_readable, exception, guarded};
 use crate::sphere_union::SphereUnion;
 use crate::threads::aside;
 use bubbletouch::objects::{self, Entry};
 use bubbletouch::study::load_catalogue;
-use numpy::PyArray2;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -99,7 +98,7 @@ impl Solid {
 
     /// Bounding box (2, 3): the smallest and largest coordinates, metres.
     #[getter]
-    fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn bounds<'py>(&self, py: Python<'py>) -> Matrix<'py> {
         corners(py, &self.0.solid.bounds())
     }
 

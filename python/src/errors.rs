@@ -9,9 +9,10 @@
 
 use bubbletouch::Error;
 use pyo3::create_exception;
-use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use std::any::Any;
+use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind, set_hook};
 use std::path::Path;
 use std::sync::Mutex;
@@ -81,6 +82,31 @@ pub fn os_error(path: &Path, source: &std::io::Error, said: String) -> PyErr {
 /// Creates a `ValueError` with the message `<where>: <what was given>; <what is allowed>`.
 pub fn bad_input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> PyErr {
     exception(Error::input(place, given, allowed))
+}
+
+/// Returns the value of a name. `known` contains all names with their values.
+///
+/// # Errors
+/// If the name is unknown; the error lists all names.
+pub fn one_of<T: Copy>(place: &str, name: &str, known: &[(&str, T)]) -> PyResult<T> {
+    let found = known.iter().find(|(known, _)| *known == name);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        let (last, others) = names.split_last().expect("there are names");
+        let allowed = format!("{} or {last}", others.join(", "));
+        bad_input(place, format!("`{name}`"), allowed)
+    })
+}
+
+/// Issues notes as Python warnings; `level` is the number of the frame of the call stack that the warning names.
+///
+/// # Errors
+/// If Python raises a warning as an exception.
+pub fn warn(py: Python, notes: impl IntoIterator<Item: ToString>, level: i32) -> PyResult<()> {
+    notes.into_iter().try_for_each(|note| {
+        let note = CString::new(note.to_string()).unwrap_or_default();
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, level)
+    })
 }
 
 /// Checks that the file at `path` exists and can be opened, before the library reads it.

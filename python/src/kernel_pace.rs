@@ -1,5 +1,6 @@
 //! Measurement of the speed of the press kernel alone.
 
+use crate::arrays::Object;
 use crate::errors::exception;
 use crate::model::model_of;
 use crate::patch::Patch;
@@ -16,9 +17,9 @@ use std::time::Instant;
 pub fn _kernel_pace(
     py: Python,
     patch: &Bound<Patch>,
-    object: &Bound<PyAny>,
-    poses: &Bound<PyAny>,
-    depth: &Bound<PyAny>,
+    object: &Object,
+    poses: &Object,
+    depth: &Object,
     seconds: f64,
 ) -> PyResult<f64> {
     let poses = Poses::from_argument("poses", poses)?.poses;

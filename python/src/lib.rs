@@ -3,6 +3,8 @@
 //! The Python package (`python/bubbletouch`) exports the items of this module, and documents them in `_core.pyi`. This module contains no algorithms.
 //! Arguments are checked and converted from arrays, the library is called without the interpreter's lock, and results are converted to arrays.
 
+#![expect(clippy::too_many_arguments, reason = "arguments have names in Python")]
+
 mod arrays;
 mod audit;
 mod batch;
@@ -37,43 +39,27 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use audit::run_audit;
-    #[pymodule_export]
-    use catalogue::{Catalogue, Solid};
-    #[pymodule_export]
-    use errors::{_panic, InternalError};
-    #[pymodule_export]
-    use kernel_pace::_kernel_pace;
-    #[pymodule_export]
-    use mesh::Mesh;
-    #[pymodule_export]
-    use patch::Patch;
-    #[pymodule_export]
-    use picture::write_frame;
-    #[pymodule_export]
-    use placement::touch_poses;
-    #[pymodule_export]
-    use press::contacts::Contacts;
-    #[pymodule_export]
-    use projection::Projection;
-    #[pymodule_export]
-    use reconstruction::Reconstructor;
-    #[pymodule_export]
-    use robot::{Joint, Robot};
-    #[pymodule_export]
-    use signal::{Chain, Step};
-    #[pymodule_export]
-    use simulation::Simulation;
-    #[pymodule_export]
-    use skin::{ShearState, Skin};
-    #[pymodule_export]
-    use sphere_union::SphereUnion;
-    #[pymodule_export]
-    use study::{advise, rename_old_results, run_study, toml_of, with_recorded};
-    #[pymodule_export]
-    use svm::{KernelSvm, LinearModel, choose_svm};
-    #[pymodule_export]
-    use table::{column_families, read_table};
+    use {
+        audit::run_audit,
+        catalogue::{Catalogue, Solid},
+        errors::{_panic, InternalError},
+        kernel_pace::_kernel_pace,
+        mesh::Mesh,
+        patch::Patch,
+        picture::write_frame,
+        placement::touch_poses,
+        press::contacts::Contacts,
+        projection::Projection,
+        reconstruction::Reconstructor,
+        robot::{Joint, Robot},
+        signal::{Chain, Step},
+        simulation::Simulation,
+        skin::{ShearState, Skin},
+        sphere_union::SphereUnion,
+        study::{advise, rename_old_results, run_study, toml_of, with_recorded},
+        svm::{KernelSvm, LinearModel, choose_svm},
+        table::{column_families, read_table},
+    };
 
     #[pymodule_init]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -1,7 +1,9 @@
 //! Class `Mesh`: triangle meshes.
 
-use crate::arrays::{corners, numbers, points, shape_of, to_rows, view};
-use crate::errors::{bad_input, check_readable, exception, guarded};
+use crate::arrays::{
+    Matrix, Object, Vector, array, corners, points, rows, to_column, to_rows, whole_numbers,
+};
+use crate::errors::{bad_input, check_readable, exception, guarded, warn};
 use crate::length_unit::unit_of;
 use crate::sphere_union::SphereUnion;
 use crate::threads::aside;
@@ -11,11 +13,9 @@ use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
 use bubbletouch::study::{pack_with, read_mesh_file};
 use glam::DVec3;
 use ndarray::Array2;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyUserWarning;
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use std::ffi::CString;
 use std::path::PathBuf;
 
 /// Advice in the error message for a mesh that cannot be packed.
@@ -49,6 +49,11 @@ impl Mesh {
         Self::from_model(place, MeshModel::new(mesh))
     }
 
+    /// Wraps the mesh of a primitive shape.
+    fn of_shape(place: &str, mesh: bubbletouch::Result<TriangleMesh>) -> PyResult<Self> {
+        Ok(Self::new(place.to_owned(), mesh.map_err(exception)?))
+    }
+
     fn from_model(place: String, contact: MeshModel) -> Self {
         Self {
             place,
@@ -76,25 +81,22 @@ impl Mesh {
     /// # Errors
     /// If Python raises the warning as an exception.
     pub fn warn_if_turned(&self, py: Python, orientation: &Orientation) -> PyResult<()> {
-        if !orientation.is_turned() {
-            return Ok(());
-        }
-        let text = CString::new(format!("{}: {orientation}", self.place)).unwrap_or_default();
-        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
+        let turned = orientation
+            .is_turned()
+            .then(|| format!("{}: {orientation}", self.place));
+        warn(py, turned, 1)
     }
 }
 
 #[pymethods]
 impl Mesh {
     #[new]
-    fn from_arrays(vertices: &Bound<PyAny>, triangles: &Bound<PyAny>) -> PyResult<Self> {
+    fn from_arrays(vertices: &Object, triangles: &Object) -> PyResult<Self> {
         guarded(|| {
             let vertices = points("vertices", vertices)?;
             let triangles = corner_numbers(triangles)?;
-            let place = "mesh".to_owned();
-            let mesh = TriangleMesh::in_unit(&place, LengthUnit::Metre, vertices, triangles);
-            let mesh = mesh.map_err(exception)?;
-            Ok(Self::new(place, mesh))
+            let mesh = TriangleMesh::in_unit("mesh", LengthUnit::Metre, vertices, triangles);
+            Self::of_shape("mesh", mesh)
         })
     }
 
@@ -141,11 +143,10 @@ impl Mesh {
     /// Returns a box about the origin with the side lengths `size` (3,), metres, positive: 12 triangles.
     #[staticmethod]
     #[pyo3(name = "box")]
-    fn cuboid(size: &Bound<PyAny>) -> PyResult<Self> {
+    fn cuboid(size: &Object) -> PyResult<Self> {
         guarded(|| {
             let size = three_lengths("size", size)?;
-            let mesh = TriangleMesh::cuboid("box", size).map_err(exception)?;
-            Ok(Self::new("box".to_owned(), mesh))
+            Self::of_shape("box", TriangleMesh::cuboid("box", size))
         })
     }
 
@@ -156,9 +157,8 @@ impl Mesh {
     #[pyo3(signature = (radius, length, tolerance=1e-5))]
     fn cylinder(radius: f64, length: f64, tolerance: f64) -> PyResult<Self> {
         guarded(|| {
-            let place = "cylinder";
-            let mesh = TriangleMesh::cylinder(place, radius, length, tolerance);
-            Ok(Self::new(place.to_owned(), mesh.map_err(exception)?))
+            let mesh = TriangleMesh::cylinder("cylinder", radius, length, tolerance);
+            Self::of_shape("cylinder", mesh)
         })
     }
 
@@ -168,12 +168,11 @@ impl Mesh {
     /// ball.
     #[staticmethod]
     #[pyo3(signature = (radii, tolerance=1e-5))]
-    fn ellipsoid(radii: &Bound<PyAny>, tolerance: f64) -> PyResult<Self> {
+    fn ellipsoid(radii: &Object, tolerance: f64) -> PyResult<Self> {
         guarded(|| {
             let radii = three_lengths("radii", radii)?;
-            let place = "ellipsoid";
-            let mesh = TriangleMesh::ellipsoid(place, radii, tolerance);
-            Ok(Self::new(place.to_owned(), mesh.map_err(exception)?))
+            let mesh = TriangleMesh::ellipsoid("ellipsoid", radii, tolerance);
+            Self::of_shape("ellipsoid", mesh)
         })
     }
 
@@ -271,22 +270,20 @@ impl Mesh {
 
     /// Vertices of the mesh (n, 3), metres; a copy.
     #[getter]
-    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn vertices<'py>(&self, py: Python<'py>) -> Matrix<'py> {
         to_rows(py, self.triangle_mesh().vertices().iter().copied())
     }
 
     /// Triangles of the mesh (m, 3) as vertex indices; a copy.
     #[getter]
-    fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
+    fn triangles<'py>(&self, py: Python<'py>) -> Matrix<'py, u32> {
         let triangles = self.triangle_mesh().triangles();
-        let corners = triangles.iter().flatten().copied().collect();
-        let rows = Array2::from_shape_vec((triangles.len(), 3), corners);
-        rows.expect("three corners a triangle").into_pyarray(py)
+        Array2::from(triangles.to_vec()).into_pyarray(py)
     }
 
     /// Bounding box (2, 3): the smallest and largest coordinates, metres.
     #[getter]
-    fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn bounds<'py>(&self, py: Python<'py>) -> Matrix<'py> {
         corners(py, &self.contact.bounds())
     }
 
@@ -304,9 +301,8 @@ impl Mesh {
 
     /// Centroid of the mesh's volume (3,), metres.
     #[getter]
-    fn centroid<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let DVec3 { x, y, z } = self.triangle_mesh().volume_and_centroid().1;
-        vec![x, y, z].into_pyarray(py)
+    fn centroid<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        to_column(py, self.triangle_mesh().volume_and_centroid().1.to_array())
     }
 
     /// Number of triangles of the mesh.
@@ -321,10 +317,7 @@ impl Mesh {
         format!("<bubbletouch.Mesh {place}: {n} triangles, {x:.1} × {y:.1} × {z:.1} mm>")
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Object<'py>, Bound<'py, PyTuple>)> {
         let class = py.get_type::<Self>();
         Ok(match &self.capsule {
             Some(capsule) => (class.getattr("capsule")?, PyTuple::new(py, capsule.sizes)?),
@@ -337,12 +330,10 @@ impl Mesh {
 }
 
 /// Reads three positive lengths, metres.
-fn three_lengths(place: &str, given: &Bound<PyAny>) -> PyResult<DVec3> {
+fn three_lengths(place: &str, given: &Object) -> PyResult<DVec3> {
     let allowed = "(3,) of positive numbers of metres";
-    let is_shape = |shape: &[usize]| shape == [3];
-    let lengths = view(place, given, allowed, is_shape, |array| {
-        Ok(DVec3::new(array[0], array[1], array[2]))
-    })?;
+    let lengths = array(place, given, allowed, |shape| shape == [3])?;
+    let lengths = DVec3::from_slice(lengths.values());
     match lengths.is_finite() && lengths.cmpgt(DVec3::ZERO).all() {
         true => Ok(lengths),
         false => Err(bad_input(place, lengths, allowed)),
@@ -350,20 +341,9 @@ fn three_lengths(place: &str, given: &Bound<PyAny>) -> PyResult<DVec3> {
 }
 
 /// Reads the vertex indices of triangles from an n × 3 array of integers.
-fn corner_numbers(given: &Bound<PyAny>) -> PyResult<Vec<[u32; 3]>> {
-    const PLACE: &str = "triangles";
-    let array = numbers(PLACE, given)?;
-    let &[_, 3] = array.shape() else {
-        return Err(bad_input(PLACE, shape_of(array.shape()), "(n, 3)"));
-    };
-    let array = array.try_readonly()?;
-    let number = |&value: &f64| match value {
-        whole if whole >= 0.0 && whole <= f64::from(u32::MAX) && whole.fract() == 0.0 => {
-            Ok(whole as u32)
-        }
-        other => Err(bad_input(PLACE, other, "whole numbers of vertices, from 0")),
-    };
-    let rows = array.as_slice()?.chunks_exact(3);
-    rows.map(|row| Ok([number(&row[0])?, number(&row[1])?, number(&row[2])?]))
-        .collect()
+fn corner_numbers(given: &Object) -> PyResult<Vec<[u32; 3]>> {
+    let corners = rows::<3>("triangles", given)?;
+    let allowed = "whole numbers of vertices, from 0";
+    let corners: Vec<u32> = whole_numbers("triangles", corners.as_flattened(), allowed)?;
+    Ok(corners.as_chunks::<3>().0.to_vec())
 }

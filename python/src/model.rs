@@ -1,5 +1,6 @@
 //! Contact models of objects: a [`Mesh`] or a [`SphereUnion`].
 
+use crate::arrays::Object;
 use crate::errors::bad_input;
 use crate::mesh::Mesh;
 use crate::sphere_union::SphereUnion;
@@ -11,7 +12,7 @@ use pyo3::prelude::*;
 ///
 /// # Errors
 /// If the object is neither a `Mesh` nor a `SphereUnion`; the message begins with `place`.
-pub fn model_of<'a>(place: &str, object: &'a Bound<PyAny>) -> PyResult<&'a Model> {
+pub fn model_of<'a>(place: &str, object: &'a Object) -> PyResult<&'a Model> {
     if let Ok(spheres) = object.cast::<SphereUnion>() {
         return Ok(spheres.get().model());
     }
@@ -37,13 +38,13 @@ impl<'a> Objects<'a> {
     ///
     /// # Errors
     /// If the sequence is empty, or an object is neither a `Mesh` nor a `SphereUnion`.
-    pub fn from_argument(object: &'a Bound<PyAny>) -> PyResult<Self> {
+    pub fn from_argument(object: &'a Object) -> PyResult<Self> {
         const PLACE: &str = "object";
         let one = model_of(PLACE, object);
         let (Err(_), Ok(objects)) = (&one, object.try_iter()) else {
             return one.map(Self::One);
         };
-        let model = |(number, object): (usize, PyResult<Bound<PyAny>>)| {
+        let model = |(number, object): (usize, PyResult<Object>)| {
             Ok(model_of(&format!("{PLACE}[{number}]"), &object?)?.clone())
         };
         let models: Vec<Model> = objects.enumerate().map(model).collect::<PyResult<_>>()?;

@@ -1,11 +1,10 @@
 //! Poses `patch_from_object`, each given as seven numbers or a 4 × 4 matrix.
 
-use crate::arrays::{numbers, shape_of};
+use crate::arrays::{Object, numbers, shape_of};
 use crate::errors::bad_input;
 use bubbletouch::geometry::{Pose, written_rotation, written_rotation_matrix};
 use glam::{DMat3, DQuat, DVec3};
 use ndarray::ArrayView1;
-use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without n for one";
@@ -23,7 +22,7 @@ impl Poses {
     ///
     /// # Errors
     /// If the shape is wrong, or a pose is not finite or contains no rotation; the error names the pose's number, from 0.
-    pub fn from_argument(place: &str, given: &Bound<PyAny>) -> PyResult<Self> {
+    pub fn from_argument(place: &str, given: &Object) -> PyResult<Self> {
         Self::of_objects(place, given, None)
     }
 
@@ -31,7 +30,7 @@ impl Poses {
     ///
     /// # Errors
     /// If the array contains several poses, or the pose is not finite or contains no rotation.
-    pub fn single(place: &str, given: &Bound<PyAny>) -> PyResult<Pose> {
+    pub fn single(place: &str, given: &Object) -> PyResult<Pose> {
         let poses = Self::from_argument(place, given)?.poses;
         let [pose] = poses[..] else {
             let given = format!("{} poses", poses.len());
@@ -40,53 +39,77 @@ impl Poses {
         Ok(pose)
     }
 
+    /// Reads a single pose from an array of shape (7,) or (4, 4).
+    ///
+    /// # Errors
+    /// If the array has another axis, or the pose is not finite or contains no rotation.
+    pub fn only(place: &str, given: &Object) -> PyResult<Pose> {
+        let Self { poses, is_one } = Self::from_argument(place, given)?;
+        match (is_one, &poses[..]) {
+            (true, &[pose]) => Ok(pose),
+            _ => {
+                let given = format!("{} poses", poses.len());
+                Err(bad_input(place, given, "one pose, (7,) or (4, 4)"))
+            }
+        }
+    }
+
     /// Reads poses of k objects from an array of shape (n, k, 7), (k, 7), (n, k, 4, 4) or (k, 4, 4). If `n_objects` is `None`, the shapes have no axis k.
     ///
     /// # Errors
     /// If the shape is wrong, or a pose is not finite or contains no rotation; the error names the pose's number, from 0.
-    pub fn of_objects(
-        place: &str,
-        given: &Bound<PyAny>,
-        n_objects: Option<usize>,
-    ) -> PyResult<Self> {
-        let array = numbers(place, given)?;
-        let k = n_objects.unwrap_or(1);
-        let shape = array.shape();
-        let (n_numbers, is_one) = match (n_objects, shape) {
-            (None, [7]) => (7, true),
-            (None, [4, 4]) => (16, true),
-            (None, [_, 7]) => (7, false),
-            (None, [_, 4, 4]) => (16, false),
-            (Some(_), [n, 7]) if *n == k => (7, true),
-            (Some(_), [n, 4, 4]) if *n == k => (16, true),
-            (Some(_), [_, n, 7]) if *n == k => (7, false),
-            (Some(_), [_, n, 4, 4]) if *n == k => (16, false),
-            (None, other) => return Err(bad_input(place, shape_of(other), ALLOWED)),
-            (Some(_), other) => {
-                let allowed =
-                    format!("(n, {k}, 7) or (n, {k}, 4, 4), one pose an object; without n for one");
-                return Err(bad_input(place, shape_of(other), allowed));
-            }
+    pub fn of_objects(place: &str, given: &Object, n_objects: Option<usize>) -> PyResult<Self> {
+        let allowed = n_objects.map_or(ALLOWED.to_owned(), |k| {
+            format!("(n, {k}, 7) or (n, {k}, 4, 4), one pose an object; without n for one")
+        });
+        let of_one: &[usize] = n_objects.as_slice();
+        let axes_of = |leading: &[usize]| {
+            let is_several = matches!(leading, [_, rest @ ..] if rest == of_one);
+            (leading == of_one || is_several).then(|| leading.to_vec())
         };
-        let array = array
-            .try_readonly()
-            .map_err(|error| bad_input(place, error, "an array that nobody writes to meanwhile"))?;
-        let values = array.as_slice()?;
-        let of = |(number, values): (usize, &[f64])| {
-            from_numbers(values).map_err(|allowed| {
-                let place = match (n_objects, is_one) {
-                    (None, true) => place.to_owned(),
-                    (None, false) | (Some(_), true) => format!("{place}[{number}]"),
-                    (Some(_), false) => format!("{place}[{}, {}]", number / k, number % k),
-                };
-                bad_input(place, ArrayView1::from(values), allowed)
-            })
-        };
-        let poses = values.chunks_exact(n_numbers).enumerate().map(of);
-        Ok(Self {
-            poses: poses.collect::<PyResult<_>>()?,
-            is_one,
-        })
+        let mut poses = Vec::new();
+        let axes = read_poses((place, given), &allowed, axes_of, &mut poses)?;
+        let is_one = axes == of_one;
+        Ok(Self { poses, is_one })
+    }
+}
+
+/// Reads the poses of an array with the shape (…, 7) or (…, 4, 4) into `poses`. `axes_of` returns the axes by which errors name a pose, given the axes before
+/// the last one or two; `None` if these axes are not allowed. Returns the axes.
+///
+/// # Errors
+/// If the shape is not `allowed`, or a pose is not finite or contains no rotation.
+pub fn read_poses(
+    (place, given): (&str, &Object),
+    allowed: &str,
+    axes_of: impl Fn(&[usize]) -> Option<Vec<usize>>,
+    poses: &mut Vec<Pose>,
+) -> PyResult<Vec<usize>> {
+    let array = numbers(place, given)?;
+    let (leading, width) = match array.shape() {
+        [leading @ .., 4, 4] => (Some(leading), 16),
+        [leading @ .., 7] => (Some(leading), 7),
+        _ => (None, 1),
+    };
+    let axes = leading.and_then(axes_of);
+    let axes = axes.ok_or_else(|| bad_input(place, shape_of(array.shape()), allowed))?;
+    poses.clear();
+    for (number, values) in array.values().chunks_exact(width).enumerate() {
+        let read = from_numbers(values).map_err(|allowed| {
+            let place = element(place, number, &axes);
+            bad_input(place, ArrayView1::from(values), allowed)
+        });
+        poses.push(read?);
+    }
+    Ok(axes)
+}
+
+/// Returns the place of an element of an array with the given axes, such as `poses[3, 0]`.
+pub fn element(place: &str, number: usize, axes: &[usize]) -> String {
+    match axes {
+        [] => place.to_owned(),
+        [_, k] => format!("{place}[{}, {}]", number / k, number % k),
+        _ => format!("{place}[{number}]"),
     }
 }
 
@@ -94,7 +117,7 @@ impl Poses {
 ///
 /// # Errors
 /// If the numbers are no pose; the error states what is allowed.
-pub fn from_numbers(values: &[f64]) -> Result<Pose, &'static str> {
+fn from_numbers(values: &[f64]) -> Result<Pose, &'static str> {
     if let Some((position, quaternion)) = values.split_at_checked(3)
         && quaternion.len() == 4
     {

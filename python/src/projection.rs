@@ -1,12 +1,12 @@
 //! Class `Projection`: compression of frames to measurements.
 
-use crate::arrays::{frames, whole_number};
+use crate::arrays::{Matrix, Object, frames, whole_number};
 use crate::errors::{bad_input, exception, guarded};
 use crate::threads::pool;
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{self, Ensemble};
 use bubbletouch::world::ImageShape;
-use numpy::{IntoPyArray, PyArray2};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 
 /// Random projection y = Φx of frames with ny × nx taxels to m measurements; Φ is drawn once.
@@ -71,14 +71,9 @@ impl Projection {
 
     /// Returns the measurements (n, m) of frames (n, …) with n_taxels numbers per frame; (1, m) for one frame. The measurements of a frame are bitwise
     /// equal in any batch.
-    fn __call__<'py>(
-        &self,
-        py: Python<'py>,
-        frames: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn __call__<'py>(&self, frames: &Object<'py>) -> PyResult<Matrix<'py>> {
         guarded(|| {
-            let (rows, columns) = self.shape();
-            let sides = Some([rows, columns]);
+            let (py, sides) = (frames.py(), Some(self.shape().into()));
             let frames = self::frames("frames", frames, self.projection.n_taxels(), sides)?;
             let pool = pool()?;
             let measured = py.detach(|| pool.install(|| self.projection.measure(frames.view())));
@@ -88,7 +83,7 @@ impl Projection {
 
     /// Measurement matrix Φ (m, n_taxels); computed on access.
     #[getter]
-    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         guarded(|| Ok(py.detach(|| self.projection.matrix()).into_pyarray(py)))
     }
 

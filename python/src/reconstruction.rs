@@ -1,17 +1,29 @@
 //! Class `Reconstructor`: reconstruction of frames from measurements.
 
-use crate::arrays::{frames, to_column, view, whole_number};
-use crate::errors::{bad_input, exception, guarded};
+use crate::arrays::{Object, array, frames, to_column, whole_number};
+use crate::errors::{bad_input, exception, guarded, one_of};
 use crate::projection::Projection;
 use crate::threads::pool;
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{self, Basis, Dictionary, Effort, SensedDictionary, Solver};
 use bubbletouch::world::ImageShape;
-use ndarray::Ix2;
+use ndarray::Array2;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use self_cell::self_cell;
+
+const BASES: [(&str, Basis); 4] = [
+    ("dct", Basis::Dct),
+    ("haar", Basis::Haar),
+    ("daubechies4", Basis::Daubechies4),
+    ("pca", Basis::Pca),
+];
+const SOLVERS: [(&str, Solver); 3] = [
+    ("omp", Solver::Omp),
+    ("l1", Solver::L1),
+    ("lmmse", Solver::Lmmse),
+];
 
 type Prepared<'a> = sensing::Reconstructor<'a>;
 
@@ -55,11 +67,10 @@ pub struct Reconstructor {
 impl Reconstructor {
     #[new]
     #[pyo3(signature = (projection, training, *, basis="pca", solver="lmmse", n_atoms=None, noise=0.0, seed=0))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn new(
         py: Python,
         projection: &Bound<Projection>,
-        training: &Bound<PyAny>,
+        training: &Object,
         basis: &str,
         solver: &str,
         n_atoms: Option<i128>,
@@ -70,26 +81,8 @@ impl Reconstructor {
             let n_atoms = n_atoms.map(|n| whole_number("n_atoms", n)).transpose()?;
             let seed = whole_number("seed", seed)?;
             let (projection, shape) = (projection.get().inner(), projection.get().shape());
-            let named = |name: &str| format!("`{name}`");
-            let basis = match basis {
-                "dct" => Basis::Dct,
-                "haar" => Basis::Haar,
-                "daubechies4" => Basis::Daubechies4,
-                "pca" => Basis::Pca,
-                other => {
-                    return Err(bad_input(
-                        "basis",
-                        named(other),
-                        "dct, haar, daubechies4 or pca",
-                    ));
-                }
-            };
-            let solver = match solver {
-                "omp" => Solver::Omp,
-                "l1" => Solver::L1,
-                "lmmse" => Solver::Lmmse,
-                other => return Err(bad_input("solver", named(other), "omp, l1 or lmmse")),
-            };
+            let basis = one_of("basis", basis, &BASES)?;
+            let solver = one_of("solver", solver, &SOLVERS)?;
             if !(noise.is_finite() && noise >= 0.0) {
                 return Err(bad_input("noise", noise, "zero or a positive number"));
             }
@@ -130,24 +123,16 @@ impl Reconstructor {
     fn __call__<'py>(
         &self,
         py: Python<'py>,
-        measurements: &Bound<'py, PyAny>,
+        measurements: &Object<'py>,
     ) -> PyResult<Bound<'py, PyDict>> {
         guarded(|| {
             let m = self.n_measurements;
             let is_shape = |shape: &[usize]| matches!(shape, [_, wide] if *wide == m);
             let allowed = format!("(n, {m})");
-            let rows = view(
-                "measurements",
-                measurements,
-                &allowed,
-                is_shape,
-                |array| match array.iter().find(|value| !value.is_finite()) {
-                    Some(bad) => Err(bad_input("measurements", bad, "only finite numbers")),
-                    None => Ok(array.to_owned()),
-                },
-            )?;
-            let rows = rows.into_dimensionality::<Ix2>();
-            let rows = rows.expect("the shape was looked at");
+            let rows = array("measurements", measurements, &allowed, is_shape)?;
+            let rows = rows.finite("measurements", "only finite numbers")?;
+            let rows = Array2::from_shape_vec((rows.shape()[0], m), rows.values().to_vec());
+            let rows = rows.expect("as many numbers as the shape");
             let pool = pool()?;
             let found = py.detach(|| {
                 pool.install(|| {

@@ -1,14 +1,13 @@
 //! Class `Robot`: links, joints and poses of a robot of a URDF or MJCF file.
 
-use crate::arrays::{each, numbers, shape_of, view};
-use crate::errors::{bad_input, check_readable, exception, guarded};
+use crate::arrays::{Object, array, each, numbers, shape_of, to_column, to_matrix};
+use crate::errors::{bad_input, check_readable, exception, guarded, one_of};
 use crate::mesh::Mesh;
 use crate::poses::Poses;
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{LinkSurface, link_surface};
 use bubbletouch::world::{JointKind, MeshFolders, Robot as WorldRobot, ShapeRole};
 use ndarray::Array2;
-use numpy::{IntoPyArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use std::collections::BTreeMap;
@@ -133,15 +132,13 @@ impl Robot {
         &self,
         py: Python<'py>,
         link: &str,
-        q: Option<&Bound<'py, PyAny>>,
-        base: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+        q: Option<&Object<'py>>,
+        base: Option<&Object<'py>>,
+    ) -> PyResult<Object<'py>> {
         guarded(|| {
             let link = self.robot.link(link).map_err(exception)?;
-            let base = match base {
-                Some(base) => self.base(base)?,
-                None => Pose::IDENTITY,
-            };
+            let base = base.map(|base| Poses::only("base", base)).transpose()?;
+            let base = base.unwrap_or(Pose::IDENTITY);
             let (positions, is_one) = self.positions(q)?;
             let poses = py.detach(|| {
                 let mut links = vec![Pose::IDENTITY; self.robot.links().len()];
@@ -155,14 +152,8 @@ impl Robot {
             });
             let poses = poses.map_err(exception)?;
             Ok(match is_one {
-                true => poses[0].to_vec().into_pyarray(py).into_any(),
-                false => {
-                    let numbers = poses.concat();
-                    let rows = Array2::from_shape_vec((poses.len(), 7), numbers);
-                    rows.expect("seven numbers a pose")
-                        .into_pyarray(py)
-                        .into_any()
-                }
+                true => to_column(py, poses[0]).into_any(),
+                false => to_matrix(py, poses).into_any(),
             })
         })
     }
@@ -176,15 +167,13 @@ impl Robot {
     #[pyo3(signature = (link, *, shapes=None, pitch=1e-3))]
     fn mesh(&self, py: Python, link: &str, shapes: Option<&str>, pitch: f64) -> PyResult<Mesh> {
         guarded(|| {
-            let role = match shapes {
-                None => None,
-                Some("collision") => Some(ShapeRole::Collision),
-                Some("visual") => Some(ShapeRole::Visual),
-                Some(other) => {
-                    let given = format!("`{other}`");
-                    return Err(bad_input("shapes", given, "collision or visual"));
-                }
-            };
+            let roles = [
+                ("collision", ShapeRole::Collision),
+                ("visual", ShapeRole::Visual),
+            ];
+            let role = shapes
+                .map(|name| one_of("shapes", name, &roles))
+                .transpose()?;
             if !(pitch > 0.0 && pitch.is_finite()) {
                 return Err(bad_input("pitch", pitch, "a positive number of metres"));
             }
@@ -205,20 +194,8 @@ impl Robot {
 }
 
 impl Robot {
-    fn base(&self, given: &Bound<PyAny>) -> PyResult<Pose> {
-        let base = Poses::from_argument("base", given)?;
-        match (base.is_one, base.poses.as_slice()) {
-            (true, &[pose]) => Ok(pose),
-            _ => Err(bad_input(
-                "base",
-                "several poses",
-                "one pose, (7,) or (4, 4)",
-            )),
-        }
-    }
-
     /// Returns the joint positions of `q`, shape (n, d), and whether the argument was a single set of positions.
-    fn positions(&self, q: Option<&Bound<PyAny>>) -> PyResult<(Array2<f64>, bool)> {
+    fn positions(&self, q: Option<&Object>) -> PyResult<(Array2<f64>, bool)> {
         let rest = self.robot.rest_positions();
         let n_joints = rest.len();
         let Some(q) = q else {
@@ -228,13 +205,11 @@ impl Robot {
         let Ok(q) = q.cast::<PyDict>() else {
             let allowed = format!("a dict, ({n_joints},) or (n, {n_joints})");
             let is_shape = |shape: &[usize]| shape.len() <= 2 && shape.last() == Some(&n_joints);
-            return view("q", q, &allowed, is_shape, |array| {
-                let is_one = array.ndim() == 1;
-                let values: Vec<f64> = array.iter().copied().collect();
-                let n_rows = if is_one { 1 } else { array.shape()[0] };
-                let rows = Array2::from_shape_vec((n_rows, n_joints), values);
-                Ok((rows.expect("as many values as the shape"), is_one))
-            });
+            let array = array("q", q, &allowed, is_shape)?;
+            let n_rows = if let [n, _] = array.shape() { *n } else { 1 };
+            let rows = Array2::from_shape_vec((n_rows, n_joints), array.values().to_vec());
+            let rows = rows.expect("as many values as the shape");
+            return Ok((rows, array.shape().len() == 1));
         };
         let mut n_rows = None;
         let mut given = Vec::with_capacity(q.len());

@@ -1,8 +1,8 @@
 //! Classes `Step` and `Chain`: conversion of deflections to sensor signals, with sensor errors.
 
-use crate::arrays::{frames, is_of_frames, view, whole_number};
+use crate::arrays::{Object, array, frames, is_of_frames, whole_number};
 use crate::batch::{Spare, for_each, n_threads};
-use crate::errors::{bad_input, exception, guarded};
+use crate::errors::{bad_input, exception, guarded, one_of};
 use crate::patch::Patch;
 use bubbletouch::random::Seed;
 use bubbletouch::signal::{
@@ -68,15 +68,12 @@ impl Step {
     #[staticmethod]
     #[pyo3(signature = (std, unit="full_scale"))]
     fn noise(std: f64, unit: &str) -> PyResult<Self> {
-        let known = match unit {
-            "full_scale" => NoiseUnit::FullScale,
-            "mm" => NoiseUnit::Mm,
-            "n" => NoiseUnit::N,
-            _ => {
-                let given = format!("`{unit}`");
-                return Err(bad_input("noise unit", given, "full_scale, mm or n"));
-            }
-        };
+        let units = [
+            ("full_scale", NoiseUnit::FullScale),
+            ("mm", NoiseUnit::Mm),
+            ("n", NoiseUnit::N),
+        ];
+        let known = one_of("noise unit", unit, &units)?;
         Ok(Self {
             kind: Kind::Plain(SignalStep::Noise(Noise { std, unit: known })),
             call: format!("noise({std}, {unit:?})"),
@@ -202,12 +199,12 @@ impl Chain {
     fn __call__<'py>(
         &self,
         py: Python<'py>,
-        frames: &Bound<'py, PyAny>,
+        frames: &Object<'py>,
         seed: i128,
         first: i128,
-        rates: Option<&Bound<'py, PyAny>>,
+        rates: Option<&Object<'py>>,
         threads: Option<i64>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Object<'py>> {
         guarded(|| {
             let (seed, first) = (
                 whole_number("seed", seed)?,
@@ -242,17 +239,16 @@ impl Chain {
     ///
     /// Returns (n − n_before, …). Raises ValueError if an argument is invalid.
     #[pyo3(signature = (frames, *, seed=0, n_before=0, interval=None, time=None, rates=None))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn read_touch<'py>(
         &self,
         py: Python<'py>,
-        frames: &Bound<'py, PyAny>,
+        frames: &Object<'py>,
         seed: i128,
         n_before: i128,
         interval: Option<f64>,
         time: Option<f64>,
-        rates: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+        rates: Option<&Object<'py>>,
+    ) -> PyResult<Object<'py>> {
         guarded(|| {
             let seed = whole_number("seed", seed)?;
             let n_before: usize = whole_number("n_before", n_before)?;
@@ -318,34 +314,24 @@ impl Chain {
 
 impl Chain {
     /// Reads deflection rates, one for each value of the frames, m/s; returns `None` if no rates are given.
-    fn rates(&self, given: Option<&Bound<PyAny>>, n_frames: usize) -> PyResult<Option<Vec<f64>>> {
+    fn rates(&self, given: Option<&Object>, n_frames: usize) -> PyResult<Option<Vec<f64>>> {
         let n_taxels = self.chain.n_taxels();
         let n = n_frames * n_taxels;
         let is_shape = |shape: &[usize]| {
             shape.iter().product::<usize>() == n && is_of_frames(shape, n_taxels, self.sides)
         };
-        let look = |given| {
-            view(
-                "rates",
-                given,
-                "one for each value of frames",
-                is_shape,
-                |array| Ok(array.iter().copied().collect::<Vec<f64>>()),
-            )
+        let allowed = "one for each value of frames";
+        let read = |given| {
+            let rates = array("rates", given, allowed, is_shape)?;
+            let rates = rates.finite("rates", "finite numbers of m/s")?;
+            Ok(rates.values().to_vec())
         };
-        let rates = given.map(look).transpose()?;
-        match rates.iter().flatten().find(|rate| !rate.is_finite()) {
-            Some(bad) => Err(bad_input("rates", bad, "finite numbers of m/s")),
-            None => Ok(rates),
-        }
+        given.map(read).transpose()
     }
 }
 
 /// Returns signals as a NumPy array in the shape of the input frames.
-fn as_given<'py>(
-    frames: Bound<'py, PyAny>,
-    shape: Option<Bound<'py, PyAny>>,
-) -> PyResult<Bound<'py, PyAny>> {
+fn as_given<'py>(frames: Object<'py>, shape: Option<Object<'py>>) -> PyResult<Object<'py>> {
     match shape {
         Some(shape) => frames.call_method1("reshape", (shape,)),
         None => Ok(frames),

@@ -1,23 +1,21 @@
 //! Class `Simulation`: execution of a scene, frame by frame or in manual steps.
 
-use crate::arrays::{shape_of, to_column, view, whole_number};
-use crate::errors::{bad_input, exception, guarded};
+use crate::arrays::{Object, array, shape_of, to_column, whole_number};
+use crate::errors::{bad_input, exception, guarded, warn};
 use crate::model::model_of;
 use crate::patch::{Patch, frame_shape};
 use crate::poses::Poses;
-use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{
     self, Frame, ObjectReading, PatchReading, PlannedPatch, PoseControl, ScenePlan, SceneSpec,
     Stepping,
 };
 use glam::DVec3;
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use self_cell::self_cell;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -84,10 +82,7 @@ impl Simulation {
                 ScenePlan::with_models(place, &folder, spec, &in_memory)
             });
             let plan = Arc::new(plan.map_err(exception)?);
-            for note in plan.notes() {
-                let note = CString::new(note).unwrap_or_default();
-                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 2)?;
-            }
+            warn(py, plan.notes(), 2)?;
             Ok(Self {
                 running: begin(&plan),
                 plan,
@@ -145,25 +140,23 @@ impl Simulation {
 
     /// Sets the pose of an object in the world from the next step on: (7,) or (4, 4). A free object comes to rest from this pose. Raises ValueError if
     /// an argument is invalid.
-    fn set_object_pose(&mut self, object: &str, pose: &Bound<PyAny>) -> PyResult<()> {
-        let pose = one_pose(pose)?;
+    fn set_object_pose(&mut self, object: &str, pose: &Object) -> PyResult<()> {
+        let pose = Poses::only("pose", pose)?;
         self.change(|simulation| simulation.set_object_pose(object, pose))
     }
 
     /// Sets the pose of a robot's base in the world from the next step on: (7,) or (4, 4). Raises ValueError if an argument is invalid.
-    fn set_robot_pose(&mut self, robot: &str, pose: &Bound<PyAny>) -> PyResult<()> {
-        let pose = one_pose(pose)?;
+    fn set_robot_pose(&mut self, robot: &str, pose: &Object) -> PyResult<()> {
+        let pose = Poses::only("pose", pose)?;
         self.change(|simulation| simulation.set_robot_pose(robot, pose))
     }
 
     /// Sets the joint positions of a robot from the next step on: (n_joints,) in the order of `robots`, radians and metres. Raises ValueError if an
     /// argument is invalid.
-    fn set_joint_positions(&mut self, robot: &str, positions: &Bound<PyAny>) -> PyResult<()> {
+    fn set_joint_positions(&mut self, robot: &str, positions: &Object) -> PyResult<()> {
         let is_shape = |shape: &[usize]| shape.len() == 1;
-        view("positions", positions, "(n_joints,)", is_shape, |array| {
-            let positions: Vec<f64> = array.iter().copied().collect();
-            self.change(|simulation| simulation.set_joint_positions(robot, &positions))
-        })
+        let positions = array("positions", positions, "(n_joints,)", is_shape)?;
+        self.change(|simulation| simulation.set_joint_positions(robot, positions.values()))
     }
 
     /// Returns the patch with this name, in the patch frame. If there is none, raises ValueError.
@@ -276,29 +269,14 @@ fn on<T>(
     running.with_dependent_mut(|_, simulation| call(simulation).map_err(exception))
 }
 
-/// Reads a single pose in the world frame, `world_from_…`.
-fn one_pose(given: &Bound<PyAny>) -> PyResult<Pose> {
-    let poses = Poses::from_argument("pose", given)?;
-    match (poses.is_one, &poses.poses[..]) {
-        (true, &[pose]) => Ok(pose),
-        (_, several) => {
-            let given = format!("{} poses", several.len());
-            Err(bad_input("pose", given, "one, (7,) or (4, 4)"))
-        }
-    }
-}
-
 /// Creates the dict of a frame.
 fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: &Frame) -> PyResult<Bound<'py, PyDict>> {
     let (said, patches, objects) = (PyDict::new(py), PyDict::new(py), PyDict::new(py));
     for (patch, reading) in plan.patches.iter().zip(&frame.patches) {
         let of_patch = PyDict::new(py);
         for (key, shape, values) in arrays_of(patch, reading) {
-            let array = match values {
-                Some(values) => Some(values.to_vec().into_pyarray(py).reshape(shape)?),
-                None => None,
-            };
-            of_patch.set_item(key, array)?;
+            let array = values.map(|values| values.into_owned().into_pyarray(py).reshape(shape));
+            of_patch.set_item(key, array.transpose()?)?;
         }
         set_counts(&of_patch, reading)?;
         patches.set_item(patch.skin.name(), of_patch)?;
@@ -324,7 +302,7 @@ fn fill_frame(out: &Bound<PyDict>, plan: &ScenePlan, frame: &Frame) -> PyResult<
             for (key, shape, values) in arrays_of(patch, reading) {
                 if let Some(values) = values {
                     let place = format!("out, patches, {}", patch.skin.name());
-                    fill(&of_patch, (&place, key), (&shape, values), is_written)?;
+                    fill(&of_patch, (&place, key), (&shape, &values), is_written)?;
                 }
             }
             if is_written {
@@ -335,8 +313,8 @@ fn fill_frame(out: &Bound<PyDict>, plan: &ScenePlan, frame: &Frame) -> PyResult<
         for (object, reading) in plan.objects.iter().zip(&frame.objects) {
             let of_object = part(&objects, "out, objects", &object.name)?;
             let place = format!("out, objects, {}", object.name);
-            let pose = Values::Few(reading.pose.to_array().to_vec());
-            fill(&of_object, (&place, "pose"), (&[7], pose), is_written)?;
+            let pose = (&[7][..], &reading.pose.to_array()[..]);
+            fill(&of_object, (&place, "pose"), pose, is_written)?;
             if is_written {
                 of_object.set_item("held", held(reading))?;
             }
@@ -359,7 +337,7 @@ fn part<'py>(dict: &Bound<'py, PyDict>, place: &str, key: &str) -> PyResult<Boun
 fn fill(
     dict: &Bound<PyDict>,
     (place, key): (&str, &str),
-    (shape, values): (&[usize], Values),
+    (shape, values): (&[usize], &[f64]),
     is_written: bool,
 ) -> PyResult<()> {
     let found = dict.get_item(key)?;
@@ -371,65 +349,43 @@ fn fill(
         return Err(bad_input(place, given, EARLIER_FRAME));
     };
     if is_written {
-        values.write(writable.as_slice_mut()?);
+        writable.as_slice_mut()?.copy_from_slice(values);
     }
     Ok(())
 }
 
-/// Numbers of an array of a frame.
-enum Values<'a> {
-    Numbers(&'a [f64]),
-    Vectors(&'a [DVec3]),
-    Few(Vec<f64>),
-}
+/// Array of a reading: its key, shape and values; the values are `None` for a signal that does not exist.
+type ReadingArray<'a> = (&'static str, Vec<usize>, Option<Cow<'a, [f64]>>);
 
-impl Values<'_> {
-    fn to_vec(&self) -> Vec<f64> {
-        match self {
-            Self::Numbers(numbers) => numbers.to_vec(),
-            Self::Vectors(vectors) => vectors.iter().flat_map(|v| v.to_array()).collect(),
-            Self::Few(numbers) => numbers.clone(),
-        }
-    }
-
-    fn write(&self, to: &mut [f64]) {
-        match self {
-            Self::Numbers(numbers) => to.copy_from_slice(numbers),
-            Self::Vectors(vectors) => {
-                for (to, vector) in to.chunks_exact_mut(3).zip(*vectors) {
-                    to.copy_from_slice(&vector.to_array());
-                }
-            }
-            Self::Few(numbers) => to.copy_from_slice(numbers),
-        }
-    }
-}
-
-/// Returns the arrays of a patch's reading as keys, shapes and values. The values are `None` for a signal that does not exist.
-fn arrays_of<'a>(
-    patch: &PlannedPatch,
-    reading: &'a PatchReading,
-) -> [(&'static str, Vec<usize>, Option<Values<'a>>); 6] {
+/// Returns the arrays of a patch's reading.
+fn arrays_of<'a>(patch: &PlannedPatch, reading: &'a PatchReading) -> [ReadingArray<'a>; 6] {
     let shape = frame_shape(patch.skin.layout());
-    let wrench = [
-        reading.wrench.force.to_array(),
-        reading.wrench.torque.to_array(),
-    ];
-    let pose = Values::Few(reading.pose.to_array().to_vec());
-    let (deflection, force) = (&reading.deflection, &reading.force);
-    let force3 = Values::Vectors(&reading.force3);
-    let signal = reading.signal.as_deref().map(Values::Numbers);
+    let of_vectors = |vectors: &[DVec3]| {
+        vectors
+            .iter()
+            .flat_map(|vector| vector.to_array())
+            .collect()
+    };
+    let (force3, wrench) = (&reading.force3, &reading.wrench);
+    let force3: Vec<f64> = of_vectors(force3);
+    let wrench: Vec<f64> = of_vectors(&[wrench.force, wrench.torque]);
+    let pose = reading.pose.to_array().to_vec();
+    let signal = reading.signal.as_deref();
     [
-        ("pose", vec![7], Some(pose)),
+        ("pose", vec![7], Some(pose.into())),
         (
             "deflection",
             shape.clone(),
-            Some(Values::Numbers(deflection)),
+            Some((&reading.deflection).into()),
         ),
-        ("force", shape.clone(), Some(Values::Numbers(force))),
-        ("force3", vec![patch.skin.n_taxels(), 3], Some(force3)),
-        ("signal", shape, signal),
-        ("wrench", vec![6], Some(Values::Few(wrench.concat()))),
+        ("force", shape.clone(), Some((&reading.force).into())),
+        (
+            "force3",
+            vec![patch.skin.n_taxels(), 3],
+            Some(force3.into()),
+        ),
+        ("signal", shape, signal.map(Cow::from)),
+        ("wrench", vec![6], Some(wrench.into())),
     ]
 }
 

@@ -1,13 +1,12 @@
 //! Class `SphereUnion`: rigid spheres.
 
-use crate::arrays::{corners, each, points, to_column, to_rows};
+use crate::arrays::{Matrix, Object, Vector, corners, each, points, to_column, to_rows};
 use crate::errors::{bad_input, check_folder, check_readable, exception, guarded};
 use crate::length_unit::unit_of;
 use bubbletouch::files::write_whole;
 use bubbletouch::mesh::SizeLimits;
 use bubbletouch::objects::{self, Model, Sphere, write_spheres};
 use bubbletouch::study::load_spheres;
-use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -60,7 +59,7 @@ impl SphereUnion {
 #[pymethods]
 impl SphereUnion {
     #[new]
-    fn new(centers: &Bound<PyAny>, radii: &Bound<PyAny>) -> PyResult<Self> {
+    fn new(centers: &Object, radii: &Object) -> PyResult<Self> {
         guarded(|| {
             let centers = points("centers", centers)?;
             let radii = each("radii", radii, centers.len())?;
@@ -97,19 +96,19 @@ impl SphereUnion {
 
     /// Centres of the spheres (n, 3), metres; a copy.
     #[getter]
-    fn centers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn centers<'py>(&self, py: Python<'py>) -> Matrix<'py> {
         to_rows(py, self.spheres().iter().map(|sphere| sphere.center))
     }
 
     /// Radii of the spheres (n,), metres; a copy.
     #[getter]
-    fn radii<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+    fn radii<'py>(&self, py: Python<'py>) -> Vector<'py> {
         to_column(py, self.spheres().iter().map(|sphere| sphere.radius))
     }
 
     /// Bounding box (2, 3): the smallest and largest coordinates, metres.
     #[getter]
-    fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn bounds<'py>(&self, py: Python<'py>) -> Matrix<'py> {
         corners(py, &self.union().bounds())
     }
 
@@ -125,10 +124,7 @@ impl SphereUnion {
         format!("<bubbletouch.SphereUnion: {n} spheres, {x:.1} × {y:.1} × {z:.1} mm>")
     }
 
-    fn __getnewargs__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>) {
+    fn __getnewargs__<'py>(&self, py: Python<'py>) -> (Matrix<'py>, Vector<'py>) {
         (self.centers(py), self.radii(py))
     }
 }

@@ -202,7 +202,6 @@ pub fn rename_old_results(folder: PathBuf) -> PyResult<()> {
 /// tuples of name, version and object. A shard, such as `3/8`, writes its journal alone and returns no tables.
 #[pyfunction]
 #[pyo3(signature = (text, place, name, folder, out, seed=None, callback=None, classifiers=Vec::new(), features=Vec::new(), shard=None, merges=false, threads=None))]
-#[expect(clippy::too_many_arguments, reason = "called by bubbletouch.run alone")]
 pub fn run_study<'py>(
     py: Python<'py>,
     text: String,
@@ -327,7 +326,6 @@ pub fn with_recorded(text: &str, place: &str, json: &str) -> PyResult<String> {
 /// ValueError if there is no such configuration, or an argument is invalid.
 #[pyfunction]
 #[pyo3(signature = (results, reach, budget, value, cost, table, given, worst, limits))]
-#[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn advise(
     results: PathBuf,
     reach: Option<f64>,

@@ -1,7 +1,7 @@
 //! Models behind the estimators of `bubbletouch.learning`: soft-margin SVMs trained on features and labels 0, 1, …
 
-use crate::arrays::view;
-use crate::errors::{bad_input, exception, guarded};
+use crate::arrays::{Matrix, Object, Vector, array, to_column, whole_numbers};
+use crate::errors::{bad_input, exception, guarded, one_of};
 use crate::threads::{aside, pool};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::classifiers::class_model::ClassModel;
@@ -13,26 +13,20 @@ use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::predict::svm_model::SvmModel;
 use bubbletouch::recognition::svm::{Multiclass, SvmParams};
-use ndarray::{Array1, Array2, ArrayView2, Axis, Ix2, concatenate};
-use numpy::{IntoPyArray, PyArray1, PyArray2};
+use ndarray::{Array1, Array2, ArrayView2, Axis, concatenate};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Reads feature rows as an array of numbers.
-fn rows_of(given: &Bound<PyAny>) -> PyResult<Array2<f64>> {
-    let is_shape = |shape: &[usize]| matches!(shape, [_, _]);
-    view(
-        "features",
-        given,
-        "(n_rows, n_features)",
-        is_shape,
-        |array| {
-            let rows = array.to_owned().into_dimensionality::<Ix2>();
-            Ok(rows.expect("the shape was looked at"))
-        },
-    )
+fn rows_of(given: &Object) -> PyResult<Array2<f64>> {
+    let is_shape = |shape: &[usize]| shape.len() == 2;
+    let rows = array("features", given, "(n_rows, n_features)", is_shape)?;
+    let shape = (rows.shape()[0], rows.shape()[1]);
+    let rows = Array2::from_shape_vec(shape, rows.values().to_vec());
+    Ok(rows.expect("as many numbers as the shape"))
 }
 
 /// Block size of predictions in the library, rows.
@@ -58,22 +52,14 @@ fn in_parts<T: Send>(
 }
 
 /// Reads an array of integers that are at least 0, such as row numbers.
-fn whole(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<usize>> {
-    let is_shape = |shape: &[usize]| shape.len() == 1;
-    view(place, given, "(n,)", is_shape, |array| {
-        let number = |&value: &f64| match value {
-            whole if whole >= 0.0 && whole < 2f64.powi(53) && whole.fract() == 0.0 => {
-                Ok(whole as usize)
-            }
-            other => Err(bad_input(place, other, "whole numbers from 0")),
-        };
-        array.iter().map(number).collect()
-    })
+fn whole(place: &str, given: &Object) -> PyResult<Vec<usize>> {
+    let array = array(place, given, "(n,)", |shape| shape.len() == 1)?;
+    whole_numbers(place, array.values(), "whole numbers from 0")
 }
 
 /// Predicts rows on the threads of the pool, while other Python threads may run.
 fn predicted<T: Send>(
-    features: &Bound<PyAny>,
+    features: &Object,
     predict: impl FnOnce(&Array2<f64>) -> bubbletouch::Result<T> + Send,
 ) -> PyResult<T> {
     let (py, features, pool) = (features.py(), rows_of(features)?, pool()?);
@@ -83,8 +69,8 @@ fn predicted<T: Send>(
 
 /// Trains a model; returns it together with its training data as Python objects. Models are pickled as their training data.
 fn trained<T: Send + 'static>(
-    features: &Bound<PyAny>,
-    labels: &Bound<PyAny>,
+    features: &Object,
+    labels: &Object,
     train: impl FnOnce(&Dataset) -> bubbletouch::Result<T> + Send + 'static,
 ) -> PyResult<(T, Arc<Dataset>)> {
     let data = Arc::new(data_of(features, labels)?);
@@ -93,7 +79,7 @@ fn trained<T: Send + 'static>(
     Ok((model.map_err(exception)?, data))
 }
 
-fn data_of(features: &Bound<PyAny>, labels: &Bound<PyAny>) -> PyResult<Dataset> {
+fn data_of(features: &Object, labels: &Object) -> PyResult<Dataset> {
     let labels = Array1::from(whole("labels", labels)?);
     dataset(rows_of(features)?, labels).map_err(|error| exception(error.into()))
 }
@@ -117,30 +103,23 @@ struct SvmArguments {
 impl SvmArguments {
     fn params(&self) -> PyResult<SvmParams> {
         let gamma = self.gamma.map_or(Gamma::Scale, Gamma::Value);
-        let kernel = match &self.kernel[..] {
-            "linear" => Kernel::Linear,
-            "rbf" => Kernel::Rbf { gamma },
-            "poly" => Kernel::Polynomial {
-                gamma,
-                coef0: self.coef0,
-                degree: self.degree,
-            },
-            other => {
-                return Err(bad_input(
-                    "kernel",
-                    format!("`{other}`"),
-                    "linear, poly or rbf",
-                ));
-            }
+        let polynomial = Kernel::Polynomial {
+            gamma,
+            coef0: self.coef0,
+            degree: self.degree,
         };
-        let multiclass = match &self.multiclass[..] {
-            "ovo" => Multiclass::OneVsOne,
-            "ovr" => Multiclass::OneVsRest,
-            other => return Err(bad_input("multi_class", format!("`{other}`"), "ovo or ovr")),
-        };
+        let kernels = [
+            ("linear", Kernel::Linear),
+            ("poly", polynomial),
+            ("rbf", Kernel::Rbf { gamma }),
+        ];
+        let multiclass = [
+            ("ovo", Multiclass::OneVsOne),
+            ("ovr", Multiclass::OneVsRest),
+        ];
         Ok(SvmParams {
-            kernel,
-            multiclass,
+            kernel: one_of("kernel", &self.kernel, &kernels)?,
+            multiclass: one_of("multi_class", &self.multiclass, &multiclass)?,
             c: self.c,
             class_weight: class_weight(self.is_balanced),
             tolerance: self.tolerance,
@@ -169,11 +148,7 @@ pub struct KernelSvm {
 impl KernelSvm {
     /// Trains an SVM on features (n, m) and labels (n,). Raises ValueError if an argument is invalid.
     #[staticmethod]
-    fn train(
-        features: &Bound<PyAny>,
-        labels: &Bound<PyAny>,
-        params: Bound<PyDict>,
-    ) -> PyResult<Self> {
+    fn train(features: &Object, labels: &Object, params: Bound<PyDict>) -> PyResult<Self> {
         guarded(|| {
             let asked = params.extract::<SvmArguments>()?.params()?;
             let (model, data) = trained(features, labels, move |rows| Ok(asked.train(rows)?))?;
@@ -183,30 +158,22 @@ impl KernelSvm {
     }
 
     /// Returns the predicted labels (n,) of features (n, m). If several classes have the most votes, the lowest label is returned.
-    fn labels<'py>(
-        &self,
-        py: Python<'py>,
-        features: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    fn labels<'py>(&self, features: &Object<'py>) -> PyResult<Vector<'py, i64>> {
         guarded(|| {
             let label = |rows: ArrayView2<f64>| Ok(self.model.labels(rows)?);
             let labels = predicted(features, |rows| in_parts(rows, label))?;
-            Ok(to_integers(py, labels.iter().flatten()))
+            Ok(to_integers(features.py(), labels.iter().flatten()))
         })
     }
 
     /// Returns the decision values (n, n_problems); positive values favour a problem's positive class.
-    fn decision_values<'py>(
-        &self,
-        py: Python<'py>,
-        features: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn decision_values<'py>(&self, features: &Object<'py>) -> PyResult<Matrix<'py>> {
         guarded(|| {
             let value = |rows: ArrayView2<f64>| Ok(self.model.decision_values(rows)?);
             let values = predicted(features, |rows| in_parts(rows, value))?;
             let views: Vec<ArrayView2<f64>> = values.iter().map(|part| part.view()).collect();
             let values = concatenate(Axis(0), &views).expect("parts have the same columns");
-            Ok(values.into_pyarray(py))
+            Ok(values.into_pyarray(features.py()))
         })
     }
 
@@ -239,10 +206,7 @@ impl KernelSvm {
         self.model.n_capped()
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Object<'py>, Bound<'py, PyTuple>)> {
         let train = py.get_type::<Self>().getattr("train")?;
         let (features, labels) = arrays_of(py, &self.data);
         Ok((
@@ -266,8 +230,8 @@ impl LinearModel {
     /// Trains a linear SVM on features (n, m) and labels (n,). Raises ValueError if an argument is invalid.
     #[staticmethod]
     fn train(
-        features: &Bound<PyAny>,
-        labels: &Bound<PyAny>,
+        features: &Object,
+        labels: &Object,
         c: f64,
         is_balanced: bool,
         tolerance: f64,
@@ -293,38 +257,30 @@ impl LinearModel {
     }
 
     /// Returns the predicted labels (n,) of features (n, m).
-    fn labels<'py>(
-        &self,
-        py: Python<'py>,
-        features: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    fn labels<'py>(&self, features: &Object<'py>) -> PyResult<Vector<'py, i64>> {
         guarded(|| {
             let labels = predicted(features, |rows| Ok(self.svm.labels(rows.view())?))?;
-            Ok(to_integers(py, &labels))
+            Ok(to_integers(features.py(), &labels))
         })
     }
 
     /// Returns the scores (n, n_classes); the class with the largest score is predicted.
-    fn scores<'py>(
-        &self,
-        py: Python<'py>,
-        features: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn scores<'py>(&self, features: &Object<'py>) -> PyResult<Matrix<'py>> {
         guarded(|| {
             let scores = predicted(features, |rows| Ok(self.svm.scores(rows.view())?))?;
-            Ok(scores.into_pyarray(py))
+            Ok(scores.into_pyarray(features.py()))
         })
     }
 
     /// Weights of the linear model (n_classes, m).
     #[getter]
-    fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn weights<'py>(&self, py: Python<'py>) -> Matrix<'py> {
         self.svm.model().weights.clone().into_pyarray(py)
     }
 
     /// Biases of the linear model (n_classes,).
     #[getter]
-    fn bias<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+    fn bias<'py>(&self, py: Python<'py>) -> Vector<'py> {
         self.svm.model().bias.clone().into_pyarray(py)
     }
 
@@ -341,10 +297,7 @@ impl LinearModel {
         self.svm.n_capped()
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Object<'py>, Bound<'py, PyTuple>)> {
         let train = py.get_type::<Self>().getattr("train")?;
         let (features, labels) = arrays_of(py, &self.data);
         let (c, is_balanced, tolerance, max_passes, seed) = &self.asked;
@@ -369,17 +322,17 @@ impl LinearModel {
 #[pyfunction]
 pub fn choose_svm<'py>(
     py: Python<'py>,
-    features: &Bound<'py, PyAny>,
-    labels: &Bound<'py, PyAny>,
+    features: &Object<'py>,
+    labels: &Object<'py>,
     params: Bound<'py, PyDict>,
-    folds: Vec<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    folds: Vec<(Object<'py>, Object<'py>)>,
     c: Vec<f64>,
     gamma_scales: Vec<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     guarded(|| {
         let params = params.extract::<SvmArguments>()?.params()?;
         let data = data_of(features, labels)?;
-        let fold = |(train, test): &(Bound<PyAny>, Bound<PyAny>)| {
+        let fold = |(train, test): &(Object, Object)| {
             Ok(Split {
                 train: whole("folds", train)?,
                 test: whole("folds", test)?,
@@ -411,10 +364,7 @@ pub fn choose_svm<'py>(
     })
 }
 
-fn arrays_of<'py>(
-    py: Python<'py>,
-    data: &Dataset,
-) -> (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<i64>>) {
+fn arrays_of<'py>(py: Python<'py>, data: &Dataset) -> (Matrix<'py>, Vector<'py, i64>) {
     let features = data.records.clone().into_pyarray(py);
     (features, to_integers(py, &data.targets))
 }
@@ -422,6 +372,6 @@ fn arrays_of<'py>(
 fn to_integers<'py, 'a>(
     py: Python<'py>,
     numbers: impl IntoIterator<Item = &'a usize>,
-) -> Bound<'py, PyArray1<i64>> {
-    crate::arrays::to_column(py, numbers.into_iter().map(|number| *number as i64))
+) -> Vector<'py, i64> {
+    to_column(py, numbers.into_iter().map(|number| *number as i64))
 }

@@ -95,7 +95,7 @@ def balls(apart: float) -> bt.SphereUnion:
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:  # type: ignore[type-arg]
-    """Returns the arrays computed by reference/main.rs, by name."""
+    """Returns the arrays computed by reference.rs, by name."""
     built = Path(__file__).resolve().parents[2] / "target" / "release" / "bubbletouch-reference"
     path = os.environ.get("BUBBLETOUCH_REFERENCE_BINARY") or (str(built) if built.exists() else None)
     if path is None:

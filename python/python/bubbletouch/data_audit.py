@@ -18,8 +18,8 @@ from bubbletouch.recorded import Recorded, named
 from bubbletouch.recorded_files import read_recorded
 from bubbletouch.study import Table
 
-# Findings and tables of an audit, as the core returns them.
-_Found = tuple[list[tuple[Any, ...]], list[tuple[str, str, str, dict[str, Any]]]]
+# Tables of an audit, as the core returns them.
+_Tables = list[tuple[str, str, str, dict[str, Any]]]
 
 
 @dataclass(frozen=True)
@@ -55,14 +55,13 @@ class Audit:
     def __init__(
         self,
         folder: Path,
-        findings: list[tuple[Any, ...]],
-        tables: list[tuple[str, str, str, dict[str, Any]]],
+        tables: _Tables,
         kept: tempfile.TemporaryDirectory[str] | None = None,
     ) -> None:
         self.folder = folder
-        names = Finding.__dataclass_fields__
-        self.findings = [Finding(**dict(zip(names, said, strict=True))) for said in findings]
         self.tables = {Path(table[0]).stem: Table(*table) for table in tables}
+        rows = self.tables["findings"].columns
+        self.findings = [_finding(dict(zip(rows, row, strict=True))) for row in zip(*rows.values(), strict=True)]
         self._kept = kept
 
     @property
@@ -78,6 +77,14 @@ class Audit:
     def __repr__(self) -> str:
         names = ", ".join(sorted({finding.check for finding in self.faults}))
         return f"<bubbletouch.Audit in {self.folder}: {names or 'no faults'}>"
+
+
+def _finding(row: Mapping[str, Any]) -> Finding:
+    """Returns the finding in a row of the table of findings."""
+    p_value, p_holm = (None if np.isnan(row[name]) else float(row[name]) for name in ("p_value", "p_holm"))
+    interval = [float(row["value_low"]), float(row["value_high"])]
+    numbers = float(row["value"]), interval, float(row["baseline"]), p_value, p_holm
+    return Finding(row["check"], row["subject"], row["verdict"], *numbers, row["sentence"], row["advice"])
 
 
 # A path of a file stands for the array in it.
@@ -152,10 +159,10 @@ def audit(
     folder = Path(kept.name) if kept is not None else Path(out or "")
     name = Path(data).stem if _is_path(data) else "arrays" if out is None else folder.name
     found = _of_files(given, (order, columns, grid, full_scale, before_contact, list(untouched), split, None if not_claimed is None else list(not_claimed), seed, permutations, name, folder))
-    return Audit(folder, *found, kept)
+    return Audit(folder, found, kept)
 
 
-def _of_files(given: Mapping[str, Any], options: tuple[Any, ...]) -> _Found:
+def _of_files(given: Mapping[str, Any], options: tuple[Any, ...]) -> _Tables:
     """Audits files by their names, as the command does. Arrays are written to temporary files."""
     with tempfile.TemporaryDirectory(prefix="bubbletouch-") as folder:
         files = {key: Path(value) for key, value in given.items() if _is_path(value)}

@@ -1,6 +1,6 @@
 //! Arguments that describe the layout and the taxels of a patch.
 
-use crate::arrays::{each, points, view, whole_number};
+use crate::arrays::{Object, array, each, points, whole_number, whole_numbers};
 use crate::errors::{bad_input, exception};
 use bubbletouch::geometry::Aabb;
 use bubbletouch::world::{DrapeRegion, Layout, MissingTaxels, Taxel};
@@ -27,24 +27,15 @@ pub fn with_shape(layout: Layout, shape: Option<Vec<i64>>) -> PyResult<Layout> {
 }
 
 /// Reads the row and the column of each of n taxels in an image.
-pub fn pixels_of(given: &Bound<PyAny>, n: usize) -> PyResult<Vec<[usize; 2]>> {
-    let allowed = format!("({n}, 2)");
-    view(
-        "pixels",
-        given,
-        &allowed,
-        |shape| shape == [n, 2],
-        |array| {
-            let whole = |&number: &f64| match number >= 0.0 && number.fract() == 0.0 && number < 1e9
-            {
-                true => Ok(number as usize),
-                false => Err(bad_input("pixels", number, "integers from 0")),
-            };
-            let rows = array.rows().into_iter();
-            rows.map(|row| Ok([whole(&row[0])?, whole(&row[1])?]))
-                .collect()
-        },
-    )
+pub fn pixels_of(given: &Object, n: usize) -> PyResult<Vec<[usize; 2]>> {
+    let array = array("pixels", given, &format!("({n}, 2)"), |shape| {
+        shape == [n, 2]
+    })?;
+    let pixels: Vec<u32> = whole_numbers("pixels", array.values(), "integers from 0")?;
+    let pixels = pixels.as_chunks::<2>().0.iter();
+    Ok(pixels
+        .map(|pixel| pixel.map(|side| side as usize))
+        .collect())
 }
 
 /// Converts a number of rows or columns; the library checks that it is at least 1.
@@ -69,10 +60,10 @@ pub fn taxel(
 /// Returns the parameters of n taxels, each given as an array or as one number for all taxels.
 pub fn each_taxel(
     n: usize,
-    (stroke, radius): (&Bound<PyAny>, &Bound<PyAny>),
-    (stiffness, damping): (Option<&Bound<PyAny>>, Option<&Bound<PyAny>>),
+    (stroke, radius): (&Object, &Object),
+    (stiffness, damping): (Option<&Object>, Option<&Object>),
 ) -> PyResult<Vec<Taxel>> {
-    let or = |place: &str, given: Option<&Bound<PyAny>>, default: f64| match given {
+    let or = |place: &str, given: Option<&Object>, default: f64| match given {
         Some(given) => each(place, given, n),
         None => Ok(vec![default; n]),
     };
@@ -91,11 +82,11 @@ pub fn each_taxel(
 
 /// Returns the region of a mesh that satisfies the given conditions.
 pub fn drape_region(
-    bounds: Option<&Bound<PyAny>>,
-    plane: Option<&Bound<PyAny>>,
+    bounds: Option<&Object>,
+    plane: Option<&Object>,
     triangles: Option<Vec<i128>>,
 ) -> PyResult<DrapeRegion> {
-    let two = |place: &str, given: &Bound<PyAny>| match points(place, given)?[..] {
+    let two = |place: &str, given: &Object| match points(place, given)?[..] {
         [first, second] => Ok((first, second)),
         ref several => {
             let given = format!("shape ({}, 3)", several.len());

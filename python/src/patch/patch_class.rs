@@ -3,12 +3,14 @@
 use super::arguments::{
     drape_region, each_taxel, missing_taxels, pixels_of, side, taxel, with_shape,
 };
-use crate::arrays::{points, to_column, to_rows, whole_number};
-use crate::batch::Spare;
-use crate::errors::{check_folder, check_readable, exception, guarded};
+use crate::arrays::{Matrix, Object, points, to_column, to_rows, whole_number};
+use crate::batch::{Spare, n_threads};
+use crate::errors::{check_folder, check_readable, exception, guarded, warn};
 use crate::length_unit::unit_of;
 use crate::mesh::Mesh;
 use crate::poses::Poses;
+use crate::press::batch_press::{Wanted, press};
+use crate::press::goal::Goal;
 use crate::press::output::Output;
 use crate::press::slide::{Motion, press_and_slide};
 use crate::sphere_union::SphereUnion;
@@ -22,11 +24,9 @@ use bubbletouch::report::layout_picture::write_layout_picture;
 use bubbletouch::world::{self, Grid, Layout, Taxel, Taxels};
 use glam::DVec3;
 use ndarray::Array2;
-use numpy::{IntoPyArray, PyArray2};
-use pyo3::exceptions::PyUserWarning;
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use std::ffi::CString;
 use std::path::PathBuf;
 
 /// Taxels on a rigid substrate. A patch is created by one of the static methods.
@@ -56,9 +56,9 @@ impl Patch {
         }
     }
 
-    fn with(layout: Layout, taxels: impl Into<Taxels>) -> PyResult<Self> {
-        let patch = world::Patch::new("patch", layout, taxels);
-        Ok(Self::from_patch(patch.map_err(exception)?))
+    fn with(layout: bubbletouch::Result<Layout>, taxels: impl Into<Taxels>) -> PyResult<Self> {
+        let patch = layout.and_then(|layout| world::Patch::new("patch", layout, taxels));
+        patch.map(Self::from_patch).map_err(exception)
     }
 
     /// Creates a patch with the taxels of a layout file. If no radius is given, the radii in the file are used, or else the default radius of the file. If no
@@ -84,7 +84,7 @@ impl Patch {
         };
         Ok(Self {
             pixels: file.pixels,
-            ..Self::with(file.layout, taxels)?
+            ..Self::with(Ok(file.layout), taxels)?
         })
     }
 
@@ -93,12 +93,18 @@ impl Patch {
         &self.patch
     }
 
+    /// Returns the shape of a frame: (ny, nx) for taxels in rows and columns, otherwise (n_taxels,).
+    pub fn sides(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// Returns the memory that successive presses of the patch reuse.
+    pub fn spare(&self) -> &Spare<Workspace> {
+        &self.spare
+    }
+
     /// Returns a property of the taxels as a Python object: one number if all taxels are equal, otherwise an array with one number per taxel.
-    fn property<'py>(
-        &self,
-        py: Python<'py>,
-        of: impl Fn(&Taxel) -> f64,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn property<'py>(&self, py: Python<'py>, of: impl Fn(&Taxel) -> f64) -> PyResult<Object<'py>> {
         Ok(match self.patch.taxels() {
             Taxels::Equal(taxel) => of(taxel).into_pyobject(py)?.into_any(),
             Taxels::Each(taxels) => to_column(py, taxels.iter().map(of)).into_any(),
@@ -110,15 +116,6 @@ impl Patch {
 pub fn frame_shape(layout: &Layout) -> Vec<usize> {
     let sides = layout.sides().map(|sides| sides.to_vec());
     sides.unwrap_or_else(|| vec![layout.n_taxels()])
-}
-
-/// Issues notes as Python warnings.
-fn warn(py: Python, notes: &[String]) -> PyResult<()> {
-    for note in notes {
-        let note = CString::new(note.as_str()).unwrap_or_default();
-        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 1)?;
-    }
-    Ok(())
 }
 
 #[pymethods]
@@ -138,12 +135,11 @@ impl Patch {
     ) -> PyResult<Self> {
         guarded(|| {
             let (ny, nx) = (side("ny", ny)?, side("nx", nx)?);
-            let grid = Grid { nx, ny, pitch };
-            grid.check().map_err(exception)?;
-            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
-            Ok(Self::from_patch(
-                world::Patch::grid(grid, taxel).map_err(exception)?,
-            ))
+            let layout = Layout::grid(&Grid { nx, ny, pitch });
+            Self::with(
+                layout,
+                taxel(pitch, stroke, (taxel_radius, stiffness, damping)),
+            )
         })
     }
 
@@ -162,9 +158,11 @@ impl Patch {
     ) -> PyResult<Self> {
         guarded(|| {
             let (ny, nx) = (side("ny", ny)?, side("nx", nx)?);
-            let layout = Layout::hexagonal(nx, ny, pitch).map_err(exception)?;
-            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
-            Self::with(layout, taxel)
+            let layout = Layout::hexagonal(nx, ny, pitch);
+            Self::with(
+                layout,
+                taxel(pitch, stroke, (taxel_radius, stiffness, damping)),
+            )
         })
     }
 
@@ -179,11 +177,8 @@ impl Patch {
         stiffness: f64,
         damping: f64,
     ) -> PyResult<Self> {
-        guarded(|| {
-            let layout = Layout::disc(radius, pitch).map_err(exception)?;
-            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
-            Self::with(layout, taxel)
-        })
+        let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+        guarded(|| Self::with(Layout::disc(radius, pitch), taxel))
     }
 
     /// Returns a patch of rings of taxels around the z axis that face away from the axis, as on a forearm or a finger.
@@ -196,7 +191,6 @@ impl Patch {
     /// Presses move along z: use moved() to turn the middle of the patch to z.
     #[staticmethod]
     #[pyo3(signature = (radius, length, arc, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn cylinder(
         radius: f64,
         length: f64,
@@ -207,11 +201,8 @@ impl Patch {
         stiffness: f64,
         damping: f64,
     ) -> PyResult<Self> {
-        guarded(|| {
-            let layout = Layout::cylinder(radius, length, arc, pitch).map_err(exception)?;
-            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
-            Self::with(layout, taxel)
-        })
+        let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+        guarded(|| Self::with(Layout::cylinder(radius, length, arc, pitch), taxel))
     }
 
     /// Returns a patch of rings of taxels on a sphere about the origin, as on a fingertip or an elbow.
@@ -229,11 +220,8 @@ impl Patch {
         stiffness: f64,
         damping: f64,
     ) -> PyResult<Self> {
-        guarded(|| {
-            let layout = Layout::sphere_cap(radius, half_angle, pitch).map_err(exception)?;
-            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
-            Self::with(layout, taxel)
-        })
+        let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+        guarded(|| Self::with(Layout::sphere_cap(radius, half_angle, pitch), taxel))
     }
 
     /// Returns a patch of taxels that are distributed over the outer surface of a mesh, or of a SphereUnion of one sphere.
@@ -249,15 +237,14 @@ impl Patch {
     /// - triangles: triangle indices.
     #[staticmethod]
     #[pyo3(signature = (mesh, pitch, stroke, *, seed=0, bounds=None, plane=None, triangles=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn draped(
         py: Python,
-        mesh: &Bound<PyAny>,
+        mesh: &Object,
         pitch: f64,
         stroke: f64,
         seed: i128,
-        bounds: Option<&Bound<PyAny>>,
-        plane: Option<&Bound<PyAny>>,
+        bounds: Option<&Object>,
+        plane: Option<&Object>,
         triangles: Option<Vec<i128>>,
         taxel_radius: Option<f64>,
         stiffness: f64,
@@ -278,17 +265,18 @@ impl Patch {
                 Ok(spheres) => {
                     let sphere = spheres.get().single("mesh")?;
                     on_sphere(sphere, drape(facets(sphere).map_err(exception)?)?.0)
-                        .map_err(exception)?
                 }
                 Err(_) => {
                     let mesh = mesh.cast::<Mesh>()?.get();
                     let (layout, orientation) = drape(mesh.triangle_mesh().clone())?;
                     mesh.warn_if_turned(py, &orientation)?;
-                    layout
+                    Ok(layout)
                 }
             };
-            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
-            Self::with(layout, taxel)
+            Self::with(
+                layout,
+                taxel(pitch, stroke, (taxel_radius, stiffness, damping)),
+            )
         })
     }
 
@@ -300,16 +288,15 @@ impl Patch {
     /// pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
     #[staticmethod]
     #[pyo3(signature = (centers, axes, *, stroke, taxel_radius, stiffness=None, damping=None, shape=None, pixels=None))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn from_arrays(
-        centers: &Bound<PyAny>,
-        axes: &Bound<PyAny>,
-        stroke: &Bound<PyAny>,
-        taxel_radius: &Bound<PyAny>,
-        stiffness: Option<&Bound<PyAny>>,
-        damping: Option<&Bound<PyAny>>,
+        centers: &Object,
+        axes: &Object,
+        stroke: &Object,
+        taxel_radius: &Object,
+        stiffness: Option<&Object>,
+        damping: Option<&Object>,
         shape: Option<Vec<i64>>,
-        pixels: Option<&Bound<PyAny>>,
+        pixels: Option<&Object>,
     ) -> PyResult<Self> {
         guarded(|| {
             let centers = points("centers", centers)?;
@@ -318,13 +305,13 @@ impl Patch {
             let taxels = each_taxel(n, (stroke, taxel_radius), (stiffness, damping))?;
             let layout = Layout::new(centers, axes).map_err(exception)?;
             let layout = with_shape(layout, shape)?;
-            let patch = match taxels.iter().all(|taxel| *taxel == taxels[0]) {
-                true => Self::with(layout, taxels[0])?,
-                false => Self::with(layout, Taxels::Each(taxels))?,
+            let taxels = match taxels.iter().all(|taxel| *taxel == taxels[0]) {
+                true => Taxels::Equal(taxels[0]),
+                false => Taxels::Each(taxels),
             };
             Ok(Self {
                 pixels: pixels.map(|given| pixels_of(given, n)).transpose()?,
-                ..patch
+                ..Self::with(Ok(layout), taxels)?
             })
         })
     }
@@ -348,7 +335,6 @@ impl Patch {
     /// Raises ValueError with the file and the row if the file is invalid, and OSError if it cannot be read.
     #[staticmethod]
     #[pyo3(signature = (path, stroke=None, *, mesh=None, unit=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
-    #[expect(clippy::too_many_arguments, reason = "a signature of Python")]
     fn read(
         py: Python,
         path: PathBuf,
@@ -368,7 +354,7 @@ impl Patch {
             };
             check_readable(&path)?;
             let file = LayoutFile::read(&path, options).map_err(exception)?;
-            warn(py, &file.notes)?;
+            warn(py, &file.notes, 1)?;
             Self::from_file(file, stroke, (taxel_radius, stiffness, damping))
         })
     }
@@ -382,16 +368,15 @@ impl Patch {
     /// pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
     #[staticmethod]
     #[pyo3(signature = (positions, normals, stroke=None, *, taxel_radius=None, stiffness=100.0, damping=0.0, shape=None, pixels=None))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn from_points(
-        positions: &Bound<PyAny>,
-        normals: &Bound<PyAny>,
+        positions: &Object,
+        normals: &Object,
         stroke: Option<f64>,
         taxel_radius: Option<f64>,
         stiffness: f64,
         damping: f64,
         shape: Option<Vec<i64>>,
-        pixels: Option<&Bound<PyAny>>,
+        pixels: Option<&Object>,
     ) -> PyResult<Self> {
         guarded(|| {
             let positions = points("positions", positions)?;
@@ -429,11 +414,10 @@ impl Patch {
     /// Frames have the shape (ny, nx) if no taxel is omitted. `pixels` contains the row and column of each taxel in the grid.
     #[staticmethod]
     #[pyo3(signature = (mesh, pose, ny, nx, pitch, stroke=None, *, missing="error", taxel_radius=None, stiffness=100.0, damping=0.0))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn projected(
         py: Python,
         mesh: &Bound<Mesh>,
-        pose: &Bound<PyAny>,
+        pose: &Object,
         ny: i64,
         nx: i64,
         pitch: f64,
@@ -460,7 +444,7 @@ impl Patch {
             let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
             Ok(Self {
                 pixels: Some(projected.pixels),
-                ..Self::with(projected.layout, taxel)?
+                ..Self::with(Ok(projected.layout), taxel)?
             })
         })
     }
@@ -485,7 +469,7 @@ impl Patch {
                 notes: Vec::new(),
             };
             check_folder(&path)?;
-            warn(py, &file.write(&path, format).map_err(exception)?)
+            warn(py, file.write(&path, format).map_err(exception)?, 1)
         })
     }
 
@@ -505,21 +489,20 @@ impl Patch {
 
     /// Row and column of each taxel in the sensor's image, (n_taxels, 2) integers; None if the layout file contains no image.
     #[getter]
-    fn pixels<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<i64>>> {
-        let pixels = self.pixels.as_ref()?;
-        let numbers = pixels.iter().flatten().map(|&number| number as i64);
-        let array = Array2::from_shape_vec((pixels.len(), 2), numbers.collect());
-        Some(array.expect("two numbers for each taxel").into_pyarray(py))
+    fn pixels<'py>(&self, py: Python<'py>) -> Option<Matrix<'py, i64>> {
+        let pixels = self.pixels.as_ref()?.iter();
+        let pixels: Vec<[i64; 2]> = pixels.map(|pixel| pixel.map(|side| side as i64)).collect();
+        Some(Array2::from(pixels).into_pyarray(py))
     }
 
     /// Returns a copy of the patch, moved by a pose in the patch frame. Frames of the copy have the same shape. pose: (7,) or (4, 4).
-    fn moved(&self, pose: &Bound<PyAny>) -> PyResult<Self> {
+    fn moved(&self, pose: &Object) -> PyResult<Self> {
         guarded(|| {
             let pose = Poses::single("pose", pose)?;
             let layout = self.patch.layout().moved(&pose);
             Ok(Self {
                 pixels: self.pixels.clone(),
-                ..Self::with(layout, self.patch.taxels().clone())?
+                ..Self::with(Ok(layout), self.patch.taxels().clone())?
             })
         })
     }
@@ -544,13 +527,13 @@ impl Patch {
 
     /// Rest centres of the taxels (n_taxels, 3), metres; a copy.
     #[getter]
-    fn centers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn centers<'py>(&self, py: Python<'py>) -> Matrix<'py> {
         to_rows(py, self.patch.layout().centers().iter().copied())
     }
 
     /// Unit axes of the taxels (n_taxels, 3), pointing away from the substrate; a copy.
     #[getter]
-    fn axes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn axes<'py>(&self, py: Python<'py>) -> Matrix<'py> {
         to_rows(py, self.patch.layout().axes().iter().copied())
     }
 
@@ -562,25 +545,25 @@ impl Patch {
 
     /// Radius of the taxels, metres: one number, or one per taxel.
     #[getter]
-    fn taxel_radius<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn taxel_radius<'py>(&self, py: Python<'py>) -> PyResult<Object<'py>> {
         self.property(py, |taxel| taxel.radius)
     }
 
     /// Stroke (largest deflection) of the taxels, metres: one number, or one per taxel. A taxel whose deflection equals its stroke is saturated.
     #[getter]
-    fn stroke<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn stroke<'py>(&self, py: Python<'py>) -> PyResult<Object<'py>> {
         self.property(py, |taxel| taxel.stroke)
     }
 
     /// Stiffness of the taxels, N/m: one number, or one per taxel.
     #[getter]
-    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Object<'py>> {
         self.property(py, |taxel| taxel.stiffness)
     }
 
     /// Damping of the taxels, N·s/m: one number, or one per taxel.
     #[getter]
-    fn damping<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn damping<'py>(&self, py: Python<'py>) -> PyResult<Object<'py>> {
         self.property(py, |taxel| taxel.damping)
     }
 
@@ -600,10 +583,7 @@ impl Patch {
     }
 
     /// Pickles a grid as its constructor call, and another patch as its arrays.
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Object<'py>, Bound<'py, PyTuple>)> {
         let named = PyDict::new(py);
         named.set_item("stroke", self.stroke(py)?)?;
         named.set_item("taxel_radius", self.taxel_radius(py)?)?;
@@ -655,40 +635,30 @@ impl Patch {
     ///
     /// Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.
     #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, output="deflection", out=None, dtype=None, threads=None, contacts=false, jacobian=false))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn press<'py>(
         &self,
         py: Python<'py>,
-        object: &Bound<'py, PyAny>,
-        poses: &Bound<'py, PyAny>,
-        depth: Option<&Bound<'py, PyAny>>,
-        travel: Option<&Bound<'py, PyAny>>,
-        force: Option<&Bound<'py, PyAny>>,
+        object: &Object<'py>,
+        poses: &Object<'py>,
+        depth: Option<&Object<'py>>,
+        travel: Option<&Object<'py>>,
+        force: Option<&Object<'py>>,
         output: &str,
-        out: Option<&Bound<'py, PyAny>>,
-        dtype: Option<&Bound<'py, PyAny>>,
+        out: Option<&Object<'py>>,
+        dtype: Option<&Object<'py>>,
         threads: Option<i64>,
         contacts: bool,
         jacobian: bool,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Object<'py>> {
         guarded(|| {
-            let goal = crate::press::goal::Goal::from_arguments(depth, travel, force)?;
-            crate::press::batch_press::press(
-                py,
-                crate::press::batch_press::PatchToPress {
-                    patch: &self.patch,
-                    sides: &self.shape,
-                    spare: &self.spare,
-                },
-                (object, poses, goal),
-                (out, dtype),
-                threads,
-                crate::press::batch_press::Wanted {
-                    output: Output::from_argument(output)?,
-                    contacts,
-                    jacobian,
-                },
-            )
+            let goal = Goal::from_arguments(depth, travel, force)?;
+            let wanted = Wanted {
+                output: Output::from_argument(output)?,
+                contacts,
+                jacobian,
+            };
+            let (given, threads) = ((object, poses, goal), n_threads(threads)?);
+            press(py, self, given, (out, dtype), threads, wanted)
         })
     }
 
@@ -711,16 +681,15 @@ impl Patch {
     ///
     /// Raises ValueError if an argument is invalid.
     #[pyo3(signature = (object, poses, *, depth, slide, friction, shear_stiffness=None, threads=None))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn press_and_slide<'py>(
         &self,
         py: Python<'py>,
-        object: &Bound<'py, PyAny>,
-        poses: &Bound<'py, PyAny>,
-        depth: &Bound<'py, PyAny>,
-        slide: &Bound<'py, PyAny>,
-        friction: &Bound<'py, PyAny>,
-        shear_stiffness: Option<&Bound<'py, PyAny>>,
+        object: &Object<'py>,
+        poses: &Object<'py>,
+        depth: &Object<'py>,
+        slide: &Object<'py>,
+        friction: &Object<'py>,
+        shear_stiffness: Option<&Object<'py>>,
         threads: Option<i64>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let motion = Motion {

@@ -1,9 +1,10 @@
 //! Batches of presses, which write deflections into a NumPy array.
 
-use crate::arrays::shape_of;
-use crate::batch::{Spare, for_each, n_threads};
+use crate::arrays::{Object, shape_of};
+use crate::batch::for_each;
 use crate::errors::{bad_input, exception};
 use crate::model::Objects;
+use crate::patch::Patch;
 use crate::poses::Poses;
 use crate::press::contacts::{Contacts, OfPose};
 use crate::press::goal::Goal;
@@ -11,11 +12,10 @@ use crate::press::jacobian;
 use crate::press::output::{Output, Scale};
 use bubbletouch::contact::{Press, Row, Until, Workspace};
 use bubbletouch::geometry::Pose;
-use bubbletouch::world;
 use glam::DVec3;
 use numpy::{
-    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
-    dtype as dtype_of,
+    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
+    PyUntypedArrayMethods, dtype as dtype_of,
 };
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -50,65 +50,70 @@ pub struct Wanted {
     pub jacobian: bool,
 }
 
-/// Patch to be pressed, with the shape of its frames, and workspaces for threads.
-#[derive(Clone, Copy)]
-pub struct PatchToPress<'a> {
-    /// Patch of the Rust library.
-    pub patch: &'a world::Patch,
-    /// Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,).
-    pub sides: &'a [usize],
-    /// Workspaces that successive presses reuse.
-    pub spare: &'a Spare<Workspace>,
-}
-
 /// Presses a patch on objects at all poses. Returns the frames, or a tuple of the frames and the other requested results, contacts first.
 ///
 /// # Errors
 /// If an argument is invalid, a force cannot be reached (the error names the pose), or Ctrl-C was pressed.
 pub fn press<'py>(
     py: Python<'py>,
-    patch: PatchToPress,
-    (object, poses, goal): (&Bound<'py, PyAny>, &Bound<'py, PyAny>, Goal),
-    (out, dtype): (Option<&Bound<'py, PyAny>>, Option<&Bound<'py, PyAny>>),
-    threads: Option<i64>,
+    patch: &Patch,
+    (object, poses, goal): (&Object<'py>, &Object<'py>, Goal),
+    (out, dtype): (Option<&Object<'py>>, Option<&Object<'py>>),
+    threads: Option<usize>,
     wanted: Wanted,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Object<'py>> {
     let objects = Objects::from_argument(object)?;
     let given = Poses::of_objects("poses", poses, objects.n_several())?;
     let n_sets = given.poses.len() / objects.models().len();
     goal.check(n_sets)?;
     if wanted.jacobian {
-        jacobian::check(goal.kind(), patch.patch)?;
+        jacobian::check(goal.kind(), patch.inner())?;
     }
     let batch = Batch {
         patch,
         objects,
         given,
         goal,
-        threads: n_threads(threads)?,
+        threads,
         wanted,
     };
-    let mut shape = batch.patch.sides.to_vec();
+    let mut shape = patch.sides().to_vec();
     if !batch.given.is_one {
         shape.insert(0, n_sets);
     }
-    if let Some(out) = out {
-        if let Some(dtype) = dtype {
-            let has = out.getattr("dtype")?;
-            if is_single(py, dtype)? != is_single(py, &has)? {
-                return Err(bad_input("dtype", dtype, format!("{has}, which out has")));
+    let single = dtype.map(|dtype| is_single(py, dtype)).transpose()?;
+    let array = match out {
+        Some(out) => {
+            if let (Some(dtype), Some(single)) = (dtype, single) {
+                let has = out.getattr("dtype")?;
+                if single != is_single(py, &has)? {
+                    return Err(bad_input("dtype", dtype, format!("{has}, which out has")));
+                }
             }
+            check_out(out, &shape)?;
+            out.clone()
         }
-        return batch.into_out(py, out, &shape);
-    }
-    match dtype {
-        Some(dtype) if is_single(py, dtype)? => batch.into_new::<f32>(py, &shape),
-        _ => batch.into_new::<f64>(py, &shape),
+        None => {
+            let dtype = if single == Some(true) {
+                "float32"
+            } else {
+                "float64"
+            };
+            zeros(py)?.call1((PyTuple::new(py, &shape)?, dtype))?
+        }
+    };
+    match array.cast_into::<PyArrayDyn<f32>>() {
+        Ok(array) => batch.fill(py, array, out.is_none()),
+        Err(other) => batch.fill(
+            py,
+            other.into_inner().cast_into::<PyArrayDyn<f64>>()?,
+            out.is_none(),
+        ),
     }
 }
 
 /// Returns whether a NumPy type is float32. If the type is neither float32 nor float64, returns an error.
-fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
+fn is_single(py: Python, dtype: &Object) -> PyResult<bool> {
     let allowed = "float32 or float64";
     let descr = numpy::PyArrayDescr::new(py, dtype.clone())
         .map_err(|_| bad_input("dtype", dtype, allowed))?;
@@ -123,13 +128,13 @@ fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
 }
 
 /// Returns the function `numpy.zeros`, which creates the output arrays. Memory of untouched taxels is never written, and large arrays use large memory pages.
-fn zeros<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
+fn zeros<'py>(py: Python<'py>) -> PyResult<&'py Object<'py>> {
     static ZEROS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     ZEROS.import(py, "numpy", "zeros")
 }
 
 struct Batch<'a> {
-    patch: PatchToPress<'a>,
+    patch: &'a Patch,
     objects: Objects<'a>,
     given: Poses,
     goal: Goal,
@@ -138,43 +143,12 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    fn into_new<'py, T: Real>(
-        self,
-        py: Python<'py>,
-        shape: &[usize],
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let shape = PyTuple::new(py, shape)?;
-        let array = zeros(py)?.call1((shape, dtype_of::<T>(py)))?;
-        self.fill(py, array.cast_into::<PyArrayDyn<T>>()?, true)
-    }
-
-    fn into_out<'py>(
-        self,
-        py: Python<'py>,
-        out: &Bound<'py, PyAny>,
-        shape: &[usize],
-    ) -> PyResult<Bound<'py, PyAny>> {
-        if let Ok(array) = out.cast::<PyArrayDyn<f64>>() {
-            check_out(array, shape)?;
-            return self.fill(py, array.clone(), false);
-        }
-        if let Ok(array) = out.cast::<PyArrayDyn<f32>>() {
-            check_out(array, shape)?;
-            return self.fill(py, array.clone(), false);
-        }
-        let given = match out.getattr("dtype") {
-            Ok(dtype) => format!("dtype {dtype}"),
-            Err(_) => out.get_type().to_string(),
-        };
-        Err(bad_input("out", given, "an array of float32 or float64"))
-    }
-
     fn fill<'py, T: Real>(
         self,
         py: Python<'py>,
         array: Bound<'py, PyArrayDyn<T>>,
         is_zero: bool,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Object<'py>> {
         let mut sides = array.shape().to_vec();
         sides.extend(self.objects.n_several());
         sides.push(jacobian::N);
@@ -209,7 +183,7 @@ impl Batch<'_> {
         changes: Option<&mut [f64]>,
     ) -> PyResult<Option<Contacts>> {
         let models = self.objects.models();
-        let (patch, goal, k) = (self.patch.patch, &self.goal, models.len());
+        let (patch, goal, k) = (self.patch.inner(), &self.goal, models.len());
         let (is_one, wanted) = (self.given.is_one, self.wanted);
         let named = |number: usize, error: bubbletouch::Error| {
             let place = if is_one {
@@ -266,7 +240,7 @@ impl Batch<'_> {
                 frames.zip(changes.map(Some)).collect()
             }
         };
-        let spare = self.patch.spare;
+        let spare = self.patch.spare();
         for_each(py, items, self.threads, spare, Workspace::new, work)?;
         if !wanted.contacts {
             return Ok(None);
@@ -276,13 +250,22 @@ impl Batch<'_> {
     }
 }
 
-/// Returns an error if an array cannot receive the frames because of its shape or memory layout.
-fn check_out<T: Element>(array: &Bound<PyArrayDyn<T>>, shape: &[usize]) -> PyResult<()> {
+/// Returns an error if an object cannot receive the frames because of its type, shape or memory layout.
+fn check_out(out: &Object, shape: &[usize]) -> PyResult<()> {
+    let array = out.cast::<PyUntypedArray>();
+    let given = match &array {
+        Ok(array) => format!("dtype {}", array.dtype()),
+        Err(_) => out.get_type().to_string(),
+    };
+    let is_frames =
+        out.is_instance_of::<PyArrayDyn<f64>>() || out.is_instance_of::<PyArrayDyn<f32>>();
+    let array = array.ok().filter(|_| is_frames);
+    let array = array.ok_or_else(|| bad_input("out", given, "an array of float32 or float64"))?;
     if array.shape() != shape {
         return Err(bad_input("out", shape_of(array.shape()), shape_of(shape)));
     }
-    if !array.is_c_contiguous() {
-        return Err(bad_input("out", "a strided array", "a C-contiguous one"));
+    match array.is_c_contiguous() {
+        true => Ok(()),
+        false => Err(bad_input("out", "a strided array", "a C-contiguous one")),
     }
-    Ok(())
 }

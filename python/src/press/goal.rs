@@ -1,6 +1,6 @@
 //! Goal of a press: pose, depth, force or travel.
 
-use crate::arrays::view;
+use crate::arrays::{Object, array};
 use crate::errors::bad_input;
 use bubbletouch::contact::{Press, Until};
 use bubbletouch::geometry::Pose;
@@ -20,56 +20,46 @@ impl Goal {
     /// # Errors
     /// If two amounts are given, an amount is not a number, or a depth is negative.
     pub fn from_arguments(
-        depth: Option<&Bound<PyAny>>,
-        travel: Option<&Bound<PyAny>>,
-        force: Option<&Bound<PyAny>>,
+        depth: Option<&Object>,
+        travel: Option<&Object>,
+        force: Option<&Object>,
     ) -> PyResult<Self> {
         type Kind = fn(f64) -> Until;
-        type IsAllowed = fn(f64) -> bool;
-        let (place, given, kind, is_allowed, allowed): (_, _, Kind, IsAllowed, _) =
-            match (depth, travel, force) {
-                (None, None, None) => {
-                    return Ok(Self {
-                        kind: |_| Until::Pose,
-                        amounts: vec![0.0],
-                    });
-                }
-                (Some(depth), None, None) => (
-                    "depth",
-                    depth,
-                    Until::Depth,
-                    |x| x.is_finite() && x >= 0.0,
-                    "a finite number of metres, zero or more",
-                ),
-                (None, Some(travel), None) => (
-                    "travel",
-                    travel,
-                    Until::Travel,
-                    f64::is_finite,
-                    "a finite number of metres",
-                ),
-                (None, None, Some(force)) => (
-                    "force",
-                    force,
-                    Until::Force,
-                    |x| x.is_finite() && x > 0.0,
-                    "a finite positive number of newtons",
-                ),
-                _ => {
-                    let given = "more than one of depth, travel and force";
-                    return Err(bad_input("press", given, "one of them, or none"));
-                }
-            };
+        let (place, given, kind, least, allowed): (_, _, Kind, _, _) = match (depth, travel, force)
+        {
+            (None, None, None) => {
+                return Ok(Self {
+                    kind: |_| Until::Pose,
+                    amounts: vec![0.0],
+                });
+            }
+            (Some(depth), None, None) => {
+                let allowed = "a finite number of metres, zero or more";
+                ("depth", depth, Until::Depth, 0.0, allowed)
+            }
+            (None, Some(travel), None) => {
+                let allowed = "a finite number of metres";
+                ("travel", travel, Until::Travel, f64::MIN, allowed)
+            }
+            (None, None, Some(force)) => {
+                let allowed = "a finite positive number of newtons";
+                ("force", force, Until::Force, f64::MIN_POSITIVE, allowed)
+            }
+            _ => {
+                let given = "more than one of depth, travel and force";
+                return Err(bad_input("press", given, "one of them, or none"));
+            }
+        };
         let amounts = match given.extract::<f64>() {
             Ok(amount) => vec![amount],
             Err(_) => {
                 let is_shape = |shape: &[usize]| shape.len() == 1;
-                view(place, given, "a number, or (n,)", is_shape, |array| {
-                    Ok(array.iter().copied().collect())
-                })?
+                let array = array(place, given, "a number, or (n,)", is_shape)?;
+                array.values().to_vec()
             }
         };
-        match amounts.iter().find(|amount| !is_allowed(**amount)) {
+        let is_wrong = |amount: &&f64| !(amount.is_finite() && **amount >= least);
+        match amounts.iter().find(is_wrong) {
             Some(bad) => Err(bad_input(place, bad, allowed)),
             None => Ok(Self { kind, amounts }),
         }

@@ -1,6 +1,6 @@
 //! Contact forces of an engine: arrays as arguments.
 
-use crate::arrays::{points, view};
+use crate::arrays::{Object, points, rows, whole_numbers};
 use crate::errors::bad_input;
 use bubbletouch::skin::{BodyLoad, LoadPart, PointLoad};
 use glam::DVec3;
@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 ///
 /// # Errors
 /// If the argument is not a tuple of 3 or 5 arrays, or an index is no whole number. The library checks the ranges of indices and vectors.
-pub fn read(given: &Bound<PyAny>) -> PyResult<(Vec<BodyLoad>, LoadPart)> {
-    let arrays: Vec<Bound<PyAny>> = given.extract().unwrap_or_default();
+pub fn read(given: &Object) -> PyResult<(Vec<BodyLoad>, LoadPart)> {
+    let arrays: Vec<Object> = given.extract().unwrap_or_default();
     let (pairs, vectors, part) = match &arrays[..] {
         [pairs, vectors @ ..] if vectors.len() == 2 => (pairs, vectors, LoadPart::Normal),
         [pairs, vectors @ ..] if vectors.len() == 4 => (pairs, vectors, LoadPart::Whole),
@@ -22,23 +22,10 @@ pub fn read(given: &Bound<PyAny>) -> PyResult<(Vec<BodyLoad>, LoadPart)> {
             return Err(bad_input("loads", given, allowed));
         }
     };
-    let is_pairs = |shape: &[usize]| matches!(shape, [_, 2]);
-    let pairs = view("loads, pairs", pairs, "(m, 2)", is_pairs, |array| {
-        let rows = array.rows().into_iter().map(|row| {
-            let row = [row[0], row[1]];
-            match row
-                .iter()
-                .all(|index| *index >= 0.0 && index.fract() == 0.0)
-            {
-                true => Ok(row.map(|index| index as usize)),
-                false => {
-                    let allowed = "indices of a carrier and an object, from 0";
-                    Err(bad_input("loads, pairs", format!("{row:?}"), allowed))
-                }
-            }
-        });
-        rows.collect::<PyResult<Vec<_>>>()
-    })?;
+    let pairs = rows::<2>("loads, pairs", pairs)?;
+    let allowed = "indices of a carrier and an object, from 0";
+    let pairs: Vec<usize> = whole_numbers("loads, pairs", pairs.as_flattened(), allowed)?;
+    let pairs = pairs.as_chunks::<2>().0;
     let vectors = vectors.iter().map(|array| points("loads", array));
     let vectors: Vec<Vec<DVec3>> = vectors.collect::<PyResult<_>>()?;
     if let Some(wrong) = vectors.iter().find(|rows| rows.len() != pairs.len()) {

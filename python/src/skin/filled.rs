@@ -1,6 +1,6 @@
 //! Arrays of the caller: targets that are filled with results, and optional arguments with one number for each pair.
 
-use crate::arrays::{numbers, shape_of};
+use crate::arrays::{Object, array, shape_of};
 use crate::errors::bad_input;
 use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -18,7 +18,7 @@ impl<'py, T: Element + Copy> Target<'py, T> {
     /// If the object is not a writeable array of this shape and type in C order; the message begins with `place`.
     pub fn new(
         place: &'static str,
-        given: Option<&Bound<'py, PyAny>>,
+        given: Option<&Object<'py>>,
         (shape, dtype): (&[usize], &str),
     ) -> PyResult<Self> {
         let Some(given) = given else {
@@ -71,19 +71,14 @@ impl<'py, T: Element + Copy> Target<'py, T> {
 /// If the argument has another shape or is not an array of real numbers.
 pub fn read_optional(
     place: &str,
-    given: Option<&Bound<PyAny>>,
+    given: Option<&Object>,
     shape: &[usize],
     values: &mut Vec<f64>,
 ) -> PyResult<()> {
     values.clear();
-    let Some(given) = given else { return Ok(()) };
-    let array = numbers(place, given)?;
-    if array.shape() != shape {
-        return Err(bad_input(place, shape_of(array.shape()), shape_of(shape)));
+    if let Some(given) = given {
+        let array = array(place, given, &shape_of(shape), |is| is == shape)?;
+        values.extend_from_slice(array.values());
     }
-    let array = array
-        .try_readonly()
-        .map_err(|error| bad_input(place, error, "an array that nobody writes to meanwhile"))?;
-    values.extend_from_slice(array.as_slice()?);
     Ok(())
 }

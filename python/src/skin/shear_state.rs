@@ -1,6 +1,6 @@
 //! Class `ShearState`: shear springs with friction of all taxels of a skin, from one read to the next.
 
-use crate::arrays::{to_rows, whole_number};
+use crate::arrays::{Object, to_rows, whole_number};
 use crate::errors::{bad_input, guarded};
 use bubbletouch::contact::ContactMode;
 use bubbletouch::skin;
@@ -58,7 +58,7 @@ impl ShearState {
     /// Force of the bodies on each taxel after the last read, newtons, (n_taxels, 3) or (n, n_taxels, 3), in the frame of the taxel's patch. It is the sum
     /// of the normal force, the friction, and the lateral force of an inclined contact.
     #[getter]
-    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Object<'py>> {
         let rows = to_rows(py, self.inner.forces().iter().copied());
         match self.n_sets {
             None => Ok(rows.into_any()),
@@ -68,7 +68,7 @@ impl ShearState {
 
     /// Whether each taxel slipped during the last step, (n_taxels,) or (n, n_taxels).
     #[getter]
-    fn slipping<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn slipping<'py>(&self, py: Python<'py>) -> PyResult<Object<'py>> {
         let modes = self.inner.contact_modes();
         let slipping: Vec<bool> = modes.map(|mode| mode == ContactMode::Slip).collect();
         let slipping = slipping.into_pyarray(py);
@@ -102,7 +102,7 @@ impl ShearState {
         self.clone()
     }
 
-    fn __deepcopy__(&self, _memo: &Bound<PyAny>) -> Self {
+    fn __deepcopy__(&self, _memo: &Object) -> Self {
         self.clone()
     }
 

@@ -2,9 +2,9 @@
 
 use super::contact_loads;
 use super::filled::{Target, read_optional};
-use super::poses::{PoseSets, read_poses};
+use super::poses::PoseSets;
 use super::shear_state::ShearState;
-use crate::arrays::{each, shape_of, view, whole_number};
+use crate::arrays::{Object, array, each, shape_of, whole_number};
 use crate::batch::Spare;
 use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
@@ -64,9 +64,9 @@ impl Skin {
     #[pyo3(signature = (patches, bodies, *, objects=None, can_touch=None, carriers=None))]
     fn new(
         patches: Vec<Bound<Patch>>,
-        bodies: Vec<Bound<PyAny>>,
+        bodies: Vec<Object>,
         objects: Option<Vec<i128>>,
-        can_touch: Option<&Bound<PyAny>>,
+        can_touch: Option<&Object>,
         carriers: Option<Vec<i128>>,
     ) -> PyResult<Self> {
         guarded(|| {
@@ -150,26 +150,25 @@ impl Skin {
     /// that acts on no patch of its carrier belongs to the nearest one, if it is nearer than the diameter of the patch.
     /// travels: (n_patches, n_objects), travel of the patch of each pair, metres; NaN for pairs with force 0.
     #[pyo3(signature = (patch_poses, body_poses, *, output="deflection", forces=None, directions=None, loads=None, reach=None, shear=None, out=None, wrenches=None, contacts=None, taxel_forces=None, pair_forces=None, residuals=None, travels=None))]
-    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn read<'py>(
         &self,
         py: Python<'py>,
-        patch_poses: &Bound<'py, PyAny>,
-        body_poses: &Bound<'py, PyAny>,
+        patch_poses: &Object<'py>,
+        body_poses: &Object<'py>,
         output: &str,
-        forces: Option<&Bound<'py, PyAny>>,
-        directions: Option<&Bound<'py, PyAny>>,
-        loads: Option<&Bound<'py, PyAny>>,
+        forces: Option<&Object<'py>>,
+        directions: Option<&Object<'py>>,
+        loads: Option<&Object<'py>>,
         reach: Option<f64>,
         shear: Option<&Bound<'py, ShearState>>,
-        out: Option<Bound<'py, PyAny>>,
-        wrenches: Option<&Bound<'py, PyAny>>,
-        contacts: Option<&Bound<'py, PyAny>>,
-        taxel_forces: Option<&Bound<'py, PyAny>>,
-        pair_forces: Option<&Bound<'py, PyAny>>,
-        residuals: Option<&Bound<'py, PyAny>>,
-        travels: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+        out: Option<Object<'py>>,
+        wrenches: Option<&Object<'py>>,
+        contacts: Option<&Object<'py>>,
+        taxel_forces: Option<&Object<'py>>,
+        pair_forces: Option<&Object<'py>>,
+        residuals: Option<&Object<'py>>,
+        travels: Option<&Object<'py>>,
+    ) -> PyResult<Object<'py>> {
         guarded(|| {
             let output = Output::from_argument(output)?;
             let options = ReadOptions {
@@ -177,12 +176,16 @@ impl Skin {
                 wants_pairs: pair_forces.is_some() || residuals.is_some() || travels.is_some(),
             };
             let mut scratch = self.spare.take().unwrap_or_default();
-            let n_sets = self.read_pose_sets((patch_poses, body_poses), &mut scratch)?;
+            let (of_patches, of_bodies) = (&mut scratch.patch_poses, &mut scratch.body_poses);
+            let n_patches = self.inner.patches().len();
+            let patch_sets = PoseSets::read("patch_poses", patch_poses, n_patches, of_patches)?;
+            let n_bodies = self.inner.n_bodies();
+            let body_sets = PoseSets::read("body_poses", body_poses, n_bodies, of_bodies)?;
+            let n_sets = PoseSets::joined((patch_sets, of_patches), (body_sets, of_bodies))?;
             let shape = |last: &[usize]| -> Vec<usize> {
                 n_sets.into_iter().chain(last.iter().copied()).collect()
             };
-            let (n_patches, n_objects) = (self.inner.patches().len(), self.inner.n_objects());
-            let n_taxels = self.inner.n_taxels();
+            let (n_objects, n_taxels) = (self.inner.n_objects(), self.inner.n_taxels());
             let pairs = shape(&[n_patches, n_objects]);
             read_optional("forces", forces, &pairs, &mut scratch.forces)?;
             let vectors = shape(&[n_patches, n_objects, 3]);
@@ -205,7 +208,7 @@ impl Skin {
                 .chunks_exact(3)
                 .map(DVec3::from_slice)
                 .collect();
-            let float = |place, array: Option<&Bound<'py, PyAny>>, last: &[usize]| {
+            let float = |place, array: Option<&Object<'py>>, last: &[usize]| {
                 Target::<f64>::new(place, array, (&shape(last), "a float64"))
             };
             let out_target = float("out", out.as_ref(), &[n_taxels])?;
@@ -291,8 +294,8 @@ impl Skin {
     #[pyo3(signature = (stiffness, friction, *, n=None))]
     fn shear_state(
         &self,
-        stiffness: &Bound<PyAny>,
-        friction: &Bound<PyAny>,
+        stiffness: &Object,
+        friction: &Object,
         n: Option<usize>,
     ) -> PyResult<ShearState> {
         guarded(|| {
@@ -338,51 +341,14 @@ impl Skin {
     }
 }
 
-impl Skin {
-    /// Reads the poses of patches and bodies. Returns the number of sets, or `None` if the arrays have no axis of sets.
-    fn read_pose_sets(
-        &self,
-        (of_patches, of_bodies): (&Bound<PyAny>, &Bound<PyAny>),
-        scratch: &mut SkinWorkspace,
-    ) -> PyResult<Option<usize>> {
-        let n_patches = self.inner.patches().len();
-        let patches = read_poses(
-            "patch_poses",
-            of_patches,
-            n_patches,
-            &mut scratch.patch_poses,
-        )?;
-        let n_bodies = self.inner.n_bodies();
-        let bodies = read_poses("body_poses", of_bodies, n_bodies, &mut scratch.body_poses)?;
-        PoseSets::joined(
-            (patches, &mut scratch.patch_poses),
-            (bodies, &mut scratch.body_poses),
-        )
-    }
-}
-
 /// Returns the bodies that cannot touch each patch, given the argument `can_touch`.
-fn excluded_bodies(
-    given: &Bound<PyAny>,
-    n_patches: usize,
-    n_bodies: usize,
-) -> PyResult<Vec<Vec<usize>>> {
+fn excluded_bodies(given: &Object, n_patches: usize, n_bodies: usize) -> PyResult<Vec<Vec<usize>>> {
     let shape = [n_patches, n_bodies];
     let allowed = format!("bool, {}", shape_of(&shape));
-    view(
-        "can_touch",
-        given,
-        &allowed,
-        |is| is == shape,
-        |array| {
-            let rows = array.rows().into_iter();
-            let excluded = rows.map(|row| {
-                row.indexed_iter()
-                    .filter(|(_, can)| **can == 0.0)
-                    .map(|(body, _)| body)
-                    .collect()
-            });
-            Ok(excluded.collect())
-        },
-    )
+    let can_touch = array("can_touch", given, &allowed, |is| is == shape)?;
+    let of_patch = |patch: usize| {
+        let row = &can_touch.values()[patch * n_bodies..][..n_bodies];
+        (0..n_bodies).filter(|&body| row[body] == 0.0).collect()
+    };
+    Ok((0..n_patches).map(of_patch).collect())
 }

@@ -60,58 +60,25 @@ fn main() -> Result<()> {
     let models = [balls(0.014)?, balls(0.016)?, balls(0.02)?];
     let mut workspace = Workspace::new();
     for (name, patch) in [("grid", &flat), ("hexagonal", &hexagonal)] {
-        let frames = |press: &mut dyn FnMut(&Model, Pose, &mut Workspace) -> Result<()>,
-                      workspace: &mut Workspace|
-         -> Result<Array2<f64>> {
+        for (goal, until) in [
+            ("depth", Until::Depth(3e-3)),
+            ("force", Until::Force(2.0)),
+            ("here", Until::Pose),
+        ] {
             let mut frames = Array2::zeros((N, patch.n_taxels()));
             for (number, mut frame) in frames.outer_iter_mut().enumerate() {
-                press(&models[number % 3], pose(number), workspace)?;
+                let mut pose = pose(number);
+                if until == Until::Pose {
+                    pose.translation.z = -0.02;
+                }
+                let models = std::slice::from_ref(&models[number % 3]);
+                Press::new(patch, models, &[pose], until).run(&mut workspace)?;
                 frame.assign(&Array1::from(workspace.deflections().to_vec()));
             }
-            Ok(frames)
-        };
-        let depth = frames(
-            &mut |model, pose, workspace| {
-                Press::new(
-                    patch,
-                    std::slice::from_ref(model),
-                    &[pose],
-                    Until::Depth(3e-3),
-                )
-                .run(workspace)
-                .unwrap();
-                Ok(())
-            },
-            &mut workspace,
-        )?;
-        let force = frames(
-            &mut |model, pose, workspace| {
-                Press::new(
-                    patch,
-                    std::slice::from_ref(model),
-                    &[pose],
-                    Until::Force(2.0),
-                )
-                .run(workspace)
-                .map(drop)
-            },
-            &mut workspace,
-        )?;
-        let here = frames(
-            &mut |model, mut pose, workspace| {
-                pose.translation.z = -0.02;
-                Press::new(patch, std::slice::from_ref(model), &[pose], Until::Pose)
-                    .run(workspace)
-                    .unwrap();
-                Ok(())
-            },
-            &mut workspace,
-        )?;
-        write_npy(&folder.join(format!("{name}_depth.npy")), &depth)?;
-        write_npy(&folder.join(format!("{name}_force.npy")), &force)?;
-        write_npy(&folder.join(format!("{name}_here.npy")), &here)?;
-        if name == "grid" {
-            after_presses(folder, &flat, depth)?;
+            write_npy(&folder.join(format!("{name}_{goal}.npy")), &frames)?;
+            if (name, goal) == ("grid", "depth") {
+                after_presses(folder, &flat, frames)?;
+            }
         }
     }
     Ok(())
