@@ -16,8 +16,23 @@ use std::sync::{Arc, Mutex};
 /// Name, version and object of a classifier or of features.
 pub type Given = (String, String, Py<PyAny>);
 
-/// First exception of a Python classifier or feature. The exception of the study has it as its cause.
-pub type Raised = Arc<Mutex<Option<PyErr>>>;
+/// First exception of the Python code of a study: of a classifier, of features or of the callback.
+#[derive(Clone, Default)]
+pub struct Raised(Arc<Mutex<Option<PyErr>>>);
+
+impl Raised {
+    /// Stores an exception unless there is one.
+    pub fn keep(&self, error: PyErr) {
+        if let Ok(mut raised) = self.0.lock() {
+            raised.get_or_insert(error);
+        }
+    }
+
+    /// Returns the stored exception, and forgets it.
+    pub fn take(&self) -> Option<PyErr> {
+        self.0.lock().ok()?.take()
+    }
+}
 
 /// Classifiers and features that are provided while the value exists.
 pub struct Provided {
@@ -38,25 +53,18 @@ impl Object {
         &self,
         allowed: &str,
         call: impl FnOnce(&Bound<PyAny>) -> PyResult<T>,
-    ) -> std::result::Result<T, svm::Error> {
+    ) -> svm::Result<T> {
         Python::attach(|py| {
             call(self.object.bind(py)).map_err(|error| {
                 let given = error.to_string();
-                if let Ok(mut raised) = self.raised.lock() {
-                    raised.get_or_insert(error);
-                }
+                self.raised.keep(error);
                 svm::Error::input(&self.place, given, allowed)
             })
         })
     }
-}
 
-impl Object {
     /// Returns the object with other values of its parameters.
-    fn with(
-        &self,
-        parameters: &classifiers::ForeignParameters,
-    ) -> std::result::Result<Self, svm::Error> {
+    fn with(&self, parameters: &classifiers::ForeignParameters) -> svm::Result<Self> {
         let values = serde_json::Value::Object(parameters.clone()).to_string();
         let object = self.call("parameters that it has", |object| {
             Ok(object.call_method1("with_parameters", (values,))?.unbind())
@@ -85,7 +93,7 @@ impl Trainer {
         rows: &Dataset,
         groups: Option<&[usize]>,
         seed: u32,
-    ) -> std::result::Result<Box<dyn classifiers::ForeignModel>, svm::Error> {
+    ) -> svm::Result<Box<dyn classifiers::ForeignModel>> {
         let groups: Option<Vec<i64>> =
             groups.map(|groups| groups.iter().map(|&group| group as i64).collect());
         let model = self.0.call(FIT, |object| {
@@ -109,15 +117,11 @@ impl classifiers::ForeignClassifier for Trainer {
     fn with(
         &self,
         parameters: &classifiers::ForeignParameters,
-    ) -> std::result::Result<Arc<dyn classifiers::ForeignClassifier>, svm::Error> {
+    ) -> svm::Result<Arc<dyn classifiers::ForeignClassifier>> {
         Ok(Arc::new(Self(Arc::new(self.0.with(parameters)?))))
     }
 
-    fn fit(
-        &self,
-        rows: &Dataset,
-        seed: u32,
-    ) -> std::result::Result<Box<dyn classifiers::ForeignModel>, svm::Error> {
+    fn fit(&self, rows: &Dataset, seed: u32) -> svm::Result<Box<dyn classifiers::ForeignModel>> {
         self.train(rows, None, seed)
     }
 
@@ -126,13 +130,13 @@ impl classifiers::ForeignClassifier for Trainer {
         rows: &Dataset,
         groups: &[usize],
         seed: u32,
-    ) -> std::result::Result<Box<dyn classifiers::ForeignModel>, svm::Error> {
+    ) -> svm::Result<Box<dyn classifiers::ForeignModel>> {
         self.train(rows, Some(groups), seed)
     }
 }
 
 impl classifiers::ForeignModel for Model {
-    fn predict(&self, rows: ArrayView2<f64>) -> std::result::Result<Vec<usize>, svm::Error> {
+    fn predict(&self, rows: ArrayView2<f64>) -> svm::Result<Vec<usize>> {
         self.trainer.call(PREDICT, |object| {
             let py = object.py();
             let given = (self.model.bind(py), rows.to_pyarray(py));
@@ -144,10 +148,7 @@ impl classifiers::ForeignModel for Model {
         })
     }
 
-    fn log_probabilities(
-        &self,
-        rows: ArrayView2<f64>,
-    ) -> std::result::Result<Option<Array2<f64>>, svm::Error> {
+    fn log_probabilities(&self, rows: ArrayView2<f64>) -> svm::Result<Option<Array2<f64>>> {
         self.trainer
             .call("log-probabilities of all classes", |object| {
                 let py = object.py();

@@ -21,7 +21,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::ThreadPoolBuilder;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 use std::time::{Duration, Instant, SystemTime};
 
 /// Minimum time between two calls of a callback. If shorter, worker threads wait for the Python interpreter more often.
@@ -33,7 +33,7 @@ struct CallbackProgress {
     callback: Option<Py<PyAny>>,
     stage: Mutex<Stage>,
     /// Exception from the callback, if any.
-    raised: Arc<Mutex<Option<PyErr>>>,
+    raised: Raised,
 }
 
 struct Stage {
@@ -50,9 +50,7 @@ impl CallbackProgress {
         };
         let called = Python::attach(|py| callback.call1(py, (name, done, total)).map(drop));
         if let Err(error) = called {
-            if let Ok(mut raised) = self.raised.lock() {
-                raised.get_or_insert(error);
-            }
+            self.raised.keep(error);
             self.stop.tell();
         }
         self.stop.end_if_told();
@@ -239,8 +237,8 @@ pub fn run_study<'py>(
         };
         let foreign = Raised::default();
         let of_foreign = foreign.clone();
-        let raised = Arc::new(Mutex::new(None));
-        let of_callback = Arc::clone(&raised);
+        let raised = Raised::default();
+        let of_callback = raised.clone();
         let ran = aside(py, move |stop| {
             let told = CallbackProgress {
                 stop: stop.clone(),
@@ -255,16 +253,12 @@ pub fn run_study<'py>(
             };
             run(asked, &told, &of_foreign)
         });
-        if let Ok(mut raised) = raised.lock()
-            && let Some(error) = raised.take()
-        {
+        if let Some(error) = raised.take() {
             return Err(error);
         }
         let tables = ran?.map_err(|error| {
             let error = exception(error);
-            if let Ok(mut foreign) = foreign.lock() {
-                error.set_cause(py, foreign.take());
-            }
+            error.set_cause(py, foreign.take());
             error
         })?;
         tables.iter().map(|table| columns(py, table)).collect()

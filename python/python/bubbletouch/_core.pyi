@@ -1327,9 +1327,9 @@ def run_audit(
     permutations: int,
     name: str,
     out: _Path,
-) -> tuple[list[tuple[Any, ...]], list[tuple[str, str, str, dict[str, Any]]]]:
+) -> list[tuple[str, str, str, dict[str, Any]]]:
     """Audits files, by their names `data`, `labels`, `groups`, `sessions`, `times`, `lengths`, `frames_test`, `labels_test`, `groups_test` and `lengths_test`, as the
-    command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the findings and the tables.
+    command `bubbletouch audit` does. Writes the page, tables and charts to a folder. Returns the tables; the first one lists the findings.
     """
 
 def rename_old_results(folder: _Path) -> None:

@@ -75,12 +75,11 @@ impl Patch {
             stroke: stroke.unwrap_or(2.0 * radius),
         };
         let taxels = match (taxel_radius, &file.radii) {
-            (None, Some(radii)) if radii.iter().any(|radius| *radius != radii[0]) => {
-                Taxels::Each(radii.iter().copied().map(with_radius).collect())
+            (None, Some(radii)) => joined(radii.iter().copied().map(with_radius).collect()),
+            (radius, _) => {
+                let radius = radius.unwrap_or_else(|| file.default_radius());
+                Taxels::Equal(with_radius(radius))
             }
-            (None, Some(radii)) => Taxels::Equal(with_radius(radii[0])),
-            (Some(radius), _) => Taxels::Equal(with_radius(radius)),
-            (None, None) => Taxels::Equal(with_radius(file.default_radius())),
         };
         Ok(Self {
             pixels: file.pixels,
@@ -116,6 +115,14 @@ impl Patch {
 pub fn frame_shape(layout: &Layout) -> Vec<usize> {
     let sides = layout.sides().map(|sides| sides.to_vec());
     sides.unwrap_or_else(|| vec![layout.n_taxels()])
+}
+
+/// Returns the taxels of a patch as equal taxels, if they are equal.
+fn joined(taxels: Vec<Taxel>) -> Taxels {
+    match taxels.iter().all(|taxel| *taxel == taxels[0]) {
+        true => Taxels::Equal(taxels[0]),
+        false => Taxels::Each(taxels),
+    }
 }
 
 #[pymethods]
@@ -305,13 +312,9 @@ impl Patch {
             let taxels = each_taxel(n, (stroke, taxel_radius), (stiffness, damping))?;
             let layout = Layout::new(centers, axes).map_err(exception)?;
             let layout = with_shape(layout, shape)?;
-            let taxels = match taxels.iter().all(|taxel| *taxel == taxels[0]) {
-                true => Taxels::Equal(taxels[0]),
-                false => Taxels::Each(taxels),
-            };
             Ok(Self {
                 pixels: pixels.map(|given| pixels_of(given, n)).transpose()?,
-                ..Self::with(Ok(layout), taxels)?
+                ..Self::with(Ok(layout), joined(taxels))?
             })
         })
     }

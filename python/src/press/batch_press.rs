@@ -8,36 +8,19 @@ use crate::patch::Patch;
 use crate::poses::Poses;
 use crate::press::contacts::{Contacts, OfPose};
 use crate::press::goal::Goal;
-use crate::press::jacobian;
-use crate::press::output::{Output, Scale};
-use bubbletouch::contact::{Press, Row, Until, Workspace};
+use crate::press::output::{Output, Real};
+use bubbletouch::contact::{POSE_PARAMETERS, Press, Until, Workspace, pose_jacobian};
 use bubbletouch::geometry::Pose;
+use bubbletouch::world;
 use glam::DVec3;
 use numpy::{
-    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
+    PyArrayDescr, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
     PyUntypedArrayMethods, dtype as dtype_of,
 };
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 use std::sync::Mutex;
-
-/// Type of the numbers in a frame: float32 or float64.
-trait Real: Element + Scale + Send + Sync {
-    fn row(frame: &mut [Self]) -> Row<'_>;
-}
-
-impl Real for f64 {
-    fn row(frame: &mut [Self]) -> Row<'_> {
-        Row::Double(frame)
-    }
-}
-
-impl Real for f32 {
-    fn row(frame: &mut [Self]) -> Row<'_> {
-        Row::Single(frame)
-    }
-}
 
 /// Results that a call of `Patch.press` requests.
 #[derive(Clone, Copy)]
@@ -67,7 +50,7 @@ pub fn press<'py>(
     let n_sets = given.poses.len() / objects.models().len();
     goal.check(n_sets)?;
     if wanted.jacobian {
-        jacobian::check(goal.kind(), patch.inner())?;
+        check_jacobian(goal.kind(), patch.inner())?;
     }
     let batch = Batch {
         patch,
@@ -84,46 +67,46 @@ pub fn press<'py>(
     let single = dtype.map(|dtype| is_single(py, dtype)).transpose()?;
     let array = match out {
         Some(out) => {
-            if let (Some(dtype), Some(single)) = (dtype, single) {
-                let has = out.getattr("dtype")?;
-                if single != is_single(py, &has)? {
-                    return Err(bad_input("dtype", dtype, format!("{has}, which out has")));
-                }
+            let has = out.getattr("dtype");
+            if let (Some(dtype), Some(single), Ok(has)) = (dtype, single, has)
+                && single != is_single(py, &has)?
+            {
+                return Err(bad_input("dtype", dtype, format!("{has}, which out has")));
             }
             check_out(out, &shape)?;
             out.clone()
         }
         None => {
-            let dtype = if single == Some(true) {
-                "float32"
-            } else {
-                "float64"
-            };
+            let dtype = single.map_or("float64", |single| {
+                ["float64", "float32"][usize::from(single)]
+            });
             zeros(py)?.call1((PyTuple::new(py, &shape)?, dtype))?
         }
     };
-    match array.cast_into::<PyArrayDyn<f32>>() {
-        Ok(array) => batch.fill(py, array, out.is_none()),
-        Err(other) => batch.fill(
-            py,
-            other.into_inner().cast_into::<PyArrayDyn<f64>>()?,
-            out.is_none(),
-        ),
+    if let Ok(array) = array.cast::<PyArrayDyn<f32>>() {
+        return batch.fill(py, array.clone(), out.is_none());
     }
+    batch.fill(py, array.cast_into::<PyArrayDyn<f64>>()?, out.is_none())
+}
+
+/// Returns an error if the derivatives for a kind of goal are not implemented: for a depth on a patch that is not flat.
+fn check_jacobian(goal: Until, patch: &world::Patch) -> PyResult<()> {
+    if !matches!(goal, Until::Depth(_)) || patch.is_flat() {
+        return Ok(());
+    }
+    let given = "with a depth, on a patch that is not flat";
+    let allowed = "a travel, a force, or none of them there";
+    Err(bad_input("jacobian", given, allowed))
 }
 
 /// Returns whether a NumPy type is float32. If the type is neither float32 nor float64, returns an error.
 fn is_single(py: Python, dtype: &Object) -> PyResult<bool> {
-    let allowed = "float32 or float64";
-    let descr = numpy::PyArrayDescr::new(py, dtype.clone())
-        .map_err(|_| bad_input("dtype", dtype, allowed))?;
-    match (
-        descr.is_equiv_to(&dtype_of::<f32>(py)),
-        descr.is_equiv_to(&dtype_of::<f64>(py)),
-    ) {
-        (true, _) => Ok(true),
-        (_, true) => Ok(false),
-        _ => Err(bad_input("dtype", dtype, allowed)),
+    let refuse = || bad_input("dtype", dtype, "float32 or float64");
+    let descr = PyArrayDescr::new(py, dtype.clone()).map_err(|_| refuse())?;
+    let is_single = descr.is_equiv_to(&dtype_of::<f32>(py));
+    match is_single || descr.is_equiv_to(&dtype_of::<f64>(py)) {
+        true => Ok(is_single),
+        false => Err(refuse()),
     }
 }
 
@@ -151,7 +134,7 @@ impl Batch<'_> {
     ) -> PyResult<Object<'py>> {
         let mut sides = array.shape().to_vec();
         sides.extend(self.objects.n_several());
-        sides.push(jacobian::N);
+        sides.push(POSE_PARAMETERS);
         let changes = self
             .wanted
             .jacobian
@@ -165,14 +148,16 @@ impl Batch<'_> {
             let frames = writable.as_slice_mut()?;
             self.run(py, (frames, is_zero), changes.transpose()?)?
         };
-        Ok(match (contacts, changes) {
-            (None, None) => array.into_any(),
-            (Some(contacts), None) => (array, contacts).into_pyobject(py)?.into_any(),
-            (None, Some(changes)) => (array, changes).into_pyobject(py)?.into_any(),
-            (Some(contacts), Some(changes)) => {
-                (array, contacts, changes).into_pyobject(py)?.into_any()
-            }
-        })
+        let contacts = contacts
+            .map(|contacts| Bound::new(py, contacts))
+            .transpose()?;
+        let mut results = vec![array.into_any()];
+        results.extend(contacts.map(Bound::into_any));
+        results.extend(changes.map(Bound::into_any));
+        match results.len() {
+            1 => Ok(results.remove(0)),
+            _ => Ok(PyTuple::new(py, results)?.into_any()),
+        }
     }
 
     /// Writes a frame and its derivatives for each pose. The arrays contain zeros or values that are overwritten.
@@ -209,7 +194,7 @@ impl Batch<'_> {
                 return Ok(());
             }
             // The contacts of a flat patch depend on its travel only.
-            let is_known = jacobian::is_flat(patch) && press.until != Until::Pose;
+            let is_known = patch.is_flat() && press.until != Until::Pose;
             let until = match pressed.filter(|_| is_known) {
                 Some(pressed) => Until::Travel(pressed.travel),
                 None => press.until,
@@ -220,7 +205,7 @@ impl Batch<'_> {
                 let origin = |pose: &Pose| pose.translation - pressed.travel * DVec3::Z;
                 let origins: Vec<DVec3> = poses.iter().map(origin).collect();
                 let contacts = (workspace.contacts(), &origins[..]);
-                jacobian::fill(changes, goal.kind(), patch, contacts);
+                pose_jacobian(press.until, patch, contacts, changes);
                 wanted.output.convert(patch, changes);
             }
             if wanted.contacts {
@@ -236,7 +221,7 @@ impl Batch<'_> {
         let items: Vec<Item<T>> = match changes {
             None => frames.map(|frame| (frame, None)).collect(),
             Some(changes) => {
-                let changes = changes.chunks_exact_mut(n_taxels * k * jacobian::N);
+                let changes = changes.chunks_exact_mut(n_taxels * k * POSE_PARAMETERS);
                 frames.zip(changes.map(Some)).collect()
             }
         };

@@ -1,7 +1,9 @@
 //! Quantity that a frame contains: deflections or forces.
 
 use crate::errors::bad_input;
+use bubbletouch::contact::Row;
 use bubbletouch::world::{Patch, Taxels};
+use numpy::Element;
 use pyo3::prelude::*;
 
 /// Quantity that a frame contains: deflections, metres, or forces along the axes of the taxels, newtons.
@@ -30,7 +32,7 @@ impl Output {
     }
 
     /// Converts deflections to the quantity of the output. `values` contains equally many numbers for each taxel; zeros are not written.
-    pub fn convert<T: Scale>(self, patch: &Patch, values: &mut [T]) {
+    pub fn convert<T: Real>(self, patch: &Patch, values: &mut [T]) {
         if self == Self::Deflection {
             return;
         }
@@ -51,20 +53,31 @@ impl Output {
     }
 }
 
-/// Number that is multiplied in double precision.
-pub trait Scale: Copy + Default + PartialEq {
+/// Type of the numbers in a frame: float32 or float64.
+pub trait Real: Element + Copy + Default + PartialEq {
     /// Returns the number times a factor, rounded once.
     fn scaled(self, factor: f64) -> Self;
+
+    /// Returns a frame as the target of a press.
+    fn row(frame: &mut [Self]) -> Row<'_>;
 }
 
-impl Scale for f64 {
+impl Real for f64 {
     fn scaled(self, factor: f64) -> Self {
         self * factor
     }
+
+    fn row(frame: &mut [Self]) -> Row<'_> {
+        Row::Double(frame)
+    }
 }
 
-impl Scale for f32 {
+impl Real for f32 {
     fn scaled(self, factor: f64) -> Self {
         (f64::from(self) * factor) as Self
+    }
+
+    fn row(frame: &mut [Self]) -> Row<'_> {
+        Row::Single(frame)
     }
 }

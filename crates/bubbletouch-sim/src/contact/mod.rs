@@ -24,6 +24,7 @@
 //!
 //! On a flat grid with equal radii and substrate heights, the kernel works along rows, and rasterises the triangles of meshes. On any other layout, a search
 //! tree finds the taxels near each sphere, and eight neighbouring taxels together search the triangles of a mesh. A press [with contacts](Press::with_contacts) also records which part of which object determines each deflection ([`TaxelContact`]).
+//! From the contacts, [`pose_jacobian`] computes the derivatives of the deflections with respect to the objects' poses.
 //! [`spring_load`] sums the forces of the springs.
 //!
 //! A free object rests where its weight and the forces of the taxels balance: [`equilibrium`].
@@ -43,6 +44,7 @@ mod instructions;
 mod lanes_below;
 pub(crate) mod law;
 mod mesh;
+mod pose_jacobian;
 mod press;
 mod press_summary;
 mod root_search;
@@ -65,6 +67,7 @@ pub(crate) use lanes_below::LanesBelow;
 pub use law::saturation_limit;
 #[doc(hidden)]
 pub use law::triangle::stopping_height;
+pub use pose_jacobian::{POSE_PARAMETERS, pose_jacobian};
 pub use press::{Press, Record, Until};
 pub use press_summary::Contact;
 pub(crate) use root_search::{Sample, crossing};

@@ -1,7 +1,7 @@
 //! CSV files that are written row by row.
 
 use super::whole_file::WholeFile;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::Path;
@@ -47,14 +47,5 @@ impl CsvFile {
     /// If the file cannot be written.
     pub fn commit(self) -> Result<()> {
         self.file.commit()
-    }
-}
-
-/// Returns a function that converts CSV read errors to errors that name the file, the line if it is known, and the allowed contents.
-pub fn table_error(path: &Path, allowed: &str) -> impl Fn(csv::Error) -> Error {
-    move |error| {
-        let line = error.position().map(|at| format!(", line {}", at.line()));
-        let place = format!("{}{}", path.display(), line.unwrap_or_default());
-        Error::input(place, format!("cannot be read ({error})"), allowed)
     }
 }

@@ -14,7 +14,7 @@ mod inputs;
 mod owned;
 mod whole_file;
 
-pub use csv_file::{CsvFile, table_error};
+pub use csv_file::CsvFile;
 pub use file_path::{
     FilePath, SetName, file_path, optional_file_path, with_absolute_paths, with_folder,
 };

@@ -173,24 +173,6 @@ impl Bvh {
         found
     }
 
-    /// Visits every triangle that the infinite line through `origin` along `direction` crosses, in the order of the tree. A line through an edge may cross
-    /// both triangles or, due to rounding, none.
-    pub fn each_hit(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(RayHit)) {
-        self.search(
-            f64::INFINITY,
-            |bounds| bounds.entry(origin, direction, f64::NEG_INFINITY),
-            |triangle_number, triangle, limit| {
-                if let Some(along) = triangle.crossed_at(origin, direction) {
-                    visit(RayHit {
-                        along,
-                        triangle: triangle_number,
-                    });
-                }
-                limit
-            },
-        );
-    }
-
     /// Visits triangles by branch and bound. A leaf is visited if `bound` is below the limit for all nodes above it; the child with the lower bound comes
     /// first. `visit` receives a triangle's index in the mesh, its corners and the limit, and returns the new limit.
     pub fn search(

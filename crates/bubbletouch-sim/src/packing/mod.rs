@@ -3,7 +3,6 @@
 //! | from | by | gives |
 //! |---|---|---|
 //! | a [`Surface`](crate::mesh::Surface) and a tolerance e | [`pack_mesh`] | a [`Packing`] |
-//! | several tolerances | [`DetailChain::pack`] | packings of one object, coarse to fine |
 //! | a mesh and a number of points | [`medial_spheres`] | the largest inside spheres that touch the mesh at these points, for comparison |
 //! | a mesh and spheres | [`packing_error`] | the distances between their surfaces, in both directions |
 //!
@@ -63,7 +62,6 @@ mod brick;
 mod cells;
 mod certificate;
 mod cover_surface;
-mod detail_chain;
 mod medial_spheres;
 mod pack;
 mod packing_error;
@@ -71,7 +69,6 @@ mod sampling;
 mod set_cover;
 mod target;
 
-pub use detail_chain::DetailChain;
 pub use medial_spheres::medial_spheres;
 pub use pack::{Packing, error_of_file, pack_mesh, pack_mesh_watched, slow_packing};
 pub use packing_error::{DistanceStatistics, PackingError, packing_error};

@@ -139,6 +139,12 @@ impl Patch {
         &self.layout
     }
 
+    /// Returns whether the axes of all taxels are +z.
+    pub fn is_flat(&self) -> bool {
+        let axes = || self.layout.axes();
+        self.layout.as_grid().is_some() || axes().iter().all(|axis| *axis == DVec3::Z)
+    }
+
     /// Returns the properties of the taxels.
     pub fn taxels(&self) -> &Taxels {
         &self.taxels

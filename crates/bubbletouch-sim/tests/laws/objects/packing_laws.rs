@@ -2,7 +2,7 @@
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{MeshReport, Surface, TriangleMesh};
-use bubbletouch_sim::packing::{Body, DetailChain, PackingError, pack_mesh, packing_error};
+use bubbletouch_sim::packing::{Body, Packing, PackingError, pack_mesh, packing_error};
 use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -84,12 +84,16 @@ fn a_box_takes_more_than_its_edges_need_and_less_than_two_and_a_half_times_that(
     );
 }
 
+/// Packs a surface within each of the tolerances, metres, in parallel.
+fn packings(surface: &Surface, tolerances: &[f64]) -> Vec<Packing> {
+    let packing = |&tolerance: &f64| pack_mesh(surface, Body::Solid, tolerance).unwrap();
+    tolerances.par_iter().map(packing).collect()
+}
+
 #[test]
 fn a_smaller_tolerance_never_gives_a_larger_error() {
     let surface = Surface::new(torus());
-    let chain = DetailChain::pack(&surface, Body::Solid, &[0.6 * MM, 1.4 * MM, 0.9 * MM]).unwrap();
-    let errors: Vec<_> = chain
-        .packings()
+    let errors: Vec<_> = packings(&surface, &[1.4 * MM, 0.9 * MM, 0.6 * MM])
         .iter()
         .map(|packing| packing_error(&surface, Body::Solid, &packing.spheres, 20_000))
         .collect();
@@ -104,23 +108,12 @@ fn a_smaller_tolerance_never_gives_a_larger_error() {
 }
 
 #[test]
-fn a_chain_gives_the_coarsest_packing_that_is_fine_enough() {
-    let surface = Surface::new(cuboid(DVec3::splat(3.0 * MM)));
-    let chain = DetailChain::pack(&surface, Body::Solid, &[0.5 * MM, 1.0 * MM]).unwrap();
-    assert_eq!(chain.coarsest_within(1.0 * MM).unwrap().tolerance, 1.0 * MM);
-    assert_eq!(chain.coarsest_within(0.9 * MM).unwrap().tolerance, 0.5 * MM);
-    assert_eq!(chain.coarsest_within(0.1 * MM).unwrap_err().exit_code(), 2);
-    let none = DetailChain::pack(&surface, Body::Solid, &[]);
-    assert_eq!(none.unwrap_err().exit_code(), 2);
-}
-
-#[test]
 fn the_number_of_threads_changes_no_bit() {
     let surface = Surface::new(tube());
     let packed = |n_threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
         let pool = pool.build().unwrap();
-        pool.install(|| DetailChain::pack(&surface, Body::Solid, &[1.4 * MM, 1.0 * MM]).unwrap())
+        pool.install(|| packings(&surface, &[1.4 * MM, 1.0 * MM]))
     };
     assert_eq!(packed(1), packed(7));
 }

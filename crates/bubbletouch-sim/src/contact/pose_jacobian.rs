@@ -1,4 +1,4 @@
-//! Derivatives of deflections with respect to the object's pose, computed from the contact normals.
+//! Derivatives of deflections with respect to the objects' poses, computed from the contact normals.
 //!
 //! A motion of the object in the patch frame consists of a translation dx of its origin o and a rotation dω about o. The motion changes the deflection of
 //! contact i by `g·dx + ((p − o) × g)·dω`, where p is the contact point and g = −n_c / (n_c·n). The change of the travel of the patch depends on the goal:
@@ -10,43 +10,21 @@
 //! The derivative of a saturated or untouched taxel is 0. If there are several objects, each contact moves with its
 //! own object, and the travel changes with all of them.
 
-use crate::errors::bad_input;
-use bubbletouch::contact::{TaxelContact, Until};
-use bubbletouch::world::Patch;
+use super::{TaxelContact, Until};
+use crate::world::Patch;
 use glam::DVec3;
-use pyo3::prelude::*;
 
 /// Number of pose parameters: translation along x, y, z and rotation about x, y, z.
-pub const N: usize = 6;
+pub const POSE_PARAMETERS: usize = 6;
 
-/// Returns whether the axes of all taxels of a patch are +z.
-pub fn is_flat(patch: &Patch) -> bool {
-    patch.layout().as_grid().is_some() || patch.layout().axes().iter().all(|axis| *axis == DVec3::Z)
-}
-
-/// Returns an error if the derivative for a kind of goal is not implemented.
-///
-/// # Errors
-/// If the goal is a depth and the patch is not flat.
-pub fn check(goal: Until, patch: &Patch) -> PyResult<()> {
-    if !matches!(goal, Until::Depth(_)) || is_flat(patch) {
-        return Ok(());
-    }
-    let given = "with a depth, on a patch that is not flat";
-    Err(bad_input(
-        "jacobian",
-        given,
-        "a travel, a force, or none of them there",
-    ))
-}
-
-/// Writes the derivatives of all deflections with respect to the poses of k objects (n_taxels × k × 6, initially 0), from the contacts of a press. `origins`
-/// are the positions of the objects after the press.
-pub fn fill(
-    changes: &mut [f64],
-    goal: Until,
+/// Writes the derivatives of all deflections of a press with respect to the poses of k objects into `changes`, shape (n_taxels, k, 6), initially 0. The
+/// derivatives are per metre along x, y, z, and per radian about x, y, z through the origin of the object, in the axes of the patch. `contacts` are all contacts of
+/// the press, and `origins` the positions of the k objects after the press, metres. If the press ends at a depth, the patch must be flat.
+pub fn pose_jacobian(
+    until: Until,
     patch: &Patch,
     (contacts, origins): (&[TaxelContact], &[DVec3]),
+    changes: &mut [f64],
 ) {
     let change = |contact: &TaxelContact| {
         let gradient = contact.gradient();
@@ -60,8 +38,8 @@ pub fn fill(
             .filter(|contact| !contact.is_saturated(taxel(contact)))
     };
     let rise = |contact: &TaxelContact| -contact.gradient().z;
-    let mut travels = vec![[0.0; N]; origins.len()];
-    match goal {
+    let mut travels = vec![[0.0; POSE_PARAMETERS]; origins.len()];
+    match until {
         Until::Pose | Until::Travel(_) => {}
         Until::Depth(_) => {
             let deepest = contacts.iter().max_by(|a, b| a.needed.total_cmp(&b.needed));
@@ -84,16 +62,16 @@ pub fn fill(
             }
         }
     }
-    let width = N * origins.len();
+    let width = POSE_PARAMETERS * origins.len();
     for contact in moving() {
         let rise = rise(contact);
         let row = &mut changes[contact.taxel * width..][..width];
         for (object, travel) in travels.iter().enumerate() {
             let own = match object == contact.object {
                 true => change(contact),
-                false => [0.0; N],
+                false => [0.0; POSE_PARAMETERS],
             };
-            let row = &mut row[object * N..][..N];
+            let row = &mut row[object * POSE_PARAMETERS..][..POSE_PARAMETERS];
             for ((to, change), travel) in row.iter_mut().zip(own).zip(travel) {
                 *to = change + rise * travel;
             }
