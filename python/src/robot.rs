@@ -1,12 +1,12 @@
 //! Class `Robot`: links, joints and poses of a robot of a URDF or MJCF file.
 
-use crate::arrays::{Object, array, each, numbers, shape_of, to_column, to_matrix};
+use crate::arrays::{Object, array, one_or_rows, shape_of, to_column, to_matrix};
 use crate::errors::{bad_input, check_readable, exception, guarded, one_of};
 use crate::mesh::Mesh;
 use crate::poses::Poses;
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{LinkSurface, link_surface};
-use bubbletouch::world::{JointKind, MeshFolders, Robot as WorldRobot, ShapeRole};
+use bubbletouch::world::{MeshFolders, Robot as WorldRobot, ShapeRole};
 use ndarray::Array2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -29,7 +29,7 @@ pub struct Joint {
     /// Name of the joint. A joint of several positions has the suffixes .x, .y, .z, .roll, .pitch, .yaw or .theta.
     name: String,
     /// Kind of the joint: revolute, continuous, prismatic, planar, floating or ball.
-    kind: &'static str,
+    kind: String,
     /// Lowest and highest position, radians or metres; infinite without a limit.
     range: (f64, f64),
     /// Position if `q` does not contain the joint: in URDF 0 or the limit nearest to 0, in MJCF `ref`.
@@ -104,7 +104,7 @@ impl Robot {
             let limits = joint.limits;
             Joint {
                 name: coordinate.name.clone(),
-                kind: kind_name(joint.kind),
+                kind: format!("{:?}", joint.kind).to_lowercase(),
                 range: limits.map_or((f64::NEG_INFINITY, f64::INFINITY), |limits| {
                     (limits.lower, limits.upper)
                 }),
@@ -217,41 +217,22 @@ impl Robot {
             let name = name.cast::<PyString>()?.to_string();
             let joint = self.robot.position(&name).map_err(exception)?;
             let place = format!("q[{name:?}]");
-            match (numbers(&place, &values)?.shape(), n_rows) {
-                ([], _) => {}
-                (&[n], None) => n_rows = Some(n),
-                (&[n], Some(before)) if n == before => {}
-                (shape, Some(n)) => {
-                    let allowed = format!("a number or ({n},), as for the joints before");
-                    return Err(bad_input(place, shape_of(shape), allowed));
-                }
-                (shape, None) => {
-                    return Err(bad_input(place, shape_of(shape), "a number or (n,)"));
-                }
+            let (values, is_one) = one_or_rows::<1>(&place, &values)?;
+            if !is_one && *n_rows.get_or_insert(values.len()) != values.len() {
+                let given = shape_of(&[values.len()]);
+                let n = n_rows.unwrap_or_default();
+                let allowed = format!("a number or ({n},), as for the joints before");
+                return Err(bad_input(place, given, allowed));
             }
-            given.push((joint, place, values));
+            given.push((joint, values, is_one));
         }
         let n = n_rows.unwrap_or(1);
         let mut positions = Array2::from_shape_fn((n, n_joints), |(_, joint)| rest[joint]);
-        for (joint, place, values) in given {
-            let values = each(&place, &values, n)?;
-            positions
-                .column_mut(joint)
-                .assign(&ndarray::ArrayView1::from(&values));
+        for (joint, values, is_one) in given {
+            for (row, position) in positions.column_mut(joint).iter_mut().enumerate() {
+                [*position] = values[if is_one { 0 } else { row }];
+            }
         }
         Ok((positions, n_rows.is_none()))
-    }
-}
-
-/// Returns the name of a kind of joint, as in URDF.
-fn kind_name(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Continuous => "continuous",
-        JointKind::Prismatic => "prismatic",
-        JointKind::Fixed => "fixed",
-        JointKind::Floating => "floating",
-        JointKind::Planar => "planar",
-        JointKind::Ball => "ball",
     }
 }

@@ -77,9 +77,10 @@ pub fn press<'py>(
             out.clone()
         }
         None => {
-            let dtype = single.map_or("float64", |single| {
-                ["float64", "float32"][usize::from(single)]
-            });
+            let dtype = match single {
+                Some(true) => "float32",
+                _ => "float64",
+            };
             zeros(py)?.call1((PyTuple::new(py, &shape)?, dtype))?
         }
     };
