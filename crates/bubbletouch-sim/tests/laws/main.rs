@@ -3,11 +3,12 @@
 mod fixtures {
     pub mod counting;
     pub mod double_double;
+    pub mod every_part;
     pub mod mesh_shapes;
     pub mod overlapping;
-    pub mod random_scenes;
     pub mod reference_data;
     pub mod scans;
+    pub mod scenes;
     pub mod shapes;
     pub mod time_loop;
 }
@@ -18,6 +19,6 @@ mod world;
 
 use bubbletouch_sim::statistics::standard_errors;
 use fixtures::{
-    counting, double_double, mesh_shapes, overlapping, random_scenes, reference_data, scans,
+    counting, double_double, every_part, mesh_shapes, overlapping, reference_data, scans, scenes,
     shapes, time_loop,
 };

@@ -9,8 +9,6 @@
 
 mod eight;
 mod leaf_stops;
-#[cfg(test)]
-mod leaf_stops_laws;
 mod line_search;
 pub(super) mod skin_mesh;
 mod taxel_lines;

@@ -1,14 +1,15 @@
 //! Laws of free objects. At rest all forces balance, wherever the world's origin is; otherwise the object is reported as escaped.
 
-use crate::random_scenes::{ball, bed};
+use super::balance_limits::{height_of_formula, needed};
+use crate::scenes::{ball, bed, one_taxel, touched, union};
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Outcome, PlacedSkin,
 };
-use bubbletouch_sim::contact::{Press, Until, Workspace, spring_load};
+use bubbletouch_sim::contact::spring_load;
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
+use bubbletouch_sim::objects::{Sphere, SphereUnion};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::world::{Patch, Taxel};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rayon::prelude::*;
@@ -16,17 +17,9 @@ use rayon::prelude::*;
 const G: f64 = 9.81;
 const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
 
-fn taxel(stiffness: f64) -> Taxel {
-    Taxel {
-        radius: 1e-3,
-        stiffness,
-        damping: 0.0,
-        stroke: 5e-3,
-    }
-}
-
-fn placed(patch: &Patch, world_from_patch: Pose) -> PlacedSkin<'_> {
-    PlacedSkin::new(patch, world_from_patch)
+/// Returns the equilibrium on a skin that is at the origin.
+fn on(patch: &Patch, object: &FreeObject, start: &Pose) -> Equilibrium {
+    equilibrium(object, &[PlacedSkin::new(patch, Pose::IDENTITY)], start)
 }
 
 fn equilibrium(object: &FreeObject, skins: &[PlacedSkin], start: &Pose) -> Equilibrium {
@@ -45,33 +38,11 @@ fn a_ball_rests_as_deep_as_its_weight_asks() {
     let patch = bed(32, stiffness);
     let union = ball(radius);
     let object = FreeObject::new(&union, mass, DVec3::ZERO).unwrap();
-    let rest = equilibrium(
-        &object,
-        &[placed(&patch, Pose::IDENTITY)],
-        &at(1e-3, 1e-3, 0.05),
-    );
+    let rest = on(&patch, &object, &at(1e-3, 1e-3, 0.05));
     assert_eq!(rest.outcome, Outcome::AtRest);
-    // Force of all springs with the ball at a given height, computed taxel by taxel at the ball's position.
     let place = rest.pose.translation;
-    let lift = |height: f64| -> f64 {
-        let reach = radius + 1e-3;
-        let of_taxel = |center: &DVec3| {
-            let q = reach * reach - (center.truncate() - place.truncate()).length_squared();
-            let deflection = if q > 0.0 { q.sqrt() - height } else { 0.0 };
-            stiffness * deflection.max(0.0)
-        };
-        patch.layout().centers().iter().map(of_taxel).sum()
-    };
-    let (mut low, mut high) = (0.02, 0.04);
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if lift(middle) > mass * G {
-            low = middle
-        } else {
-            high = middle
-        }
-    }
-    assert!((place.z - low).abs() < 1e-9, "{} {low}", place.z);
+    let height = height_of_formula(&patch, &union, place, mass * G);
+    assert!((place.z - height).abs() < 1e-9, "{} {height}", place.z);
 }
 
 #[test]
@@ -81,7 +52,7 @@ fn forces_balance_for_every_weight_and_stiffness() {
         for stiffness in [1.0, 1e2, 1e4, 1e6] {
             let object = FreeObject::new(&union, mass, DVec3::new(2e-3, 0.0, -5e-3)).unwrap();
             let patch = bed(64, stiffness);
-            let skins = [placed(&patch, Pose::IDENTITY)];
+            let skins = [PlacedSkin::new(&patch, Pose::IDENTITY)];
             let rest = equilibrium(&object, &skins, &at(0.3e-3, 0.2e-3, 0.04));
             let case = format!("{mass} kg on {stiffness} N/m: {rest:?}");
             assert_eq!(rest.outcome, Outcome::AtRest, "{case}");
@@ -97,61 +68,43 @@ fn the_skin_feels_the_weight_that_rests_on_it() {
     let patch = bed(48, 150.0);
     let mut rng = Seed::new(3).named("weight").rng();
     let mut random = || DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
-    let spheres = (0..30).map(|_| Sphere {
-        center: 0.015 * random(),
-        radius: 8e-3,
-    });
-    let union = SphereUnion::new(spheres.collect()).unwrap();
+    let union = union((0..30).map(|_| 0.015 * random()), 8e-3);
     let mass = 0.08;
     let object = FreeObject::new(&union, mass, union.center_of_mass()).unwrap();
-    let rest = equilibrium(
-        &object,
-        &[placed(&patch, Pose::IDENTITY)],
-        &at(0.0, 0.0, 0.06),
-    );
+    let rest = on(&patch, &object, &at(0.0, 0.0, 0.06));
     assert_eq!(rest.outcome, Outcome::AtRest);
-    let objects = [Model::from(union.clone())];
-    let mut workspace = Workspace::new();
-    Press::new(&patch, &objects, &[rest.pose], Until::Pose)
-        .with_contacts()
-        .run(&mut workspace)
-        .unwrap();
-    let load = spring_load(&patch, workspace.contacts());
+    let found = touched(&patch, &[union.into()], &[rest.pose]);
+    let load = spring_load(&patch, &found.contacts);
     // For taxels between two spheres, only one sphere counts as deciding, so the lateral forces may differ slightly.
     assert!(
         (load.spring_force / (mass * G) - 1.0).abs() < 1e-6,
         "{load:?}"
     );
-    assert_eq!(workspace.contacts().len(), rest.n_touched);
+    assert_eq!(found.contacts.len(), rest.n_touched);
 }
 
 #[test]
 fn moving_the_whole_world_moves_the_rest() {
     let patch = bed(32, 80.0);
-    let union = SphereUnion::new(vec![
-        Sphere {
-            center: DVec3::new(-0.01, 0.0, 0.0),
-            radius: 0.012,
-        },
-        Sphere {
-            center: DVec3::new(0.012, 0.003, 0.0),
-            radius: 0.01,
-        },
-        Sphere {
-            center: DVec3::new(0.0, -0.012, 0.004),
-            radius: 0.011,
-        },
-    ])
-    .unwrap();
+    let sphere = |x: f64, y: f64, z: f64, radius: f64| Sphere {
+        center: DVec3::new(x, y, z),
+        radius,
+    };
+    let spheres = [
+        sphere(-0.01, 0.0, 0.0, 0.012),
+        sphere(0.012, 0.003, 0.0, 0.01),
+        sphere(0.0, -0.012, 0.004, 0.011),
+    ];
+    let union = SphereUnion::new(spheres.to_vec()).unwrap();
     let object = FreeObject::new(&union, 0.06, DVec3::new(0.0, -2e-3, 1e-3)).unwrap();
     let start = at(1.3e-3, -0.7e-3, 0.03);
-    let here = equilibrium(&object, &[placed(&patch, Pose::IDENTITY)], &start);
+    let here = on(&patch, &object, &start);
     assert_eq!(here.outcome, Outcome::AtRest);
     let world = Pose::new(
         DQuat::from_euler(glam::EulerRot::XYZ, 0.7, -1.1, 2.0),
         DVec3::new(3.0, -2.0, 1.0),
     );
-    let skins = [placed(&patch, world)];
+    let skins = [PlacedSkin::new(&patch, world)];
     let moved = world.compose(&start);
     let there = EquilibriumSolver::new()
         .solve(&object, &skins, world.transform_vector(DOWN), &moved)
@@ -176,7 +129,10 @@ fn two_skins_in_a_v_carry_a_ball_together() {
             rotation * DVec3::new(0.0, 0.0, 0.0) + DVec3::new(sign * 0.025, 0.0, 0.025),
         )
     };
-    let skins = [placed(&patch, side(1.0)), placed(&patch, side(-1.0))];
+    let skins = [
+        PlacedSkin::new(&patch, side(1.0)),
+        PlacedSkin::new(&patch, side(-1.0)),
+    ];
     let union = ball(0.02);
     let mass = 0.1;
     let object = FreeObject::new(&union, mass, DVec3::ZERO).unwrap();
@@ -188,12 +144,8 @@ fn two_skins_in_a_v_carry_a_ball_together() {
         .iter()
         .map(|skin| {
             let pose = skin.world_from_patch.inverse().compose(&rest.pose);
-            let mut workspace = Workspace::new();
-            Press::new(&patch, &[Model::from(union.clone())], &[pose], Until::Pose)
-                .with_contacts()
-                .run(&mut workspace)
-                .unwrap();
-            let force = spring_load(&patch, workspace.contacts()).on_object.force;
+            let found = touched(&patch, &[union.clone().into()], &[pose]);
+            let force = spring_load(&patch, &found.contacts).on_object.force;
             (skin.world_from_patch.rotation * force).z
         })
         .sum();
@@ -205,7 +157,7 @@ fn a_ball_on_a_slope_rolls_off_downhill() {
     let patch = bed(24, 500.0);
     for (tilt, turn) in [(0.6, 0.0), (0.5, 1.0), (0.7, 2.5)] {
         let rotation = DQuat::from_rotation_z(turn) * DQuat::from_rotation_y(tilt);
-        let skins = [placed(&patch, Pose::from_rotation(rotation))];
+        let skins = [PlacedSkin::new(&patch, Pose::from_rotation(rotation))];
         let union = ball(0.03);
         let object = FreeObject::new(&union, 0.05, DVec3::ZERO).unwrap();
         let rest = equilibrium(&object, &skins, &at(0.0, 0.0, 0.06));
@@ -223,45 +175,28 @@ fn what_misses_the_skin_falls_and_says_so() {
     let patch = bed(8, 100.0);
     let union = ball(0.01);
     let object = FreeObject::new(&union, 0.01, DVec3::ZERO).unwrap();
-    let rest = equilibrium(
-        &object,
-        &[placed(&patch, Pose::IDENTITY)],
-        &at(0.5, 0.0, 0.1),
-    );
-    assert_eq!(
-        rest.outcome,
-        Outcome::Escaped {
-            direction: -DVec3::Z
-        }
-    );
+    let rest = on(&patch, &object, &at(0.5, 0.0, 0.1));
     let nothing = equilibrium(&object, &[], &at(0.0, 0.0, 0.1));
-    assert_eq!(
-        nothing.outcome,
-        Outcome::Escaped {
-            direction: -DVec3::Z
-        }
-    );
+    let down = Outcome::Escaped {
+        direction: -DVec3::Z,
+    };
+    assert_eq!([rest.outcome, nothing.outcome], [down; 2]);
 }
 
 #[test]
 fn a_ball_on_the_point_of_a_single_taxel_does_not_stay_there() {
-    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let patch = Patch::new("pin", layout, Taxels::Equal(taxel(100.0))).unwrap();
+    let patch = one_taxel();
     let union = ball(0.02);
     let object = FreeObject::new(&union, 0.01, DVec3::ZERO).unwrap();
     // Exactly above the middle the forces balance at some height, which is a saddle of the energy.
-    let rest = equilibrium(
-        &object,
-        &[placed(&patch, Pose::IDENTITY)],
-        &at(0.0, 0.0, 0.05),
-    );
+    let rest = on(&patch, &object, &at(0.0, 0.0, 0.05));
     assert!(matches!(rest.outcome, Outcome::Escaped { .. }), "{rest:?}");
 }
 
 #[test]
 fn at_rest_it_stays_and_nearby_it_returns() {
     let patch = bed(32, 100.0);
-    let skins = [placed(&patch, Pose::IDENTITY)];
+    let skins = [PlacedSkin::new(&patch, Pose::IDENTITY)];
     let union = ball(0.03);
     let object = FreeObject::new(&union, 0.3, DVec3::new(0.0, 0.0, -0.01)).unwrap();
     let mut balancer = EquilibriumSolver::new();
@@ -284,16 +219,12 @@ fn others_that_push_the_taxels_take_their_part() {
     let patch = bed(32, 100.0);
     let union = ball(0.03);
     let object = FreeObject::new(&union, 0.05, DVec3::ZERO).unwrap();
-    let alone = equilibrium(
-        &object,
-        &[placed(&patch, Pose::IDENTITY)],
-        &at(0.0, 0.0, 0.05),
-    );
+    let alone = on(&patch, &object, &at(0.0, 0.0, 0.05));
     // If all taxels are held down by a millimetre, the object rests lower, with the deflections that carry it.
     let held = vec![1e-3; patch.n_taxels()];
     let skins = [PlacedSkin {
         pushed: &held,
-        ..placed(&patch, Pose::IDENTITY)
+        ..PlacedSkin::new(&patch, Pose::IDENTITY)
     }];
     let lower = equilibrium(&object, &skins, &at(0.0, 0.0, 0.05));
     assert_eq!(lower.outcome, Outcome::AtRest);
@@ -302,33 +233,6 @@ fn others_that_push_the_taxels_take_their_part() {
         lower.pose.translation.z < alone.pose.translation.z - 0.3e-3,
         "{lower:?} {alone:?}"
     );
-}
-
-/// Returns the deflection of each taxel of a flat bed at the origin by spheres, computed from the formula, metres. Returns `None` if a deflection exceeds
-/// the stroke.
-fn pushed(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> Option<Vec<f64>> {
-    let Taxel { radius, stroke, .. } = *bed.taxels().at(0);
-    let places: Vec<(DVec3, f64)> = spheres
-        .spheres()
-        .iter()
-        .map(|sphere| (pose.transform_point(sphere.center), sphere.radius + radius))
-        .filter(|(center, _)| center.z >= -stroke - radius)
-        .collect();
-    let needed = |taxel: &DVec3| {
-        let of_sphere = |&(center, reach): &(DVec3, f64)| {
-            let from = center - *taxel;
-            let left = reach * reach - from.truncate().length_squared();
-            if left > 0.0 {
-                left.sqrt() - from.z
-            } else {
-                0.0
-            }
-        };
-        places.iter().map(of_sphere).fold(0.0, f64::max)
-    };
-    let all = bed.layout().centers().iter().map(needed);
-    all.map(|needed| (needed <= stroke).then_some(needed))
-        .collect()
 }
 
 /// Returns whether a taxel is beside the widest part of a sphere. The energy jumps there, because an infinitesimal lateral motion of the sphere releases the
@@ -346,12 +250,14 @@ fn stands_on_a_cliff(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> bool {
 
 /// Returns the energy of springs and height for a solid of spheres on a bed, joules; `None` if a taxel is pushed beyond its stop.
 fn energy(bed: &Patch, (spheres, mass): (&SphereUnion, f64), pose: &Pose) -> Option<f64> {
-    let squares = pushed(bed, spheres, pose)?
-        .iter()
-        .map(|d| d * d)
-        .sum::<f64>();
+    let Taxel {
+        stiffness, stroke, ..
+    } = *bed.taxels().at(0);
+    let springs =
+        needed(bed, spheres, pose).map(|d| (d <= stroke).then_some(0.5 * stiffness * d * d));
+    let springs: Option<f64> = springs.sum();
     let height = pose.transform_point(spheres.center_of_mass()).z;
-    Some(0.5 * bed.taxels().at(0).stiffness * squares + mass * G * height)
+    Some(springs? + mass * G * height)
 }
 
 /// Asserts that none of 100 small motions lowers the energy by more than the accepted imbalance allows. Returns the number of motions tried, which is zero if a
@@ -368,11 +274,7 @@ fn assert_lowest(
     };
     let mut rng = Seed::new(case).named("motions").rng();
     let mut random = || rng.gen_range(-1.0..1.0);
-    let size = spheres
-        .spheres()
-        .iter()
-        .map(|s| s.center.length() + s.radius);
-    let size = size.fold(0.0, f64::max);
+    let size = spheres.reach_from(DVec3::ZERO);
     let mut n_tried = 0;
     for _ in 0..100 {
         let step = 10f64.powf(-5.5 + random());
@@ -423,7 +325,7 @@ fn random_objects_settle_or_leave() {
                 turn.normalize(),
                 DVec3::new(random(-0.03, 0.03), random(-0.03, 0.03), 0.2),
             );
-            let rest = equilibrium(&object, &[placed(&patch, Pose::IDENTITY)], &start);
+            let rest = on(&patch, &object, &start);
             assert!(rest.pose.translation.is_finite() && rest.pose.rotation.is_finite());
             match rest.outcome {
                 Outcome::AtRest => {
@@ -451,24 +353,20 @@ fn random_objects_settle_or_leave() {
 #[test]
 fn bad_input_is_named() {
     let union = ball(0.01);
-    for mass in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = FreeObject::new(&union, mass, DVec3::ZERO).unwrap_err();
-        assert!(error.to_string().starts_with("object mass"), "{error}");
-    }
     let nowhere = DVec3::new(f64::NAN, 0.0, 0.0);
-    let error = FreeObject::new(&union, 1.0, nowhere).unwrap_err();
-    assert!(error.to_string().starts_with("centre of mass"), "{error}");
-    let object = FreeObject::new(&union, 1.0, DVec3::ZERO).unwrap();
-    let mut balancer = EquilibriumSolver::new();
-    let error = balancer
-        .solve(&object, &[], DVec3::ZERO, &Pose::IDENTITY)
-        .unwrap_err();
-    assert!(error.to_string().starts_with("gravity"), "{error}");
-    let error = balancer
-        .solve(&object, &[], DOWN, &Pose::from_translation(nowhere))
-        .unwrap_err();
-    assert!(
-        error.to_string().starts_with("pose of object 1:"),
-        "{error}"
-    );
+    for (mass, center, gravity, place, said) in [
+        (0.0, DVec3::ZERO, DOWN, DVec3::ZERO, "object mass"),
+        (-1.0, DVec3::ZERO, DOWN, DVec3::ZERO, "object mass"),
+        (f64::NAN, DVec3::ZERO, DOWN, DVec3::ZERO, "object mass"),
+        (f64::INFINITY, DVec3::ZERO, DOWN, DVec3::ZERO, "object mass"),
+        (1.0, nowhere, DOWN, DVec3::ZERO, "centre of mass"),
+        (1.0, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, "gravity"),
+        (1.0, DVec3::ZERO, DOWN, nowhere, "pose of object 1:"),
+    ] {
+        let start = Pose::from_translation(place);
+        let object = FreeObject::new(&union, mass, center);
+        let solved = object.and_then(|o| EquilibriumSolver::new().solve(&o, &[], gravity, &start));
+        let error = solved.unwrap_err().to_string();
+        assert!(error.starts_with(said), "{error}");
+    }
 }

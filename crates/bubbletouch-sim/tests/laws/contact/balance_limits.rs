@@ -1,22 +1,17 @@
 //! Limits of the balance of free objects. Each case has the behaviour that the guide's page on limits states.
 
-use crate::random_scenes::{TAXEL, bed, direction, rng};
+use crate::scenes::{TAXEL, ball, bed, direction, one_taxel, rng, skin, union};
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Outcome, PlacedSkin,
 };
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
-use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::world::{Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
 const G: f64 = 9.81;
 const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
-
-fn union(places: impl IntoIterator<Item = DVec3>, radius: f64) -> SphereUnion {
-    let spheres = places.into_iter().map(|center| Sphere { center, radius });
-    SphereUnion::new(spheres.collect()).unwrap()
-}
 
 fn settle_on(skin: &Patch, at: Pose, object: &FreeObject, start: &Pose) -> Equilibrium {
     let skins = [PlacedSkin::new(skin, at)];
@@ -33,23 +28,47 @@ fn height(z: f64) -> Pose {
     Pose::from_translation(DVec3::new(0.0, 0.0, z))
 }
 
-/// Returns the deflection that spheres need of each taxel, computed from the formula, metres; 0 or less if no sphere touches the taxel.
-fn needed(skin: &Patch, spheres: &SphereUnion, pose: &Pose) -> impl Iterator<Item = f64> {
+/// Returns the deflection that spheres need of each taxel of a flat skin at the origin, metres, not limited to the stroke; 0 if no sphere touches the taxel.
+/// Spheres whose centres are behind the substrate do not push.
+pub(super) fn needed(
+    skin: &Patch,
+    spheres: &SphereUnion,
+    pose: &Pose,
+) -> impl Iterator<Item = f64> {
+    let placed = spheres.moved(pose).spheres().to_vec();
     let centers = skin.layout().centers().iter().enumerate();
-    centers.map(|(number, &taxel)| {
-        let radius = skin.taxels().at(number).radius;
+    centers.map(move |(number, &taxel)| {
+        let own = skin.taxels().at(number);
         let of_sphere = |sphere: &Sphere| {
-            let from = pose.transform_point(sphere.center) - taxel;
-            let reach = sphere.radius + radius;
+            let from = sphere.center - taxel;
+            let reach = sphere.radius + own.radius;
             let left = reach * reach - from.truncate().length_squared();
-            if left > 0.0 {
-                left.sqrt() - from.z
-            } else {
-                0.0
+            match left > 0.0 && sphere.center.z >= own.substrate() {
+                true => left.sqrt() - from.z,
+                false => 0.0,
             }
         };
-        spheres.spheres().iter().map(of_sphere).fold(0.0, f64::max)
+        placed.iter().map(of_sphere).fold(0.0, f64::max)
     })
+}
+
+/// Returns the height at which the springs carry a ball of a weight (newtons) above a place, computed by bisection from the formula.
+pub(super) fn height_of_formula(
+    skin: &Patch,
+    ball: &SphereUnion,
+    place: DVec3,
+    weight: f64,
+) -> f64 {
+    let (mut low, mut high) = (0.015, 0.04);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        let pose = Pose::from_translation(place.with_z(middle));
+        match lift(skin, ball, &pose) > weight {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    low
 }
 
 /// Returns the force that all springs carry, newtons.
@@ -133,8 +152,7 @@ fn neighbours_a_trillion_times_as_stiff_share_a_load_as_they_must() {
             },
             ..TAXEL
         });
-        let taxels = Taxels::Each(taxels.collect());
-        let skin = Patch::new("mixed", grid.layout().clone(), taxels).unwrap();
+        let skin = skin(grid.layout().clone(), Taxels::Each(taxels.collect()));
         let radius = rng.gen_range(4e-3..2e-2);
         let object = union(
             (0..8).map(|_| 8e-3 * direction(&mut rng).with_z(0.0)),
@@ -170,9 +188,8 @@ fn a_ball_rests_on_a_pattern_of_springs_at_the_height_of_the_formula() {
             stiffness: stiffness(number),
             ..TAXEL
         });
-        let taxels = Taxels::Each(taxels.collect());
-        let skin = Patch::new("mixed", bed(n, 1.0).layout().clone(), taxels).unwrap();
-        let ball = union([DVec3::ZERO], 0.02);
+        let skin = skin(bed(n, 1.0).layout().clone(), Taxels::Each(taxels.collect()));
+        let ball = ball(0.02);
         for mass in [1e-3, 1.0, 1e3] {
             let body = FreeObject::new(&ball, mass, DVec3::ZERO).unwrap();
             let rest = equilibrium(&skin, &body, &height(0.05));
@@ -182,18 +199,9 @@ fn a_ball_rests_on_a_pattern_of_springs_at_the_height_of_the_formula() {
                 continue;
             }
             assert_rests(&rest, mass * G, &case);
-            let (mut low, mut high) = (0.015, 0.025);
-            for _ in 0..200 {
-                let middle = 0.5 * (low + high);
-                match lift(&skin, &ball, &height(middle)) > mass * G {
-                    true => low = middle,
-                    false => high = middle,
-                }
-            }
-            assert!(
-                (rest.pose.translation.z - low).abs() < 1e-12,
-                "{rest:?}: {low}"
-            );
+            let low = height_of_formula(&skin, &ball, DVec3::ZERO, mass * G);
+            let is_there = (rest.pose.translation.z - low).abs() < 1e-12;
+            assert!(is_there, "{rest:?}: {low}");
             assert!(rest.pose.translation.truncate().length() < 1e-9, "{rest:?}");
         }
     }
@@ -293,8 +301,7 @@ fn stops_carry_what_saturated_springs_do_not() {
 
 #[test]
 fn a_taxel_exactly_between_three_spheres_carries_what_hangs_on_them() {
-    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = Patch::new("pin", layout, Taxels::Equal(TAXEL)).unwrap();
+    let skin = one_taxel();
     let (radius, beside) = (5e-3, 4e-3);
     let places = [0.0, 2.0, 4.0].map(|third: f64| {
         let turn = DQuat::from_rotation_z(third * std::f64::consts::FRAC_PI_3);
@@ -326,7 +333,7 @@ fn a_taxel_exactly_between_three_spheres_carries_what_hangs_on_them() {
 #[test]
 fn what_starts_inside_the_skin_comes_up_and_what_starts_behind_it_falls() {
     let skin = bed(32, 100.0);
-    let ball = union([DVec3::ZERO], 0.02);
+    let ball = ball(0.02);
     let body = FreeObject::new(&ball, 0.05, DVec3::ZERO).unwrap();
     let above = equilibrium(&skin, &body, &height(0.05));
     // The sum of radii S is 21 mm, and the substrate is 6 mm behind the skin.
@@ -352,7 +359,7 @@ fn balls_of_all_sizes_rest_at_the_height_of_the_formula_or_fall_between_the_taxe
         .chain([(2, 1e-2), (3, 1e-4)])
     {
         let radius = 10f64.powi(exponent);
-        let ball = union([DVec3::ZERO], radius);
+        let ball = ball(radius);
         let body = FreeObject::new(&ball, mass, DVec3::ZERO).unwrap();
         let rest = equilibrium(&skin, &body, &height(radius + 0.01));
         let case = format!("{radius} m, {mass} kg");

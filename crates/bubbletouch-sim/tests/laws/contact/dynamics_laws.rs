@@ -1,6 +1,6 @@
 //! Laws of taxels with mass: closed forms, rest, energy, and the limit of explicit steps.
 
-use crate::random_scenes;
+use crate::scenes;
 use bubbletouch_sim::contact::equilibrium::{EquilibriumSolver, FreeObject, Outcome, PlacedSkin};
 use bubbletouch_sim::dynamics::{
     Divergence, Drive, ImplicitEuler, Integrator, SemiImplicit, State, Steps, System, rest, run,
@@ -8,7 +8,7 @@ use bubbletouch_sim::dynamics::{
 };
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::Model;
-use bubbletouch_sim::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
+use bubbletouch_sim::world::{Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::DVec3;
 
 const RADIUS: f64 = 2e-3;
@@ -26,12 +26,7 @@ fn taxel(damping: f64) -> Taxel {
 }
 
 fn skin(n: usize, taxel: Taxel) -> Patch {
-    let grid = Grid {
-        nx: n,
-        ny: n,
-        pitch: 4e-3,
-    };
-    Patch::new("skin", Layout::grid(&grid).unwrap(), Taxels::Equal(taxel)).unwrap()
+    scenes::skin(scenes::grid(n, n, 4e-3).layout().clone(), taxel)
 }
 
 /// Returns a skin whose taxels a ball meets all at the same time. The ball lies stably on it, although the equilibrium solver lets it move sideways.
@@ -42,11 +37,11 @@ fn bowl(n: usize, taxel: Taxel) -> Patch {
         *center + (TOUCHING - (TOUCHING * TOUCHING - across).sqrt()) * DVec3::Z
     });
     let layout = Layout::new(raised.collect(), vec![DVec3::Z; n * n]).unwrap();
-    Patch::new("bowl", layout, Taxels::Equal(taxel)).unwrap()
+    scenes::skin(layout, taxel)
 }
 
 fn ball() -> Model {
-    random_scenes::ball(BALL).into()
+    scenes::ball(BALL).into()
 }
 
 fn at(height: f64) -> Pose {

@@ -1,10 +1,10 @@
 //! Laws of the forces between taxels and free meshes, from a search over all triangles.
 
+use super::closed_forms::stopping_height_by_search;
 use super::free_meshes::{BALANCED, DOWN, Free, G, Rest, at, bed, on_bed, settle};
-use super::mesh::stopping_height_by_search;
+use crate::scenes::touched;
 use crate::{reference_data, scans};
-use bubbletouch_sim::contact::equilibrium::{Outcome, Touched};
-use bubbletouch_sim::contact::{Press, Until, Workspace};
+use bubbletouch_sim::contact::equilibrium::Outcome;
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Triangle, TriangleMesh};
 use bubbletouch_sim::objects::{MeshModel, Model};
@@ -62,24 +62,17 @@ fn stops(patch: &Patch, taxel: usize, objects: &[Vec<Triangle>]) -> Vec<Stop> {
 /// # Panics
 /// If a taxel's force is not stiffness times deflection, or if a load has the direction of no triangle that stops the taxel.
 fn residual(patch: &Patch, free: &[Free], rest: &Rest) -> f64 {
-    let poses: Vec<Pose> = rest.solutions.iter().map(|found| found.pose).collect();
-    let placed = free.iter().zip(&poses).map(|(free, pose)| {
+    let placed = free.iter().zip(rest.poses()).map(|(free, pose)| {
         let Model::Mesh(mesh) = &free.model else {
             panic!("a mesh");
         };
-        let mesh = mesh.mesh();
-        let all = (0..mesh.triangles().len()).map(|number| mesh.triangle(number).0);
-        let moved = all.map(|corners| Triangle(corners.map(|corner| pose.transform_point(corner))));
-        moved.collect()
+        let mesh = mesh.mesh().moved(&pose);
+        (0..mesh.n_triangles())
+            .map(|number| mesh.triangle(number))
+            .collect()
     });
     let placed: Vec<Vec<Triangle>> = placed.collect();
-    let weights = free.iter().map(|free| (free.mass * DOWN, DVec3::ZERO));
-    let mut sums: Vec<(DVec3, DVec3)> = weights.collect();
-    let mut add = |object: usize, force: DVec3, point: DVec3| {
-        let center = poses[object].transform_point(free[object].center);
-        sums[object].0 += force;
-        sums[object].1 += (point - center).cross(force);
-    };
+    let mut pushes = Vec::new();
     for taxel in 0..patch.n_taxels() {
         let all = stops(patch, taxel, &placed);
         let deflections = all.iter().map(|stop| stop.deflection);
@@ -100,23 +93,10 @@ fn residual(patch: &Patch, free: &[Free], rest: &Rest) -> f64 {
             };
             let stop = all.iter().find(is_stopping);
             let stop = stop.unwrap_or_else(|| panic!("no triangle has the load {load:?}"));
-            add(load.object, push(&stop), stop.point);
+            pushes.push((load.object, push(&stop), stop.point));
         }
     }
-    for touch in &rest.touches {
-        add(touch.object, touch.force, touch.point);
-        if let Touched::Object(other, _) = touch.other {
-            add(other, -touch.force, touch.point);
-        }
-    }
-    let mut worst = 0.0_f64;
-    for (free, (force, torque)) in free.iter().zip(sums) {
-        let weight = free.mass * G;
-        let reach = 0.5 * free.model.bounds().size().length();
-        worst = worst.max(force.length() / weight);
-        worst = worst.max(torque.length() / (weight * reach));
-    }
-    worst
+    rest.residual(free, pushes.into_iter())
 }
 
 /// Returns the number of taxels that several parts of an object push equally far.
@@ -192,13 +172,7 @@ fn a_taxel_in_a_valley_shares_its_force_between_the_faces() {
         assert!(error < 1e-8, "{error:e}");
         assert!(residual(&patch, &free, &rest) < BALANCED);
         assert_eq!(n_ties(&rest), 1);
-        let mut workspace = Workspace::new();
-        let models = [free[0].model.clone()];
-        Press::new(&patch, &models, &[found.pose], Until::Pose)
-            .with_contacts()
-            .run(&mut workspace)
-            .unwrap();
-        let contact = workspace.contacts()[0];
+        let contact = touched(&patch, &[free[0].model.clone()], &[found.pose]).contacts[0];
         let alone = contact.push(100.0 * contact.deflection).force;
         assert!((alone.z - weight).abs() < 1e-6 * weight);
         let aside = DVec2::new(alone.x, alone.y).length();

@@ -1,15 +1,15 @@
 //! Laws of free meshes: closed forms, balance computed by another evaluator, symmetry, and contact between two meshes.
 
+use crate::scenes::{TAXEL, ball, grid, mesh, skin, touched};
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, HalfSpace, Obstacle, Outcome, PlacedSkin,
     RigidContact, TaxelLoad, Touched, overlap,
 };
-use bubbletouch_sim::contact::{Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::TriangleMesh;
-use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch_sim::objects::Model;
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::world::{Grid, Patch, Taxel};
+use bubbletouch_sim::world::{Patch, Taxel};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
@@ -18,26 +18,18 @@ pub(super) const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
 pub(super) const BALANCED: f64 = 1e-6;
 
 pub(super) fn bed(n: usize, pitch: f64, stiffness: f64) -> Patch {
-    let grid = Grid {
-        nx: n,
-        ny: n,
-        pitch,
-    };
-    let taxel = Taxel {
-        radius: 1e-3,
-        stiffness,
-        damping: 0.0,
-        stroke: 5e-3,
-    };
-    Patch::grid(grid, taxel).unwrap()
+    skin(
+        grid(n, n, pitch).layout().clone(),
+        Taxel { stiffness, ..TAXEL },
+    )
 }
 
 fn cuboid(x: f64, y: f64, z: f64) -> Model {
-    MeshModel::new(TriangleMesh::cuboid("box", DVec3::new(x, y, z)).unwrap()).into()
+    mesh(TriangleMesh::cuboid("box", DVec3::new(x, y, z)).unwrap())
 }
 
 fn ellipsoid(radii: DVec3, tolerance: f64) -> Model {
-    MeshModel::new(TriangleMesh::ellipsoid("egg", radii, tolerance).unwrap()).into()
+    mesh(TriangleMesh::ellipsoid("egg", radii, tolerance).unwrap())
 }
 
 /// Returns a tray: an open box of the outer size `width` and `height`, with walls and a floor of `wall` metres. Its origin is the middle of its base.
@@ -60,11 +52,11 @@ fn tray(width: f64, height: f64, wall: f64) -> Model {
             triangles.extend([[a, b, b + 4], [a, b + 4, a + 4]]);
         }
     }
-    let mesh = TriangleMesh::new("tray", rings.concat(), triangles).unwrap();
-    let (volume, _) = mesh.volume_and_centroid();
+    let tray = TriangleMesh::new("tray", rings.concat(), triangles).unwrap();
+    let (volume, _) = tray.volume_and_centroid();
     let solid = width * width * wall + (height - wall) * wall * 4.0 * (width - wall);
     assert!((volume - solid).abs() < 1e-9 * solid, "{volume} {solid}");
-    MeshModel::new(mesh).into()
+    mesh(tray)
 }
 
 /// Free object: shape, mass and centre of mass.
@@ -93,6 +85,41 @@ pub(super) struct Rest {
     pub solutions: Vec<Equilibrium>,
     pub touches: Vec<RigidContact>,
     pub loads: Vec<TaxelLoad>,
+}
+
+impl Rest {
+    pub fn poses(&self) -> Vec<Pose> {
+        self.solutions.iter().map(|found| found.pose).collect()
+    }
+
+    /// Returns the largest residual of force and torque of all objects, relative to the weights. `pushes` are the forces of taxels on objects, with the points
+    /// where they act; the reported contacts supply the forces between objects.
+    pub fn residual(
+        &self,
+        free: &[Free],
+        pushes: impl Iterator<Item = (usize, DVec3, DVec3)>,
+    ) -> f64 {
+        let poses = self.poses();
+        let weights = free.iter().map(|free| (free.mass * DOWN, DVec3::ZERO));
+        let mut sums: Vec<(DVec3, DVec3)> = weights.collect();
+        let mut add = |object: usize, force: DVec3, point: DVec3| {
+            let center = poses[object].transform_point(free[object].center);
+            sums[object].0 += force;
+            sums[object].1 += (point - center).cross(force);
+        };
+        pushes.for_each(|(object, force, point)| add(object, force, point));
+        for touch in &self.touches {
+            add(touch.object, touch.force, touch.point);
+            if let Touched::Object(other, _) = touch.other {
+                add(other, -touch.force, touch.point);
+            }
+        }
+        let residuals = free.iter().zip(sums).map(|(free, (force, torque))| {
+            let reach = 0.5 * free.model.bounds().size().length();
+            f64::max(force.length(), torque.length() / reach) / (free.mass * G)
+        });
+        residuals.fold(0.0, f64::max)
+    }
 }
 
 pub(super) fn settle(free: &[Free], ground: &Ground, gravity: DVec3, starts: &[Pose]) -> Rest {
@@ -124,45 +151,14 @@ pub(super) fn at(x: f64, y: f64, z: f64) -> Pose {
 /// press at a pose; the forces between objects are the reported contacts. A press has one contact a taxel, so this function is for shapes without valleys below.
 fn residual(patch: &Patch, free: &[Free], rest: &Rest) -> f64 {
     let models: Vec<Model> = free.iter().map(|free| free.model.clone()).collect();
-    let poses: Vec<Pose> = rest
-        .solutions
-        .iter()
-        .map(|solution| solution.pose)
-        .collect();
-    let mut workspace = Workspace::new();
-    Press::new(patch, &models, &poses, Until::Pose)
-        .with_contacts()
-        .run(&mut workspace)
-        .unwrap();
-    let mut sums: Vec<(DVec3, DVec3)> = free
-        .iter()
-        .zip(&poses)
-        .map(|(free, _)| (free.mass * DOWN, DVec3::ZERO))
-        .collect();
-    let center = |object: usize| poses[object].transform_point(free[object].center);
-    let mut add = |object: usize, force: DVec3, point: DVec3| {
-        sums[object].0 += force;
-        sums[object].1 += (point - center(object)).cross(force);
-    };
-    for contact in workspace.contacts() {
+    let poses = rest.poses();
+    let pushes = touched(patch, &models, &poses).contacts.into_iter();
+    let pushes = pushes.map(|contact| {
         let stiffness = patch.taxels().at(contact.taxel).stiffness;
         let push = contact.push(stiffness * contact.deflection).force;
-        add(contact.object, push, contact.point);
-    }
-    for touch in &rest.touches {
-        add(touch.object, touch.force, touch.point);
-        if let Touched::Object(other, _) = touch.other {
-            add(other, -touch.force, touch.point);
-        }
-    }
-    let mut worst = 0.0_f64;
-    for (object, (force, torque)) in sums.into_iter().enumerate() {
-        let weight = free[object].mass * G;
-        let reach = 0.5 * free[object].model.bounds().size().length();
-        worst = worst.max(force.length() / weight);
-        worst = worst.max(torque.length() / (weight * reach));
-    }
-    worst
+        (contact.object, push, contact.point)
+    });
+    rest.residual(free, pushes)
 }
 
 /// Smooth walls hold the box in the middle. Without them, a box whose sides are between two rows slides and tilts until a side meets a row. The taxels that
@@ -217,7 +213,7 @@ fn forces_and_torques_of_a_mesh_balance_as_another_evaluator_computes_them() {
     let shapes = [
         ellipsoid(DVec3::new(20e-3, 14e-3, 9e-3), 2e-5),
         cuboid(31e-3, 23e-3, 11e-3),
-        MeshModel::new(TriangleMesh::cylinder("can", 15e-3, 22e-3, 5e-5).unwrap()).into(),
+        mesh(TriangleMesh::cylinder("can", 15e-3, 22e-3, 5e-5).unwrap()),
     ];
     for shape in shapes {
         for _ in 0..4 {
@@ -239,11 +235,7 @@ fn forces_and_torques_of_a_mesh_balance_as_another_evaluator_computes_them() {
 #[test]
 fn a_finer_ball_sinks_as_deep_as_a_sphere() {
     let patch = bed(24, 2e-3, 60.0);
-    let sphere = SphereUnion::new(vec![Sphere {
-        center: DVec3::ZERO,
-        radius: 15e-3,
-    }]);
-    let exact = Free::new(sphere.unwrap().into(), 0.1);
+    let exact = Free::new(ball(15e-3).into(), 0.1);
     let start = [at(0.3e-3, 0.0, 0.02)];
     let height = |free: Free| {
         let rest = settle(&[free], &on_bed(&patch), DOWN, &start);
@@ -319,10 +311,6 @@ fn meshes_rest_on_planes_and_obstacles_of_spheres_and_triangles() {
     assert_eq!(rest.solutions[0].outcome, Outcome::AtRest);
     assert!((rest.solutions[0].pose.translation.z - 0.02).abs() < 1e-8);
     // A ball of spheres in a fixed tray, and a ball of triangles in the corner of two walls.
-    let sphere = SphereUnion::new(vec![Sphere {
-        center: DVec3::ZERO,
-        radius: 8e-3,
-    }]);
     let tray = tray(50e-3, 12e-3, 3e-3);
     let tilted = DQuat::from_rotation_x(0.2) * DQuat::from_rotation_y(0.15);
     let ground = Ground {
@@ -333,7 +321,7 @@ fn meshes_rest_on_planes_and_obstacles_of_spheres_and_triangles() {
         ..Ground::default()
     };
     let egg = ellipsoid(DVec3::new(8e-3, 7e-3, 6e-3), 5e-5);
-    for model in [sphere.unwrap().into(), egg, cuboid(9e-3, 8e-3, 7e-3)] {
+    for model in [ball(8e-3).into(), egg, cuboid(9e-3, 8e-3, 7e-3)] {
         let free = [Free::new(model, 0.1)];
         let rest = settle(&free, &ground, DOWN, &[at(2e-3, -1e-3, 0.025)]);
         let found = rest.solutions[0];
@@ -366,7 +354,7 @@ fn roof() -> Model {
         [0, 4, 3],
         [1, 2, 5],
     ];
-    MeshModel::new(TriangleMesh::new("roof", corners, triangles).unwrap()).into()
+    mesh(TriangleMesh::new("roof", corners, triangles).unwrap())
 }
 
 /// A corner above a ridge has its foot on no face of the near side. The far side of the thin plate is not touched.

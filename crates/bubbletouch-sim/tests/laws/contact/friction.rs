@@ -2,40 +2,32 @@
 
 use bubbletouch_sim::contact::{
     ContactMode, ContactModeCounts, DamperState, FrictionLoad, FrictionState, NormalForce, Press,
-    Until, Workspace, spring_load,
+    Until, spring_load,
 };
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{MeshModel, Model};
-use bubbletouch_sim::world::{Grid, Layout, Patch, Shear, Shears, Taxel, Taxels};
+use bubbletouch_sim::objects::Model;
+use bubbletouch_sim::world::{Layout, Patch, Shear, Shears, Taxel};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 
 use crate::mesh_shapes::cuboid;
-use crate::random_scenes;
-use crate::random_scenes::{TAXEL, direction, rng};
+use crate::scenes::{
+    self, Pressed, TAXEL, direction, grid, mesh, one_taxel, pressed, rng, skin, touched,
+};
 
 const SHEAR: Shear = Shear {
     stiffness: 400.0,
     friction: 0.6,
 };
 
-fn flat(n: usize, pitch: f64) -> Patch {
-    let grid = Grid {
-        nx: n,
-        ny: n,
-        pitch,
-    };
-    Patch::grid(grid, TAXEL).unwrap()
-}
-
 fn ball(radius: f64) -> Model {
-    random_scenes::ball(radius).into()
+    scenes::ball(radius).into()
 }
 
 /// Creates a box whose lower side is in the plane z = 0 of its frame.
 fn block(size: DVec3) -> Model {
     let lifted = cuboid(0.5 * size).moved(&Pose::from_translation(0.5 * size.z * DVec3::Z));
-    MeshModel::new(lifted).into()
+    mesh(lifted)
 }
 
 /// Test bench: a skin with friction on which objects move.
@@ -43,25 +35,22 @@ struct Bench {
     skin: Patch,
     objects: Vec<Model>,
     state: FrictionState,
-    workspace: Workspace,
+    found: Pressed,
 }
 
 impl Bench {
     fn new(skin: Patch, objects: Vec<Model>, shears: Shears) -> Self {
         Self {
             state: FrictionState::at_rest(&skin, shears).unwrap(),
+            found: touched(&skin, &[], &[]),
             skin,
             objects,
-            workspace: Workspace::new(),
         }
     }
 
     fn step(&mut self, poses: &[Pose]) -> ContactModeCounts {
-        Press::new(&self.skin, &self.objects, poses, Until::Pose)
-            .with_contacts()
-            .run(&mut self.workspace)
-            .unwrap();
-        let contacts = self.workspace.contacts();
+        self.found = touched(&self.skin, &self.objects, poses);
+        let contacts = &self.found.contacts;
         self.state
             .step(&self.skin, contacts, poses, NormalForce::Springs)
     }
@@ -72,7 +61,7 @@ impl Bench {
     }
 
     fn load(&self) -> FrictionLoad {
-        self.state.load(&self.skin, self.workspace.contacts())
+        self.state.load(&self.skin, &self.found.contacts)
     }
 
     fn displacements(&self) -> Vec<DVec2> {
@@ -106,7 +95,7 @@ fn random_bench(name: &str, case: u64) -> (Bench, Vec<[Pose; 2]>) {
     };
     let middle = rng.gen_range(0..n);
     let (center, axis) = (layout.centers()[middle], layout.axes()[middle]);
-    let skin = Patch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap();
+    let skin = skin(layout, TAXEL);
     let objects = vec![ball(0.015), block(DVec3::new(0.03, 0.01, 0.02))];
     let size = 10f64.powf(rng.gen_range(-6.0..-2.0));
     let mut pose = |reach: f64| {
@@ -131,7 +120,7 @@ fn without_friction_the_load_is_that_of_the_springs_to_the_bit() {
         let mut bench = Bench::new(bench.skin, bench.objects, Shears::Equal(slippery));
         for poses in way {
             let counts = bench.step(&poses);
-            let contacts = bench.workspace.contacts();
+            let contacts = &bench.found.contacts;
             let springs = spring_load(&bench.skin, contacts).on_object;
             let load = bench.load();
             let bits = |v: DVec3| v.to_array().map(f64::to_bits);
@@ -160,7 +149,7 @@ fn friction_is_within_its_cone_after_a_step_of_any_size() {
                 assert!(friction <= most * (1.0 + 1e-14), "{friction} of {most}");
                 let is_free = bench.state.contact_modes()[taxel] == ContactMode::Free;
                 assert_eq!(is_free, *force == DVec3::ZERO);
-                assert_eq!(is_free, bench.workspace.deflections()[taxel] == 0.0);
+                assert_eq!(is_free, bench.found.deflections[taxel] == 0.0);
             }
         }
     }
@@ -177,18 +166,13 @@ fn readings_of_all_taxels_add_up_to_what_the_objects_feel() {
         for poses in way {
             bench.step(&poses);
             let (mut on_patch, mut size) = (DVec3::ZERO, 0.0);
-            for contact in bench
-                .workspace
-                .contacts()
-                .iter()
-                .filter(|c| !c.is_grazing())
-            {
+            for contact in bench.found.contacts.iter().filter(|c| !c.is_grazing()) {
                 let force = bench.state.force3()[contact.taxel];
                 let frame = bench.skin.layout().frame(contact.taxel);
                 on_patch += frame * DVec3::new(force.x, force.y, -force.z);
                 size += force.length();
             }
-            let contacts = bench.workspace.contacts().iter();
+            let contacts = bench.found.contacts.iter();
             let load = bench
                 .state
                 .load(&bench.skin, contacts.filter(|c| !c.is_grazing()));
@@ -204,7 +188,7 @@ fn a_straight_way_in_one_step_is_the_same_in_many() {
         let place = |x: f64, y: f64| DVec3::new(x, y, -TAXEL.radius - 1e-3);
         let displacements = |n: u32| {
             let plate = block(DVec3::new(0.2, 0.2, 0.01));
-            let mut bench = Bench::new(flat(8, 3e-3), vec![plate], Shears::Equal(SHEAR));
+            let mut bench = Bench::new(grid(8, 8, 3e-3), vec![plate], Shears::Equal(SHEAR));
             bench.slide_to(place(0.0, 0.0));
             bench.slide_to(place(0.0, aside));
             for k in 1..=n {
@@ -225,7 +209,7 @@ fn a_straight_way_in_one_step_is_the_same_in_many() {
 #[test]
 fn where_the_normal_force_changes_finer_steps_tend_to_one_result() {
     let friction = |n: u32| {
-        let mut bench = Bench::new(flat(12, 2e-3), vec![ball(0.03)], Shears::Equal(SHEAR));
+        let mut bench = Bench::new(grid(12, 12, 2e-3), vec![ball(0.03)], Shears::Equal(SHEAR));
         bench.slide_to(DVec3::new(0.0, 0.0, 0.03));
         for k in 1..=n {
             let part = f64::from(k) / f64::from(n);
@@ -241,14 +225,11 @@ fn where_the_normal_force_changes_finer_steps_tend_to_one_result() {
 
 #[test]
 fn a_pressed_block_sticks_to_its_springs_and_then_slides_with_mu_n() {
-    let skin = flat(10, 3e-3);
-    let plate = block(DVec3::new(0.2, 0.2, 0.01));
-    let objects = vec![plate];
-    let mut workspace = Workspace::new();
+    let skin = grid(10, 10, 3e-3);
+    let objects = vec![block(DVec3::new(0.2, 0.2, 0.01))];
     let above = Pose::from_translation(0.01 * DVec3::Z);
     let weight = 12.0;
-    let pressed = Press::new(&skin, &objects, &[above], Until::Force(weight)).run(&mut workspace);
-    let travel = pressed.unwrap().unwrap().travel;
+    let travel = pressed(Press::new(&skin, &objects, &[above], Until::Force(weight))).travel();
     let mut bench = Bench::new(skin, objects, Shears::Equal(SHEAR));
     let n = bench.skin.n_taxels() as f64;
     let onset = SHEAR.friction * weight / (SHEAR.stiffness * n);
@@ -276,10 +257,14 @@ fn under_a_dragged_ball_the_outer_taxels_slip_first_and_the_force_is_the_textboo
         friction: 0.1,
     };
     let (radius, depth) = (0.1, 1e-3);
-    let mut bench = Bench::new(flat(80, 0.4e-3), vec![ball(radius)], Shears::Equal(shear));
+    let mut bench = Bench::new(
+        grid(80, 80, 0.4e-3),
+        vec![ball(radius)],
+        Shears::Equal(shear),
+    );
     let height = radius + TAXEL.radius - depth;
     bench.slide_to(height * DVec3::Z);
-    let weight = spring_load(&bench.skin, bench.workspace.contacts()).spring_force;
+    let weight = spring_load(&bench.skin, &bench.found.contacts).spring_force;
     let onset = shear.friction * TAXEL.stiffness * depth / shear.stiffness;
     let mut n_before = 0;
     for k in 1..=24 {
@@ -331,7 +316,7 @@ fn on_closed_ways_friction_only_takes_energy() {
         for poses in way {
             bench.step(&poses);
             for object in 0..2 {
-                let contacts = bench.workspace.contacts().iter();
+                let contacts = bench.found.contacts.iter();
                 let of_object = contacts.filter(|c| c.object == object);
                 let force = bench.state.load(&bench.skin, of_object).friction.force;
                 let motion = poses[object].translation - last[object].translation;
@@ -349,7 +334,7 @@ fn on_closed_ways_friction_only_takes_energy() {
 #[test]
 fn sliding_the_other_way_gives_mirrored_forces() {
     let slid = |sign: f64| {
-        let mut bench = Bench::new(flat(16, 2e-3), vec![ball(0.03)], Shears::Equal(SHEAR));
+        let mut bench = Bench::new(grid(16, 16, 2e-3), vec![ball(0.03)], Shears::Equal(SHEAR));
         for k in 0..10 {
             let x = sign * 3e-4 * f64::from(k);
             bench.slide_to(DVec3::new(x, 1e-4 * f64::from(k), 0.029));
@@ -370,9 +355,7 @@ fn sliding_the_other_way_gives_mirrored_forces() {
 #[test]
 fn a_taxel_that_is_left_or_touched_by_another_object_forgets_its_shear() {
     let pair = vec![ball(0.03), ball(0.03)];
-    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = Patch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
-    let mut bench = Bench::new(skin, pair, Shears::Equal(SHEAR));
+    let mut bench = Bench::new(one_taxel(), pair, Shears::Equal(SHEAR));
     let on = |x: f64| Pose::from_translation(DVec3::new(x, 0.0, 0.029));
     let off = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
     bench.step(&[on(0.0), off]);
@@ -391,26 +374,23 @@ fn a_taxel_that_is_left_or_touched_by_another_object_forgets_its_shear() {
 
 #[test]
 fn a_ball_that_rolls_drags_nothing_and_one_that_spins_in_place_neither() {
-    let layout = || Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = || Patch::new("one", layout(), Taxels::Equal(TAXEL)).unwrap();
     let (radius, angle) = (0.03, 0.02_f64);
     let high = radius + TAXEL.radius - 1e-3;
-    let mut bench = Bench::new(skin(), vec![ball(radius)], Shears::Equal(SHEAR));
+    let mut bench = Bench::new(one_taxel(), vec![ball(radius)], Shears::Equal(SHEAR));
     // The taxel stays under the ball's middle from −angle/2 to angle/2 while the ball rolls on it.
     let rolled = |a: f64| Pose::new(DQuat::from_rotation_y(a), DVec3::new(radius * a, 0.0, high));
     bench.step(&[rolled(-0.5 * angle)]);
     bench.step(&[rolled(0.5 * angle)]);
     let drag = bench.state.displacement(0).length();
     assert!(drag < radius * angle.powi(3), "{drag}");
-    let mut bench = Bench::new(skin(), vec![ball(radius)], Shears::Equal(SHEAR));
+    let mut bench = Bench::new(one_taxel(), vec![ball(radius)], Shears::Equal(SHEAR));
     bench.slide_to(high * DVec3::Z);
     bench.step(&[Pose::new(DQuat::from_rotation_z(1.0), high * DVec3::Z)]);
     assert!(bench.state.displacement(0).length() < 1e-15);
     // A plate that rotates about a pivot drags a taxel beside the pivot along the tangent, neither inwards nor outwards.
-    let layout = Layout::new(vec![5e-3 * DVec3::X], vec![DVec3::Z]).unwrap();
-    let skin = Patch::new("beside", layout, Taxels::Equal(TAXEL)).unwrap();
+    let beside = Layout::new(vec![5e-3 * DVec3::X], vec![DVec3::Z]).unwrap();
     let plate = vec![block(DVec3::new(0.1, 0.1, 0.01))];
-    let mut bench = Bench::new(skin, plate, Shears::Equal(SHEAR));
+    let mut bench = Bench::new(skin(beside, TAXEL), plate, Shears::Equal(SHEAR));
     for turn in [0.0, 0.02] {
         let low = -TAXEL.radius - 1e-3;
         bench.step(&[Pose::new(DQuat::from_rotation_z(turn), low * DVec3::Z)]);
@@ -427,30 +407,22 @@ fn a_ball_that_rolls_drags_nothing_and_one_that_spins_in_place_neither() {
 fn a_damped_taxel_grips_with_all_that_presses_it() {
     for (damping, faster) in [(0.0, 1.0), (0.5, 1.5)] {
         let taxel = Taxel { damping, ..TAXEL };
-        let layout = Layout::hexagonal(6, 6, 2e-3).unwrap();
-        let skin = Patch::new("damped", layout, Taxels::Equal(taxel)).unwrap();
+        let skin = skin(Layout::hexagonal(6, 6, 2e-3).unwrap(), taxel);
         let objects = vec![block(DVec3::new(0.2, 0.2, 0.01))];
         let mut state = FrictionState::at_rest(&skin, Shears::Equal(SHEAR)).unwrap();
         let mut damper = DamperState::at_rest(skin.n_taxels());
-        let mut workspace = Workspace::new();
+        let mut found = touched(&skin, &[], &[]);
         for k in 0..5 {
             let step = f64::from(k);
             let place = DVec3::new(5e-3 * step, 0.0, -1e-3 - 0.5e-3 * step);
             let poses = [Pose::from_translation(place)];
-            Press::new(&skin, &objects, &poses, Until::Pose)
-                .with_contacts()
-                .run(&mut workspace)
-                .unwrap();
-            damper.step(skin.taxels(), 1e-3, workspace.deflections());
+            found = touched(&skin, &objects, &poses);
+            damper.step(skin.taxels(), 1e-3, &found.deflections);
             let normal = NormalForce::Dampers(&damper);
-            state.step(&skin, workspace.contacts(), &poses, normal);
+            state.step(&skin, &found.contacts, &poses, normal);
         }
-        let springs = spring_load(&skin, workspace.contacts()).spring_force;
-        let friction = state
-            .load(&skin, workspace.contacts())
-            .friction
-            .force
-            .length();
+        let springs = spring_load(&skin, &found.contacts).spring_force;
+        let friction = state.load(&skin, &found.contacts).friction.force.length();
         let all: f64 = damper.force.iter().sum();
         assert!((friction - SHEAR.friction * all).abs() < 1e-9 * all);
         assert!(all >= faster * springs && (damping > 0.0 || all == springs));
@@ -460,7 +432,7 @@ fn a_damped_taxel_grips_with_all_that_presses_it() {
 #[test]
 fn what_cannot_be_a_shear_spring_is_refused_with_its_taxel() {
     let message = |shears| {
-        let state = FrictionState::at_rest(&flat(2, 2e-3), shears);
+        let state = FrictionState::at_rest(&grid(2, 2, 2e-3), shears);
         state.unwrap_err().to_string()
     };
     let soft = Shear {

@@ -1,13 +1,14 @@
 //! Laws of free objects on a skin with friction: friction holds them inside Coulomb's cone, and no further.
 
+use crate::scenes::{TAXEL, grid, skin, touched, union};
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, Outcome, PlacedSkin, TangentialSpring,
 };
-use bubbletouch_sim::contact::{FrictionState, NormalForce, Press, Until, Workspace};
+use bubbletouch_sim::contact::{FrictionState, NormalForce, TaxelContact, Wrench};
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
+use bubbletouch_sim::objects::{Model, SphereUnion};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::world::{Grid, Patch, Shear, Shears, Taxel};
+use bubbletouch_sim::world::{Patch, Shear, Shears, Taxel};
 use glam::{DQuat, DVec2, DVec3, Vec3Swizzles};
 use rand::Rng;
 
@@ -18,30 +19,17 @@ const STIFFNESS: f64 = 120.0;
 /// Creates a bed of 24 × 24 taxels, 2 mm apart.
 fn bed() -> Patch {
     let taxel = Taxel {
-        radius: 1e-3,
         stiffness: STIFFNESS,
-        damping: 0.0,
         stroke: 6e-3,
+        ..TAXEL
     };
-    let grid = Grid {
-        nx: 24,
-        ny: 24,
-        pitch: 2e-3,
-    };
-    Patch::grid(grid, taxel).unwrap()
+    skin(grid(24, 24, 2e-3).layout().clone(), taxel)
 }
 
 /// Creates a plate of 5 × 5 spheres, 24 mm wide, which cannot roll.
 fn plate() -> SphereUnion {
-    let spheres = (0..25).map(|k| Sphere {
-        center: DVec3::new(
-            4e-3 * f64::from(k % 5 - 2),
-            4e-3 * f64::from(k / 5 - 2),
-            0.0,
-        ),
-        radius: 4e-3,
-    });
-    SphereUnion::new(spheres.collect()).unwrap()
+    let place = |k: i32| 4e-3 * DVec3::new(f64::from(k % 5 - 2), f64::from(k / 5 - 2), 0.0);
+    union((0..25).map(place), 4e-3)
 }
 
 /// Returns the gravity on a bed that is tilted by `angle` about y.
@@ -55,7 +43,7 @@ struct HeldObject {
     union: SphereUnion,
     objects: [Model; 1],
     balancer: EquilibriumSolver,
-    workspace: Workspace,
+    contacts: Vec<TaxelContact>,
     friction: FrictionState,
     world_from_patch: Pose,
     balance: Equilibrium,
@@ -79,7 +67,7 @@ impl HeldObject {
             friction: FrictionState::at_rest(&patch, Shears::Equal(shear)).unwrap(),
             objects: [union.clone().into()],
             world_from_patch: Pose::IDENTITY,
-            workspace: Workspace::new(),
+            contacts: Vec::new(),
             tips: Vec::new(),
             patch,
             union,
@@ -92,15 +80,11 @@ impl HeldObject {
 
     fn feel(&mut self) {
         let pose = self.balance.pose.seen_from(&self.world_from_patch);
-        Press::new(&self.patch, &self.objects, &[pose], Until::Pose)
-            .with_contacts()
-            .run(&mut self.workspace)
-            .unwrap();
-        let contacts = self.workspace.contacts();
+        self.contacts = touched(&self.patch, &self.objects, &[pose]).contacts;
         let at_rest = self.balancer.tangential_springs();
         let normal = NormalForce::Springs;
         self.friction
-            .step_with(&self.patch, contacts, &[pose], normal, at_rest);
+            .step_with(&self.patch, &self.contacts, &[pose], normal, at_rest);
     }
 
     fn step(&mut self, gravity: DVec3) -> Outcome {
@@ -124,12 +108,10 @@ impl HeldObject {
         let friction = self.balancer.tangential_springs().iter().map(|tip| {
             let shear = self.friction.shears().at(tip.taxel);
             let force = -shear.stiffness * tip.displacement.extend(0.0);
-            bubbletouch_sim::contact::Wrench::at(tip.place, force)
+            Wrench::at(tip.place, force)
         });
-        let sum = normal.chain(friction).fold(
-            bubbletouch_sim::contact::Wrench::default(),
-            |sum, wrench| sum + wrench,
-        );
+        let sum = normal.chain(friction);
+        let sum = sum.fold(Wrench::default(), |sum, wrench| sum + wrench);
         let weight = self.world_from_patch.rotation.conjugate() * (MASS * gravity);
         let torque = sum.torque - pose.translation.cross(sum.force);
         let size = MASS * G;
@@ -140,7 +122,7 @@ impl HeldObject {
         assert!(torque.length() <= 1e-6 * size * 0.02, "{case}: {torque}");
         assert!(self.balance.imbalance <= 1e-6, "{case}");
         // No tangential force exceeds the friction cone of the taxel's normal force.
-        for contact in self.workspace.contacts() {
+        for contact in &self.contacts {
             let carried = self.friction.friction(contact.taxel).length();
             let shear = self.friction.shears().at(contact.taxel);
             let most = shear.friction * STIFFNESS * contact.deflection;
@@ -156,10 +138,8 @@ fn angle_without_friction() -> f64 {
         friction: 0.0,
     });
     let angles = (1..90).map(|k| 0.5 * f64::from(k) * std::f64::consts::PI / 180.0);
-    let left = angles
-        .clone()
-        .position(|angle| held.step(gravity(angle)) != Outcome::AtRest);
-    angles.clone().nth(left.unwrap()).unwrap()
+    let mut left = angles.skip_while(|angle| held.step(gravity(*angle)) == Outcome::AtRest);
+    left.next().unwrap()
 }
 
 #[test]
@@ -301,21 +281,16 @@ fn where_a_plate_rests_on_tips_that_stick_and_slip_its_energy_is_least() {
             .iter()
             .map(|tip| {
                 let found = held
-                    .workspace
-                    .contacts()
+                    .contacts
                     .iter()
                     .find(|contact| contact.taxel == tip.taxel);
                 tip.shear
                     .reach(found.map_or(0.0, |contact| STIFFNESS * contact.deflection))
             })
             .collect();
-        let mut workspace = Workspace::new();
-        let mut energy = |pose: &Pose| {
-            Press::new(&held.patch, &held.objects, &[*pose], Until::Pose)
-                .with_contacts()
-                .run(&mut workspace)
-                .unwrap();
-            let springs = workspace.deflections().iter();
+        let energy = |pose: &Pose| {
+            let found = touched(&held.patch, &held.objects, &[*pose]);
+            let springs = found.deflections.iter();
             let springs: f64 = springs.map(|d| 0.5 * STIFFNESS * d * d).sum();
             let tips = held.tips.iter().zip(&reaches).map(|(tip, &reach)| {
                 let way = pose.transform_point(tip.point) - tip.place;
@@ -363,11 +338,10 @@ fn lumps_that_share_taxels_are_held_together() {
         let unions = [0, 1].map(|_| {
             // Each cluster has four feet.
             let feet = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
-            let spheres = feet.map(|(x, y)| Sphere {
-                center: 5e-3 * DVec3::new(x, y, 0.0) + random(8e-4),
-                radius: 4e-3,
-            });
-            SphereUnion::new(spheres.to_vec()).unwrap()
+            union(
+                feet.map(|(x, y)| 5e-3 * DVec3::new(x, y, 0.0) + random(8e-4)),
+                4e-3,
+            )
         });
         let objects = unions
             .each_ref()
@@ -379,7 +353,7 @@ fn lumps_that_share_taxels_are_held_together() {
             friction: 0.3,
         };
         let mut friction = FrictionState::at_rest(&patch, Shears::Equal(shear)).unwrap();
-        let (mut balancer, mut workspace) = (EquilibriumSolver::new(), Workspace::new());
+        let mut balancer = EquilibriumSolver::new();
         let mut poses =
             [-1.0, 1.0].map(|x| Pose::from_translation(DVec3::new(9.2e-3 * x, 0.0, 6e-3)));
         for step in 0..8 {
@@ -400,10 +374,7 @@ fn lumps_that_share_taxels_are_held_together() {
             }
             n_at_rest += 1;
             poses = [found[0].pose, found[1].pose];
-            Press::new(&patch, &models, &poses, Until::Pose)
-                .with_contacts()
-                .run(&mut workspace)
-                .unwrap();
+            let contacts = touched(&patch, &models, &poses).contacts;
             let at_rest = balancer.tangential_springs();
             n_slipped += at_rest.iter().filter(|tip| tip.has_slipped).count();
             for (number, pose) in poses.iter().enumerate() {
@@ -424,8 +395,7 @@ fn lumps_that_share_taxels_are_held_together() {
                     "{case}, {step}, {number}: {left} at {pose:?}"
                 );
             }
-            let contacts = workspace.contacts();
-            friction.step_with(&patch, contacts, &poses, NormalForce::Springs, at_rest);
+            friction.step_with(&patch, &contacts, &poses, NormalForce::Springs, at_rest);
         }
     }
     println!("{n_at_rest} at rest, {n_unsettled} not, {n_slipped} slipped");

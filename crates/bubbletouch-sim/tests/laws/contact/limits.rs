@@ -1,14 +1,16 @@
 //! Limits of contact: extreme sizes, positions and steps. Each case has the behaviour that the guide's page on limits states.
 
 use crate::double_double::Double;
-use crate::random_scenes::{Scene, TAXEL, direction, random_pose, rng};
+use crate::scenes::{
+    Scene, TAXEL, ball, direction, one_taxel, pressed, random_pose, rng, touched, union,
+};
 use crate::time_loop::time_loop;
 use bubbletouch_sim::contact::{
-    DamperState, GRAZING, Press, Until, Workspace, relaxation_factor, spring_load,
+    DamperState, GRAZING, Until, Workspace, relaxation_factor, spring_load,
 };
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
-use bubbletouch_sim::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
+use bubbletouch_sim::objects::Sphere;
+use bubbletouch_sim::world::{Grid, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
@@ -18,19 +20,10 @@ const GRID: Grid = Grid {
     pitch: 2e-3,
 };
 
-fn union(spheres: Vec<Sphere>) -> SphereUnion {
-    SphereUnion::new(spheres).unwrap()
-}
-
-fn sphere(center: DVec3, radius: f64) -> SphereUnion {
-    union(vec![Sphere { center, radius }])
-}
-
-fn scene(object: SphereUnion) -> Scene {
-    Scene {
-        patch: Patch::grid(GRID, TAXEL).unwrap(),
-        objects: vec![object.into()],
-    }
+/// Returns a grid with a sphere.
+fn scene(center: DVec3, radius: f64) -> Scene {
+    let grid = Patch::grid(GRID, TAXEL).unwrap();
+    Scene::new(grid, union([center], radius), Pose::IDENTITY)
 }
 
 /// Returns √(S² − b²) − h, computed with twice the digits of f64 from the exact inputs; `None` if b ≥ S.
@@ -43,8 +36,6 @@ fn exactly_needed(taxel: DVec3, radius: f64, sphere: &Sphere) -> Option<f64> {
 
 #[test]
 fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_their_size() {
-    let skin = Patch::grid(GRID, TAXEL).unwrap();
-    let (mut workspace, mut of_skin) = (Workspace::new(), Workspace::new());
     let mut n_touched = [0; 9];
     for case in 0..4000 {
         let mut rng = rng("sizes", case);
@@ -57,23 +48,16 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_th
         let height = (reach * reach - beside.truncate().length_squared()).sqrt();
         let center =
             DVec3::new(x, y, height - rng.gen_range(0.0..TAXEL.stroke)) + beside.with_z(0.0);
-        let object = sphere(center, radius);
-        let of_object = object.spheres()[0];
-        let scene = scene(object);
-        Press::new(&scene.patch, &scene.objects, &[Pose::IDENTITY], Until::Pose)
-            .run(&mut workspace)
-            .unwrap();
-        Press::new(&skin, &scene.objects, &[Pose::IDENTITY], Until::Pose)
-            .with_contacts()
-            .run(&mut of_skin)
-            .unwrap();
-        for (taxel, &place) in skin.layout().centers().iter().enumerate() {
-            let exact = exactly_needed(place, TAXEL.radius, &of_object).unwrap_or(0.0);
+        let scene = scene(center, radius);
+        let object = Sphere { center, radius };
+        let both = [pressed(scene.press(Until::Pose)), scene.touched()];
+        for (taxel, &place) in scene.patch.layout().centers().iter().enumerate() {
+            let exact = exactly_needed(place, TAXEL.radius, &object).unwrap_or(0.0);
             // Change of √(S² − b²) = δ + h due to the last bit of S².
             let up = (exact + center.z - place.z).max(1e-7 * reach);
             let rounding = 4.0 * f64::EPSILON * (reach * reach / up + center.length());
             let exact = exact.clamp(0.0, TAXEL.stroke);
-            for found in [workspace.deflections()[taxel], of_skin.deflections()[taxel]] {
+            for found in both.each_ref().map(|found| found.deflections[taxel]) {
                 let error = (found - exact).abs();
                 assert!(
                     error <= rounding,
@@ -98,7 +82,7 @@ fn a_million_metres_from_the_origin_a_press_is_the_same_to_the_bit() {
             rng.gen_range(-6e-3..6e-3),
             rng.gen_range(8e-3..10e-3),
         ));
-        let scene = scene(sphere(DVec3::ZERO, 1e-2));
+        let scene = scene(DVec3::ZERO, 1e-2);
         let turn = random_pose(&mut rng, 0.0).rotation;
         let patch = exact(direction(&mut rng));
         let object = exact(patch + turn * center);
@@ -119,12 +103,10 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
         damping: 0.3,
         ..TAXEL
     };
-    let patch = Patch::grid(GRID, taxel).unwrap();
     let taxels = Taxels::Equal(taxel);
-    let ball = scene(sphere(DVec3::ZERO, 1e-2));
-    let ball = Scene { patch, ..ball };
+    let patch = Patch::grid(GRID, taxel).unwrap();
+    let jumping = Scene::new(patch, ball(1e-2), Pose::IDENTITY);
     let mut state = DamperState::at_rest(GRID.n_taxels());
-    let mut workspace = Workspace::new();
     let mut expected = vec![0.0; GRID.n_taxels()];
     let (mut n_through, mut n_pressed) = (0, 0);
     for case in 0..3000 {
@@ -137,17 +119,11 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
             rng.gen_range(-6e-3..6e-3),
             height,
         );
-        Press::new(
-            &ball.patch,
-            &ball.objects,
-            &[Pose::from_translation(place)],
-            Until::Pose,
-        )
-        .run(&mut workspace)
-        .unwrap();
+        let there = jumping.moved(&Pose::from_translation(place));
+        let found = pressed(there.press(Until::Pose)).deflections;
         let behind = -taxel.stroke - taxel.radius;
         n_through += usize::from(height < behind);
-        state.step(&taxels, dt, workspace.deflections());
+        state.step(&taxels, dt, &found);
         let left = relaxation_factor(&taxel, dt);
         for (number, before) in expected.iter_mut().enumerate() {
             let (row, column) = (number / GRID.nx, number % GRID.nx);
@@ -182,73 +158,40 @@ fn what_jumps_through_the_skin_between_two_frames_is_not_felt_and_what_is_seen_t
     let start = Pose::from_translation(DVec3::new(0.0, 0.0, 0.15));
     let plans = [VelocityPlan::new(start, vec![fast]).unwrap()];
     let still = VelocityPlan::new(Pose::IDENTITY, Vec::new()).unwrap();
-    let scene = scene(sphere(DVec3::ZERO, 1e-2));
+    let scene = scene(DVec3::ZERO, 1e-2);
     let still = [still];
     let felt = |dt: f64, n_frames| time_loop(&scene, [&still, &plans], dt, n_frames);
     assert!(felt(1.0, 3).deflections.concat().iter().all(|&d| d == 0.0));
     let fine = felt(0.01, 300);
     assert!(fine.n_saturated > 0 && fine.deflections.concat().contains(&TAXEL.stroke));
-    let mut workspace = Workspace::new();
-    let last = Pose::from_translation(DVec3::new(0.0, 0.0, -0.15));
-    Press::new(&scene.patch, &scene.objects, &[last], Until::Pose)
-        .run(&mut workspace)
-        .unwrap();
+    let last = scene.moved(&Pose::from_translation(DVec3::new(0.0, 0.0, -0.15)));
     assert_eq!(
-        workspace.deflections().iter().sum::<f64>(),
+        pressed(last.press(Until::Pose)).deepest(),
         0.0,
         "behind the substrate"
     );
-    Press::new(
-        &scene.patch,
-        &scene.objects,
-        &[Pose::IDENTITY],
-        Until::Depth(0.2),
-    )
-    .run(&mut workspace)
-    .unwrap()
-    .unwrap();
-    assert_eq!(fine.deflections[299], workspace.deflections());
+    let deep = pressed(scene.press(Until::Depth(0.2)));
+    assert_eq!(fine.deflections[299], deep.deflections);
 }
 
 #[test]
 fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
-    let mut workspace = Workspace::new();
     for thickness in [1e-6, 1e-5, 1e-4, 1e-3] {
-        let radius = 0.5 * thickness;
         // Spheres in a vertical row, 20 mm high.
-        let along = |k: usize| DVec3::new(0.0, 0.0, 20e-3 * k as f64 / 400.0);
-        let needle = (0..=400).map(|k| Sphere {
-            center: along(k),
-            radius,
-        });
-        let scene = scene(union(needle.collect()));
-        Press::new(
-            &scene.patch,
-            &scene.objects,
-            &[Pose::IDENTITY],
-            Until::Depth(2e-3),
-        )
-        .run(&mut workspace)
-        .unwrap()
-        .unwrap();
-        let middle = workspace.deflections()[GRID.n_taxels() / 2];
+        let along = |k: u32| DVec3::new(0.0, 0.0, 20e-3 * f64::from(k) / 400.0);
+        let needle = union((0..=400).map(along), 0.5 * thickness);
+        let scene = Scene::new(Patch::grid(GRID, TAXEL).unwrap(), needle, Pose::IDENTITY);
+        let press = |depth: f64| {
+            let found = pressed(scene.press(Until::Depth(depth)));
+            (
+                found.deflections[GRID.n_taxels() / 2],
+                found.counts().n_saturated,
+            )
+        };
+        let (middle, _) = press(2e-3);
         assert!((middle - 2e-3).abs() < 1e-15, "{thickness} m: {middle}");
         // If the patch is pressed past the stroke, only the end of the object is behind the substrate. The taxel is still saturated.
-        let deep = Press::new(
-            &scene.patch,
-            &scene.objects,
-            &[Pose::IDENTITY],
-            Until::Depth(10e-3),
-        )
-        .run(&mut workspace)
-        .unwrap()
-        .unwrap();
-        let middle = workspace.deflections()[GRID.n_taxels() / 2];
-        assert_eq!(
-            (middle, deep.n_saturated),
-            (TAXEL.stroke, 1),
-            "{thickness} m"
-        );
+        assert_eq!(press(10e-3), (TAXEL.stroke, 1), "{thickness} m");
     }
 }
 
@@ -256,53 +199,31 @@ fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
 fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
     let n = GRID.n_taxels();
     let all = n as f64 * TAXEL.stiffness * TAXEL.stroke;
-    let mut workspace = Workspace::new();
     for radius in [0.5, 10.0, 1e3] {
-        let scene = scene(sphere(DVec3::new(0.0, 0.0, radius + 0.01), radius));
-        let press = |force, workspace: &mut Workspace| {
-            Press::new(
-                &scene.patch,
-                &scene.objects,
-                &[Pose::IDENTITY],
-                Until::Force(force),
-            )
-            .run(workspace)
-        };
+        let scene = scene(DVec3::new(0.0, 0.0, radius + 0.01), radius);
         for share in [1e-9, 0.3, 0.999, 1.0] {
-            press(share * all, &mut workspace).unwrap().unwrap();
-            let carried: f64 = workspace.deflections().iter().sum::<f64>() * TAXEL.stiffness;
+            let found = pressed(scene.press(Until::Force(share * all)));
             // Change of the total spring force due to the last bits of the object's height.
             let known = n as f64 * TAXEL.stiffness * 8.0 * f64::EPSILON * radius;
-            let error = (carried - share * all).abs();
+            let error = (found.spring_force(TAXEL.stiffness) - share * all).abs();
             assert!(
                 error <= 1e-12 * share * all + known,
                 "{radius} m, {share}: {error}"
             );
         }
-        let error = press(1.001 * all, &mut workspace).unwrap_err().to_string();
+        let past = scene
+            .press(Until::Force(1.001 * all))
+            .run(&mut Workspace::new());
+        let error = past.unwrap_err().to_string();
         let most = format!("up to {all:.6} N");
         assert!(
             error.contains(&most) && error.contains("at their stroke"),
             "{error}"
         );
-        let deep = Press::new(
-            &scene.patch,
-            &scene.objects,
-            &[Pose::IDENTITY],
-            Until::Depth(0.1),
-        )
-        .run(&mut workspace)
-        .unwrap()
-        .unwrap();
+        let deep = pressed(scene.press(Until::Depth(0.1))).counts();
         assert_eq!((deep.n_touched, deep.n_saturated), (n, n));
-        let skin = scene.patch.clone();
-        let mut of_skin = Workspace::new();
-        let pressed = Pose::from_translation(DVec3::new(0.0, 0.0, -deep.travel));
-        Press::new(&skin, &scene.objects, &[pressed], Until::Pose)
-            .with_contacts()
-            .run(&mut of_skin)
-            .unwrap();
-        let load = spring_load(&skin, of_skin.contacts());
+        let there = scene.moved(&Pose::from_translation(-deep.travel * DVec3::Z));
+        let load = spring_load(&scene.patch, &there.touched().contacts);
         assert_eq!(load.saturated_share, 1.0);
         assert!((load.spring_force / all - 1.0).abs() < 1e-12);
     }
@@ -310,9 +231,7 @@ fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
 
 #[test]
 fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
-    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = Patch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
-    let mut workspace = Workspace::new();
+    let skin = one_taxel();
     let mut n_grazing = 0;
     for case in 0..2000 {
         let mut rng = rng("grazing", case);
@@ -326,13 +245,10 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
         if height < -TAXEL.stroke - TAXEL.radius {
             continue;
         }
-        let flank = Model::from(sphere(DVec3::new(beside, 0.0, height), radius));
-        Press::new(&skin, &[flank], &[Pose::IDENTITY], Until::Pose)
-            .with_contacts()
-            .run(&mut workspace)
-            .unwrap();
+        let flank = union([DVec3::new(beside, 0.0, height)], radius);
+        let found = touched(&skin, &[flank.into()], &[Pose::IDENTITY]);
         // Rounding may move the shallowest flanks out of reach entirely.
-        let [contact] = workspace.contacts() else {
+        let [contact] = found.contacts[..] else {
             assert!(cosine < 1e-7, "case {case}: {cosine}");
             continue;
         };
@@ -354,9 +270,7 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
 
 #[test]
 fn a_taxel_exactly_between_two_spheres_is_pushed_as_far_as_each_of_them_needs() {
-    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
-    let skin = Patch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
-    let mut workspace = Workspace::new();
+    let skin = one_taxel();
     for case in 0..500 {
         let mut rng = rng("between", case);
         let radius = 10f64.powf(rng.gen_range(-3.0..1.0));
@@ -365,18 +279,13 @@ fn a_taxel_exactly_between_two_spheres_is_pushed_as_far_as_each_of_them_needs() 
         let up = (reach * reach - beside * beside).sqrt();
         let height = up - rng.gen_range(0.0..1.0) * TAXEL.stroke;
         let turn = DQuat::from_rotation_z(rng.gen_range(0.0..6.0));
-        let at = |x: f64| Sphere {
-            center: turn * DVec3::new(x, 0.0, height),
+        let pair = union(
+            [beside, -beside].map(|x| turn * DVec3::new(x, 0.0, height)),
             radius,
-        };
-        let pair = union(vec![at(beside), at(-beside)]);
+        );
         let exact = exactly_needed(DVec3::ZERO, TAXEL.radius, &pair.spheres()[0]);
         let exact = exact.unwrap().clamp(0.0, TAXEL.stroke);
-        Press::new(&skin, &[pair.into()], &[Pose::IDENTITY], Until::Pose)
-            .with_contacts()
-            .run(&mut workspace)
-            .unwrap();
-        let found = workspace.deflections()[0];
+        let found = touched(&skin, &[pair.into()], &[Pose::IDENTITY]).deepest();
         assert!(
             (found - exact).abs() <= 8.0 * f64::EPSILON * reach,
             "case {case}"

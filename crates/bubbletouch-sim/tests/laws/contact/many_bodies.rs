@@ -1,6 +1,6 @@
 //! Laws of several free objects: all forces balance, as computed from the geometry alone, and no object penetrates a rigid one.
 
-use crate::random_scenes::{ball, bed};
+use crate::scenes::{ball, bed, grid, skin, union};
 use crate::{reference_data, scans};
 use bubbletouch_sim::contact::GRAZING;
 use bubbletouch_sim::contact::equilibrium::{
@@ -12,7 +12,7 @@ use bubbletouch_sim::mesh::Surface;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
 use bubbletouch_sim::packing::{Body, pack_mesh};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
+use bubbletouch_sim::world::{Layout, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rayon::prelude::*;
@@ -74,6 +74,29 @@ fn equilibrium<'a>(ground: Ground<'a>, objects: &[Free<'a>], starts: &[Pose]) ->
         objects: objects.to_vec(),
         balances,
         balancer,
+    }
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(DVec3::new(x, y, z))
+}
+
+/// Returns a ground of one skin at the origin.
+fn on(skin: &Patch) -> Ground<'_> {
+    Ground {
+        skins: vec![PlacedSkin::new(skin, Pose::IDENTITY)],
+        ..Ground::default()
+    }
+}
+
+/// Returns a ground of planes with these normals and heights.
+fn between(planes: impl IntoIterator<Item = (DVec3, f64)>) -> Ground<'static> {
+    let planes = planes.into_iter();
+    Ground {
+        planes: planes
+            .map(|(normal, height)| HalfSpace { normal, height })
+            .collect(),
+        ..Ground::default()
     }
 }
 
@@ -429,8 +452,7 @@ fn bowl(radius: f64, half_angle: f64, pitch: f64, taxel: Taxel) -> Patch {
             axes.push(-out);
         }
     }
-    let layout = Layout::new(centers, axes).unwrap();
-    Patch::new("bowl", layout, Taxels::Equal(taxel)).unwrap()
+    skin(Layout::new(centers, axes).unwrap(), taxel)
 }
 
 fn taxel(stiffness: f64) -> Taxel {
@@ -465,13 +487,11 @@ fn scanned() -> Vec<SphereUnion> {
 /// Returns skins to rest on: two bowls, soft and stiff, and a bed with edges.
 fn skins() -> [Patch; 3] {
     let [soft, stiff] = [30.0, 300.0].map(|stiffness| bowl(0.12, 1.0, 6e-3, taxel(stiffness)));
-    let grid = Grid {
-        nx: 16,
-        ny: 16,
-        pitch: 6e-3,
-    };
-    let bed = Patch::grid(grid, taxel(100.0)).unwrap();
-    [soft, stiff, bed.clone()]
+    [
+        soft,
+        stiff,
+        skin(grid(16, 16, 6e-3).layout().clone(), taxel(100.0)),
+    ]
 }
 
 /// Solves a random scene of two to eight objects above a skin. Half of the objects are balls and half are scans; all are balls if there are no scans. Every
@@ -553,26 +573,14 @@ fn a_thousand_random_scenes_of_several_objects_settle_or_leave() {
 #[test]
 fn two_balls_on_the_same_taxels_carry_both_weights() {
     let skin = bed(40, 40.0);
-    let skins = [PlacedSkin::new(&skin, Pose::IDENTITY)];
-    let ground = Ground {
-        skins: skins.to_vec(),
-        ..Ground::default()
-    };
+    let ground = on(&skin);
     for masses in [[0.2, 0.2], [0.2, 0.1], [0.5, 0.02]] {
         for apart in [5e-3, 0.02, 0.03, 0.0305] {
             let ball = ball(0.015);
-            let starts = [-1.0, 1.0].map(|side| {
-                Pose::from_translation(DVec3::new(
-                    0.5 * side * apart + 3e-4,
-                    2e-4 * side,
-                    0.02 + 0.02 * side,
-                ))
-            });
-            let rest = equilibrium(
-                ground.clone(),
-                &masses.map(|mass| Free::new(&ball, mass)),
-                &starts,
-            );
+            let starts = [-1.0, 1.0]
+                .map(|side| at(0.5 * side * apart + 3e-4, 2e-4 * side, 0.02 + 0.02 * side));
+            let objects = masses.map(|mass| Free::new(&ball, mass));
+            let rest = equilibrium(ground.clone(), &objects, &starts);
             let case = format!("{masses:?}, {apart} m");
             assert_eq!(rest.faults(), NO_FAULTS, "{case}");
             assert_eq!(rest.there().count(), 2, "{case}");
@@ -593,14 +601,9 @@ fn stacks_of_two_and_four_balls_come_down_between_walls_and_in_a_bowl_and_the_sk
     let skins = [bed(40, 300.0), bowl(0.05, 1.0, 4e-3, taxel(300.0))];
     for (skin, planes) in skins.iter().zip([&walls[..], &[]]) {
         for n in [2, 4] {
-            let skins = [PlacedSkin::new(skin, Pose::IDENTITY)];
-            let ground = Ground {
-                skins: skins.to_vec(),
-                planes: planes.to_vec(),
-                ..Ground::default()
-            };
-            let place =
-                |k| Pose::from_translation(f64::from(k) * 0.031 * DVec3::Z + 0.02 * DVec3::Z);
+            let planes = planes.to_vec();
+            let ground = Ground { planes, ..on(skin) };
+            let place = |k| at(0.0, 0.0, f64::from(k) * 0.031 + 0.02);
             let starts: Vec<Pose> = (0..n).map(place).collect();
             let rest = equilibrium(ground, &vec![Free::new(&ball, 0.05); starts.len()], &starts);
             assert_eq!(rest.faults(), NO_FAULTS, "{n}");
@@ -619,15 +622,10 @@ fn stacks_of_two_and_four_balls_come_down_between_walls_and_in_a_bowl_and_the_sk
 #[test]
 fn what_has_no_room_is_said_not_to_rest_and_what_does_not_touch_it_rests() {
     // The planes are a table, and a ceiling 30 mm above it.
-    let planes = [(DVec3::Z, 0.0), (DVec3::NEG_Z, -0.03)];
-    let planes = planes.map(|(normal, height)| HalfSpace { normal, height });
-    let ground = Ground {
-        planes: planes.to_vec(),
-        ..Ground::default()
-    };
+    let ground = between([(DVec3::Z, 0.0), (DVec3::NEG_Z, -0.03)]);
     let [large, small] = [ball(0.02), ball(0.01)];
     let objects = [Free::new(&large, 0.1), Free::new(&small, 0.1)];
-    let starts = [0.0, 0.1].map(|x| Pose::from_translation(DVec3::new(x, 0.0, 0.012)));
+    let starts = [0.0, 0.1].map(|x| at(x, 0.0, 0.012));
     let rest = equilibrium(ground, &objects, &starts);
     let outcomes = [0, 1].map(|object| rest.balances[object].outcome);
     assert_eq!(outcomes, [Outcome::NotConverged, Outcome::AtRest]);
@@ -637,23 +635,17 @@ fn what_has_no_room_is_said_not_to_rest_and_what_does_not_touch_it_rests() {
 #[test]
 fn what_slides_on_a_slope_escapes_down_it_and_what_lies_in_a_gutter_of_planes_stays() {
     let union = ball(0.02);
-    let tilted = |x: f64, y: f64| HalfSpace {
-        normal: DVec3::new(x, y, 1.0).normalize(),
-        height: 0.0,
-    };
+    let tilted = |x: f64, y: f64| (DVec3::new(x, y, 1.0).normalize(), 0.0);
     let slope = [tilted(1e-4, 0.0)];
     let falling = [tilted(1.0, 1e-3), tilted(-1.0, 1e-3)];
     let level = [tilted(1.0, 0.0), tilted(-1.0, 0.0)];
-    let start = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.05))];
+    let start = [at(0.0, 0.0, 0.05)];
     for (planes, way) in [
         (&slope[..], Some(DVec3::X)),
         (&falling, Some(DVec3::Y)),
         (&level, None),
     ] {
-        let ground = Ground {
-            planes: planes.to_vec(),
-            ..Ground::default()
-        };
+        let ground = between(planes.iter().copied());
         let rest = equilibrium(ground, &[Free::new(&union, 0.1)], &start);
         match (rest.balances[0].outcome, way) {
             (Outcome::AtRest, None) => assert_eq!(rest.faults(), NO_FAULTS),
@@ -672,22 +664,12 @@ fn a_pyramid_of_balls_stands_in_a_corner_of_planes_and_says_what_each_touch_carr
     let unions = [ball(radius)];
     let side = |k: usize| DQuat::from_rotation_z(std::f64::consts::TAU * k as f64 / 3.0) * DVec3::X;
     let beside = 2.0 * radius / 3f64.sqrt();
-    let mut planes = vec![HalfSpace {
-        normal: DVec3::Z,
-        height: 0.0,
-    }];
-    planes.extend((0..3).map(|k| HalfSpace {
-        normal: side(k),
-        height: -0.5 * beside - radius,
-    }));
-    let ground = Ground {
-        planes: planes.to_vec(),
-        ..Ground::default()
-    };
+    let walls = (0..3).map(|k| (side(k), -0.5 * beside - radius));
+    let ground = between([(DVec3::Z, 0.0)].into_iter().chain(walls));
     let mut starts: Vec<Pose> = (0..3)
         .map(|k| Pose::from_translation(beside * side(k) + (radius + 1e-3 * k as f64) * DVec3::Z))
         .collect();
-    starts.push(Pose::from_translation(DVec3::new(1e-4, 2e-4, 0.1)));
+    starts.push(at(1e-4, 2e-4, 0.1));
     let rest = equilibrium(ground, &[Free::new(&unions[0], 0.1); 4], &starts);
     assert_eq!(rest.faults(), NO_FAULTS);
     let touches = rest.balancer.touches().iter();
@@ -706,26 +688,14 @@ fn a_pyramid_of_balls_stands_in_a_corner_of_planes_and_says_what_each_touch_carr
 #[test]
 fn a_ball_lies_in_the_valley_of_an_obstacle_beside_a_wall_but_not_on_its_ridge() {
     let [ball, one] = [ball(0.02), ball(0.03)];
-    let two = [-1.0, 1.0].map(|side| Sphere {
-        center: DVec3::new(0.0, 0.02 * side, 0.0),
-        radius: 0.03,
-    });
-    let two = SphereUnion::new(two.to_vec()).unwrap();
+    let two = union([-1.0, 1.0].map(|side| 0.02 * side * DVec3::Y), 0.03);
     for (spheres, n_there) in [(&one, 0), (&two, 1)] {
-        let planes = [HalfSpace {
-            normal: DVec3::X,
-            height: -0.02,
-        }];
-        let obstacles = [Obstacle {
-            shape: spheres.into(),
-            pose: Pose::from_translation(DVec3::new(0.02, 0.0, 0.0)),
-        }];
+        let (shape, pose) = (spheres.into(), at(0.02, 0.0, 0.0));
         let ground = Ground {
-            planes: planes.to_vec(),
-            obstacles: obstacles.to_vec(),
-            ..Ground::default()
+            obstacles: vec![Obstacle { shape, pose }],
+            ..between([(DVec3::X, -0.02)])
         };
-        let start = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.1))];
+        let start = [at(0.0, 0.0, 0.1)];
         let rest = equilibrium(ground, &[Free::new(&ball, 0.1)], &start);
         assert_eq!(rest.faults(), NO_FAULTS);
         assert_eq!(rest.there().count(), n_there);

@@ -14,8 +14,8 @@ use bubbletouch_sim::world::{Grid, Layout, Patch, Shear, Shears, Taxels};
 use bubbletouch_sim::{Error, Result};
 use glam::{DQuat, DVec3};
 
-use crate::random_scenes;
-use crate::random_scenes::TAXEL;
+use crate::scenes;
+use crate::scenes::TAXEL;
 
 /// Use of a public press with an object at a pose, and with the number that ends the press; presses without such a number ignore the number.
 struct Case {
@@ -29,69 +29,63 @@ const NOT_NEGATIVE: Option<fn(f64) -> bool> = Some(|number| number >= 0.0);
 const POSITIVE: Option<fn(f64) -> bool> = Some(|number| number > 0.0);
 const ANY: Option<fn(f64) -> bool> = Some(|_| true);
 
+fn run(press: Press) -> Result<()> {
+    press.run(&mut Workspace::new()).map(drop)
+}
+
 const CASES: &[Case] = &[
     Case {
         name: "at a pose",
         allowed: None,
-        run: |patch, objects, poses, _| {
-            let press = Press::new(patch, objects, poses, Until::Pose);
-            press.run(&mut Workspace::new()).map(drop)
-        },
+        run: |patch, objects, poses, _| run(Press::new(patch, objects, poses, Until::Pose)),
     },
     Case {
         name: "at a pose, with contacts",
         allowed: None,
         run: |patch, objects, poses, _| {
-            let press = Press::new(patch, objects, poses, Until::Pose);
-            press.with_contacts().run(&mut Workspace::new()).map(drop)
+            run(Press::new(patch, objects, poses, Until::Pose).with_contacts())
         },
     },
     Case {
         name: "to a depth",
         allowed: NOT_NEGATIVE,
         run: |patch, objects, poses, number| {
-            let press = Press::new(patch, objects, poses, Until::Depth(number));
-            press.run(&mut Workspace::new()).map(drop)
+            run(Press::new(patch, objects, poses, Until::Depth(number)))
         },
     },
     Case {
         name: "to a depth, with contacts",
         allowed: NOT_NEGATIVE,
         run: |patch, objects, poses, number| {
-            let press = Press::new(patch, objects, poses, Until::Depth(number));
-            press.with_contacts().run(&mut Workspace::new()).map(drop)
+            run(Press::new(patch, objects, poses, Until::Depth(number)).with_contacts())
         },
     },
     Case {
         name: "to a travel",
         allowed: ANY,
         run: |patch, objects, poses, number| {
-            let press = Press::new(patch, objects, poses, Until::Travel(number));
-            press.run(&mut Workspace::new()).map(drop)
+            run(Press::new(patch, objects, poses, Until::Travel(number)))
         },
     },
     Case {
         name: "to a travel, with contacts",
         allowed: ANY,
         run: |patch, objects, poses, number| {
-            let press = Press::new(patch, objects, poses, Until::Travel(number));
-            press.with_contacts().run(&mut Workspace::new()).map(drop)
+            run(Press::new(patch, objects, poses, Until::Travel(number)).with_contacts())
         },
     },
     Case {
         name: "to a force",
         allowed: POSITIVE,
         run: |patch, objects, poses, number| {
-            let press = Press::new(patch, objects, poses, Until::Force(number));
-            press.run(&mut Workspace::new()).map(drop)
+            run(Press::new(patch, objects, poses, Until::Force(number)))
         },
     },
     Case {
         name: "to a force, with contacts",
         allowed: POSITIVE,
         run: |patch, objects, poses, number| {
-            let press = Press::new(patch, objects, poses, Until::Force(number));
-            press.with_contacts().run(&mut Workspace::new()).map(drop)
+            run(Press::new(patch, objects, poses, Until::Force(number)).with_contacts())
         },
     },
     Case {
@@ -217,7 +211,7 @@ fn patches() -> [Patch; 2] {
 }
 
 fn ball() -> Model {
-    random_scenes::ball(0.01).into()
+    scenes::ball(0.01).into()
 }
 
 /// Pose at which both patches press both objects.

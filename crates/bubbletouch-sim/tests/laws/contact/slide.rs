@@ -2,13 +2,12 @@
 
 use bubbletouch_sim::contact::{FrictionState, NormalForce, Press, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
-use bubbletouch_sim::objects::{MeshModel, Model};
+use bubbletouch_sim::objects::Model;
 use bubbletouch_sim::world::{ArrayLayout, Grid, Patch, Shear, Shears, Taxels};
 use glam::{DVec2, DVec3};
 
-use crate::mesh_shapes;
-use crate::random_scenes;
-use crate::random_scenes::TAXEL;
+use crate::mesh_shapes::cuboid;
+use crate::scenes::{TAXEL, ball, mesh, pressed, touched};
 
 const GRID: Grid = Grid {
     nx: 16,
@@ -23,10 +22,6 @@ const SHEAR: Shear = Shear {
 fn skin(layout: ArrayLayout) -> Patch {
     let layout = layout.taxels(&GRID, 0.03).unwrap();
     Patch::new("skin", layout, Taxels::Equal(TAXEL)).unwrap()
-}
-
-fn ball(radius: f64) -> [Model; 1] {
-    [random_scenes::ball(radius).into()]
 }
 
 /// Returns the forces on all taxels after a press and a slide.
@@ -47,7 +42,7 @@ fn forces(skin: &Patch, objects: &[Model], pose: Pose, motion: (f64, DVec3)) -> 
 #[test]
 fn under_a_flat_face_tips_stick_until_they_carry_no_more_and_then_slip() {
     let skin = skin(ArrayLayout::Grid);
-    let block = [MeshModel::new(mesh_shapes::cuboid(DVec3::new(0.1, 0.1, 0.01))).into()];
+    let block = [mesh(cuboid(DVec3::new(0.1, 0.1, 0.01)))];
     let pose = Pose::from_translation(0.05 * DVec3::Z);
     let (depth, direction) = (2e-3, DVec2::from_angle(0.7));
     let pressed = TAXEL.stiffness * depth;
@@ -66,7 +61,7 @@ fn under_a_flat_face_tips_stick_until_they_carry_no_more_and_then_slip() {
 fn a_slide_the_other_way_is_the_mirror_image() {
     for layout in [ArrayLayout::Grid, ArrayLayout::Cylinder] {
         let skin = skin(layout);
-        let (objects, pose) = (ball(0.02), Pose::from_translation(0.05 * DVec3::Z));
+        let (objects, pose) = ([ball(0.02).into()], Pose::from_translation(0.05 * DVec3::Z));
         let slid = |x: f64| forces(&skin, &objects, pose, (3e-3, x * DVec3::X));
         let (there, back) = (slid(2e-3), slid(-2e-3));
         let mut n_sheared = 0;
@@ -89,24 +84,19 @@ fn the_shear_is_that_of_many_small_steps() {
         (ArrayLayout::Cap, 0.01),
     ] {
         let skin = skin(layout);
-        let objects = ball(radius);
+        let objects = [ball(radius).into()];
         let start = Pose::from_translation(DVec3::new(1.3e-3, -0.7e-3, 0.06));
         let (depth, slide) = (3e-3, DVec3::new(3e-3, 1.5e-3, 0.0));
         let found = forces(&skin, &objects, start, (depth, slide));
         let mut friction = FrictionState::at_rest(&skin, Shears::Equal(SHEAR)).unwrap();
-        let mut workspace = Workspace::new();
-        let touch = Press::new(&skin, &objects, &[start], Until::Depth(0.0)).run(&mut workspace);
-        let first = touch.unwrap().unwrap().travel;
+        let first = pressed(Press::new(&skin, &objects, &[start], Until::Depth(0.0))).travel();
         let mut to = |moved: DVec3| {
             let pose = Pose {
                 translation: start.translation - moved,
                 ..start
             };
-            Press::new(&skin, &objects, &[pose], Until::Pose)
-                .with_contacts()
-                .run(&mut workspace)
-                .unwrap();
-            friction.step(&skin, workspace.contacts(), &[pose], NormalForce::Springs);
+            let contacts = touched(&skin, &objects, &[pose]).contacts;
+            friction.step(&skin, &contacts, &[pose], NormalForce::Springs);
             friction.force3().to_vec()
         };
         let n = 2000;

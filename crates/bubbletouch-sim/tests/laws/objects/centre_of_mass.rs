@@ -1,7 +1,7 @@
 //! Laws of volume and centre of mass: overlapping parts count once, and solids, their packings and equal meshes agree.
 
 use crate::mesh_shapes::{inside_out, joined};
-use crate::random_scenes::{direction, rng};
+use crate::scenes::{direction, rng};
 use crate::shapes::{part, shape, solid};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::TriangleMesh;

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use rand::Rng;
 
 use crate::mesh_shapes::{corners, cuboid, icosphere, with_triangles};
-use crate::random_scenes::{direction, rng};
+use crate::scenes::{direction, rng};
 
 /// Creates random triangles of all sizes and shapes: slivers, points, and triangles with shared corners.
 fn soup(rng: &mut impl Rng, n: usize) -> TriangleMesh {

@@ -1,6 +1,6 @@
 //! Laws of primitive shapes as meshes: closed, outwards, corners on the shape, and facets within the tolerance.
 
-use crate::random_scenes::{direction, rng};
+use crate::scenes::{direction, rng};
 use bubbletouch_sim::mesh::{Surface, TriangleMesh, Welded};
 use glam::{DVec2, DVec3};
 use rand::Rng;

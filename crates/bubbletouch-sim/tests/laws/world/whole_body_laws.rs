@@ -1,6 +1,6 @@
 //! Laws of a whole body: its kernel agrees with the kernel for skins of any shape, and its cost depends only on the contact.
 
-use bubbletouch_sim::contact::{DamperState, Press, Until, Workspace, relaxation_factor};
+use bubbletouch_sim::contact::{DamperState, relaxation_factor};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
 use bubbletouch_sim::whole_body::{
@@ -13,7 +13,8 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use crate::counting::{allocations, peak_bytes};
-use crate::random_scenes::{TAXEL, direction, random_pose, rng};
+use crate::every_part::{Behind, by_every_part};
+use crate::scenes::{Scene, TAXEL, ball, direction, random_pose, rng, touched};
 
 const DT: f64 = 1e-3;
 
@@ -65,7 +66,7 @@ fn random_union(rng: &mut impl Rng) -> SphereUnion {
 }
 
 /// Returns the patches of a body as skins with any layout.
-fn as_skins(body: &WholeBody) -> Vec<Patch> {
+pub(super) fn as_skins(body: &WholeBody) -> Vec<Patch> {
     let skin = |patch: &BodyPatch| {
         Patch::new(patch.name(), patch.layout(), Taxels::Equal(*patch.taxel())).unwrap()
     };
@@ -101,22 +102,13 @@ impl Touch {
         self.unions.iter().map(SphereClusters::new).collect()
     }
 
-    /// Returns the result of the kernel for any skin on one patch: deflections and number of saturated taxels.
-    fn slowly(&self, patch: usize, skin: &Patch) -> (Vec<f64>, usize) {
+    /// Returns the deflections of one patch by the kernel for any skin.
+    fn slowly(&self, patch: usize, skin: &Patch) -> Vec<f64> {
         let models: Vec<Model> = self.unions.iter().cloned().map(Model::from).collect();
         let patch_from_world = self.patches[patch].inverse();
-        let poses: Vec<Pose> = self
-            .objects
-            .iter()
-            .map(|pose| patch_from_world.compose(pose))
-            .collect();
-        let mut workspace = Workspace::new();
-        let contact = Press::new(skin, &models, &poses, Until::Pose)
-            .with_contacts()
-            .run(&mut workspace)
-            .unwrap()
-            .unwrap_or_default();
-        (workspace.deflections().to_vec(), contact.n_saturated)
+        let objects = self.objects.iter();
+        let poses: Vec<Pose> = objects.map(|pose| patch_from_world.compose(pose)).collect();
+        touched(skin, &models, &poses).deflections
     }
 }
 
@@ -170,8 +162,7 @@ fn damped_taxels_relax_and_push_as_dampers_do_until_they_are_at_rest() {
             let dt = rng.gen_range(1e-3..0.05);
             state.press(&body, &clusters, &touch.objects, dt).unwrap();
             for (patch, (skin, slow)) in skins.iter().zip(&mut slow).enumerate() {
-                let (contact, _) = touch.slowly(patch, skin);
-                slow.step(skin.taxels(), dt, &contact);
+                slow.step(skin.taxels(), dt, &touch.slowly(patch, skin));
                 for (fast, slow) in state.deflections(patch).iter().zip(&slow.deflection) {
                     assert!((fast - slow).abs() <= AT_REST, "case {case}, step {step}");
                 }
@@ -262,33 +253,39 @@ fn a_body_at_rest_has_a_few_bytes_a_taxel() {
 
 #[test]
 fn bad_taxels_and_names_are_refused() {
-    let extrusion = Extrusion::grid(&Grid {
-        nx: 2,
-        ny: 2,
-        pitch: 1e-3,
-    })
-    .unwrap();
+    let (nx, ny, pitch) = (2, 2, 1e-3);
+    let extrusion = Extrusion::grid(&Grid { nx, ny, pitch }).unwrap();
+    let palm = |taxels: Taxels| Patch::new("palm", extrusion.clone(), taxels);
     let soft = Taxel {
         stiffness: 0.0,
         ..TAXEL
     };
-    let error = Patch::new("palm", extrusion.clone(), soft).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "skin patch palm, taxel stiffness: 0 N/m; a finite positive number"
-    );
-    let each = Patch::new("palm", extrusion.clone(), Taxels::Each(vec![TAXEL; 4])).unwrap();
-    let error = WholeBody::new(&[each]).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "body patch palm, taxels: one each; one taxel for all places"
-    );
-    let palm = Patch::new("palm", extrusion, TAXEL).unwrap();
-    let error = WholeBody::new(&[palm.clone(), palm]).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "body: two patches called `palm`; a name of its own for each"
-    );
+    let endless = Taxel {
+        stroke: f64::NAN,
+        ..TAXEL
+    };
+    let same = palm(TAXEL.into()).unwrap();
+    let each = palm(Taxels::Each(vec![TAXEL; 4])).unwrap();
+    for (error, said) in [
+        (
+            palm(soft.into()).unwrap_err(),
+            "skin patch palm, taxel stiffness: 0 N/m; a finite positive number",
+        ),
+        (
+            palm(endless.into()).unwrap_err(),
+            "skin patch palm, taxel stroke: NaN m; a finite positive number",
+        ),
+        (
+            WholeBody::new(&[each]).unwrap_err(),
+            "body patch palm, taxels: one each; one taxel for all places",
+        ),
+        (
+            WholeBody::new(&[same.clone(), same]).unwrap_err(),
+            "body: two patches called `palm`; a name of its own for each",
+        ),
+    ] {
+        assert_eq!(error.to_string(), said);
+    }
 }
 
 fn humanoid() -> Robot {
@@ -364,27 +361,22 @@ fn patches_go_with_their_links() {
 
 #[test]
 fn a_robot_with_nothing_to_cover_and_a_pitch_that_is_none_are_refused() {
-    let bare = CoveredRobot::new(&Robot::floating("ghost"), TAXEL, 1e-3, 0.1).unwrap_err();
-    assert!(
-        bare.to_string()
-            .starts_with("robot ghost: nothing to cover; "),
-        "{bare}"
-    );
     let tiny = Dome::new(1e-3, 1.0, 1.0, 1e-4).unwrap();
     let pin = Patch::new("pin", tiny, TAXEL).unwrap();
-    let error = WholeBody::new(&[pin]).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .starts_with("body patch pin, dome radius: 0.001 m; ")
-    );
-    let error = CoveredRobot::new(&humanoid(), TAXEL, -1.0, 0.1).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .starts_with("skin of pelvis, taxel pitch: -1 m; "),
-        "{error}"
-    );
+    let bare = CoveredRobot::new(&Robot::floating("ghost"), TAXEL, 1e-3, 0.1);
+    for (error, said) in [
+        (bare.unwrap_err(), "robot ghost: nothing to cover; "),
+        (
+            WholeBody::new(&[pin]).unwrap_err(),
+            "body patch pin, dome radius: 0.001 m; ",
+        ),
+        (
+            CoveredRobot::new(&humanoid(), TAXEL, -1.0, 0.1).unwrap_err(),
+            "skin of pelvis, taxel pitch: -1 m; ",
+        ),
+    ] {
+        assert!(error.to_string().starts_with(said), "{error}");
+    }
 }
 
 /// Robot hand made of a box and two fingers. One finger ends flat and free, the other in a ball, and both begin within the box.
@@ -459,28 +451,16 @@ fn a_ball_on_a_box_and_on_a_flat_end_is_felt_as_by_any_skin() {
     let on_end = DVec3::new(0.021, 1e-3, 0.1295);
     let on_face = DVec3::new(0.0, -0.0245, 0.03);
     for place in [on_end, on_face] {
-        let ball = SphereUnion::new(vec![Sphere {
-            center: DVec3::ZERO,
-            radius: 0.01,
-        }])
-        .unwrap();
-        let clusters = [SphereClusters::new(&ball)];
-        let contact = state
-            .press(body, &clusters, &[Pose::from_translation(place)], DT)
-            .unwrap();
+        let clusters = [SphereClusters::new(&ball(0.01))];
+        let at = Pose::from_translation(place);
+        let contact = state.press(body, &clusters, &[at], DT).unwrap();
         assert!(contact.n_touched > 4, "{place}: {contact:?}");
-        for (number, (patch, pose)) in body.patches().iter().zip(&poses).enumerate() {
-            let layout = patch.layout();
-            let center = pose.inverse().transform_point(place);
-            for (taxel, found) in state.deflections(number).iter().enumerate() {
-                let from = center - layout.centers()[taxel];
-                let height = from.dot(layout.axes()[taxel]);
-                let left =
-                    (0.01 + TAXEL.radius).powi(2) - (from.length_squared() - height * height);
-                let is_pushed = left > 0.0 && height + left.sqrt() >= -TAXEL.stroke - TAXEL.radius;
-                let needed = if is_pushed { left.sqrt() - height } else { 0.0 };
-                let expected = needed.clamp(0.0, TAXEL.stroke);
-                assert!((found - expected).abs() < 1e-12, "{} {taxel}", patch.name());
+        for (number, (patch, pose)) in as_skins(body).into_iter().zip(&poses).enumerate() {
+            let scene = Scene::new(patch, ball(0.01), at.seen_from(pose));
+            let expected = by_every_part(&scene, Behind::Ignored);
+            for (found, expected) in state.deflections(number).iter().zip(expected) {
+                let error = (found - expected.deflection).abs();
+                assert!(error < 1e-12, "patch {number}: {found} {expected:?}");
             }
         }
     }
