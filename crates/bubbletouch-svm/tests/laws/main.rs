@@ -4,7 +4,6 @@ mod drawn;
 mod engine;
 mod every_classifier;
 mod foreign;
-mod hard_cases;
 mod inseparable;
 mod libsvm;
 mod limits;
