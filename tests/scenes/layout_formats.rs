@@ -179,24 +179,25 @@ fn each_fault_of_an_archive_is_refused_with_its_row() {
             [0.0, 0.0, last, 0.0],
         ]
     };
-    let dex = |second: [[f64; 4]; 3], n_pixels: usize| {
+    let dex = |second: [[f64; 4]; 3], pixels: &[[i64; 2]]| {
         let rest = pose(1.0, 1.0, 0.0);
         let poses = [rest, second, rest].concat().concat();
         let poses = Array3::from_shape_vec((3, 3, 4), poses).unwrap();
-        let pixels = Array2::<i64>::zeros((n_pixels, 2));
+        let pixels = Array2::from(pixels.to_vec());
         npz(|npz| {
             npz.add_array("poses", &poses).unwrap();
             npz.add_array("taxel2pixel", &pixels).unwrap();
             npz.add_array("radii", &Array1::from_elem(3, 1e-3)).unwrap();
         })
     };
-    let zero = [unit, [0.0; 3], unit];
+    let (zero, at_zero) = ([unit, [0.0; 3], unit], [[0, 0]; 3]);
     let array = |name: &str, shape: (usize, usize)| {
         npz(|npz| npz.add_array(name, &Array2::<f64>::ones(shape)).unwrap())
     };
     let not_finite = "row 2: a number that is not finite";
     let normals = "normals: an array of shape [2, 3]; 3 × 3";
     let pixels = "taxel2pixel: an array of shape [2, 2]; 3 × 2";
+    let negative = "taxel2pixel, row 2: -1; integers from 0";
     let missing = "no array normals (the arrays positions); positions and normals, or poses";
     let flat = "poses, row 2: a matrix that is no rotation";
     let mirrored = "poses, row 2: a left-handed frame";
@@ -204,10 +205,14 @@ fn each_fault_of_an_archive_is_refused_with_its_row() {
         (own(2e-3, &[unit; 2]), normals),
         (own(nan, &[unit; 3]), not_finite),
         (own(2e-3, &zero), "row 2: normal [0, 0, 0] of length 0"),
-        (dex(pose(1.0, 1.0, 2e-3), 2), pixels),
-        (dex(pose(1.0, 1.0, nan), 3), not_finite),
-        (dex(pose(1.0, 0.0, 2e-3), 3), flat),
-        (dex(pose(-1.0, 1.0, 2e-3), 3), mirrored),
+        (dex(pose(1.0, 1.0, 2e-3), &[[0, 0]; 2]), pixels),
+        (
+            dex(pose(1.0, 1.0, 2e-3), &[[0, 0], [0, -1], [0, 0]]),
+            negative,
+        ),
+        (dex(pose(1.0, 1.0, nan), &at_zero), not_finite),
+        (dex(pose(1.0, 0.0, 2e-3), &at_zero), flat),
+        (dex(pose(-1.0, 1.0, 2e-3), &at_zero), mirrored),
         (array("other", (3, 1)), "positions and normals, or poses"),
         (array("positions", (2, 3)), missing),
     ] {
@@ -215,7 +220,7 @@ fn each_fault_of_an_archive_is_refused_with_its_row() {
         says(&error.to_string(), &["skin.npz", expected]);
         assert_eq!(error.exit_code(), 2);
     }
-    for bytes in [own(2e-3, &[unit; 3]), dex(pose(1.0, 1.0, 2e-3), 3)] {
+    for bytes in [own(2e-3, &[unit; 3]), dex(pose(1.0, 1.0, 2e-3), &at_zero)] {
         let file = read(&case.file("skin.npz", bytes)).unwrap();
         assert_eq!(file.layout.n_taxels(), 3);
     }

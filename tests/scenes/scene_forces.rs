@@ -4,7 +4,8 @@ use crate::command::filled;
 use crate::scene::{CUBE, Press, frames, plan, plan_in, pressed, recorded, resolved};
 use bubbletouch::contact::{self, FrictionState, NormalForce, Until, Workspace};
 use bubbletouch::geometry::Pose;
-use bubbletouch::scene::{Frame, FrameSink, PatchReading, PoseControl, Summary};
+use bubbletouch::report::scene_files::scene_table;
+use bubbletouch::scene::{Frame, FrameSink, PatchReading, PoseControl, ScenePlan, Summary};
 use glam::DVec3;
 use std::fs;
 use std::path::Path;
@@ -162,8 +163,8 @@ fn a_recording_of_a_patch_with_friction_has_forces_in_three_dimensions() {
     assert!(slipping.eq(expected));
 }
 
-/// Returns the frames of a plate of spheres on a tray that moves sideways and then tilts by 12 degrees.
-fn on_a_tray(folder: &Path, friction: f64) -> Vec<Frame> {
+/// Returns the plan of a plate of spheres on a tray that moves sideways and then tilts by 12 degrees.
+fn on_a_tray(folder: &Path, friction: f64) -> ScenePlan {
     let places = (0..25).map(|k| (4 * (k % 5) - 8, 4 * (k / 5) - 8));
     let rows = places.map(|(x, y)| format!("{x},{y},0,4\n"));
     let table = format!("x,y,z,r\n{}", rows.collect::<String>());
@@ -172,13 +173,14 @@ fn on_a_tray(folder: &Path, friction: f64) -> Vec<Frame> {
         include_str!("../fixtures/texts/scene_forces_on_a_tray.toml"),
         &[("friction", &friction)],
     );
-    frames(&plan_in(folder, &text).unwrap())
+    plan_in(folder, &text).unwrap()
 }
 
 #[test]
 fn a_skin_with_friction_carries_a_free_object_along_and_on_a_slope() {
     let folder = tempfile::tempdir().unwrap();
-    let frames = on_a_tray(folder.path(), 0.6);
+    let plan = on_a_tray(folder.path(), 0.6);
+    let frames = frames(&plan);
     let weight = 0.15 * 9.81;
     let seen = |frame: &Frame| frame.objects[0].pose.seen_from(&frame.patches[0].pose);
     let start = seen(&frames[0]);
@@ -200,7 +202,22 @@ fn a_skin_with_friction_carries_a_free_object_along_and_on_a_slope() {
     let is_held = pull > 0.2 * weight && shear > 0.5 * pull;
     assert!(is_held, "{shear} of {pull}");
 
-    let frames = on_a_tray(folder.path(), 0.02);
+    // The summary contains the last angles about x, y and z, in degrees.
+    let mut summary = Summary::default();
+    summary.frame(last).unwrap();
+    let table = scene_table(&plan, &summary);
+    let (_, angles) = table.split_once("rotated by (").unwrap();
+    let (angles, _) = angles.split_once(")°").unwrap();
+    let angles: Vec<f64> = angles
+        .split(", ")
+        .map(|angle| angle.parse().unwrap())
+        .collect();
+    assert!(
+        (angles[1] - 12.0).abs() < 1.5 && angles[0].abs() < 1.0,
+        "{table}"
+    );
+
+    let (_, frames) = recorded(&on_a_tray(folder.path(), 0.02));
     let last = frames.last().unwrap();
     assert!(matches!(last.objects[0].held, PoseControl::Escaped { .. }));
 }

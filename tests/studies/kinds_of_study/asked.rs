@@ -77,6 +77,15 @@ fn the_advisor_reads_a_study_that_recognises_objects() {
         let choice = &advice(&case, options)["answers"][0]["choice"];
         assert_eq!(choice["measurements"].as_f64(), Some(8.0), "{options}");
     }
+    // The limit is in milliseconds, the cost in microseconds.
+    let fastest = &advice(&case, "--budget 1e9 --cost decision_time")["answers"][0]["choice"];
+    let us = fastest["predict_us_per_decision"].as_f64().unwrap();
+    let within = |ms: f64| format!("--max-measurements 64 --max-answer-ms {ms}");
+    advice(&case, &within(2e-3 * us));
+    refuses_options(
+        &case,
+        &[(&within(1e-6 * us), "limit of time of a decision")],
+    );
     let smallest = "the smallest here is measurements a decision 8";
     let few = format!("measurements a decision 7; {smallest}");
     let refusals = [
