@@ -3,21 +3,18 @@
 
 A patch of 64 x 64 taxels, 2 mm apart, is pressed 3 mm into an object. Three quantities are read, and errors are relative to the exact value of the
 same quantity: the way of balls of 1 mm along the taxel's axis, the way of points along the axis, and the depth of points by signed distance.
-README.md beside this file describes the methods and the settings.
+README.md beside this file describes the methods and the settings. Needs mujoco, trimesh, numpy and bubbletouch (pip install ./python).
 """
 
 import argparse
 import csv
 import datetime
-import json
-import os
 import platform
 import statistics
-import subprocess
-import tempfile
 import time
 from pathlib import Path
 
+import bubbletouch as bt
 import mujoco
 import numpy as np
 import trimesh
@@ -57,33 +54,34 @@ def draw_poses(bounds, n, seed):
 
 
 class Ours:
-    """The command `bubbletouch press`, which times its own presses."""
+    """Presses with bubbletouch's Python module, on one thread. An object is a `bt.Mesh` or a `bt.SphereUnion`."""
 
-    def __init__(self, binary, scratch):
-        self.binary, self.scratch = binary, Path(scratch)
+    def __init__(self):
+        self.patches = {radius: bt.Patch.grid(SIDE, SIDE, PITCH, STROKE, taxel_radius=radius) for radius in (RADIUS, POINT_RADIUS)}
 
-    def press(self, source, poses, depth=None, repeat=1, radius=RADIUS):
-        """Returns deflections, metres, (n, n_taxels), and the command's JSON output with the travel and the time of each press."""
-        file, out = self.scratch / "poses.csv", self.scratch / "out.npy"
-        np.savetxt(file, poses, delimiter=",", header="x,y,z,qw,qx,qy,qz", comments="", fmt="%.17g")
-        command = [self.binary, "press", *source, "--poses", str(file), "--repeat", str(repeat), "--json", "--out", str(out)]
-        command += ["--taxel-radius-mm", f"{1e3 * radius:.9g}"]
-        command += ["--depth-mm", str(1e3 * depth)] if depth else []
-        done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, RAYON_NUM_THREADS="1"))
-        if done.returncode != 0:
-            raise SystemExit(done.stderr)
-        return np.load(out).reshape(len(poses), -1), json.loads(done.stdout)
+    def press(self, thing, poses, radius=RADIUS):
+        """Returns deflections at the poses, metres, (n, n_taxels)."""
+        return self.patches[radius].press(thing, poses, threads=1).reshape(len(poses), -1)
 
-    def pack(self, path, tolerance_mm):
-        """Returns the CSV file of the spheres of a packed mesh and the packing time, seconds; NaN if the file exists from an earlier run."""
-        kept = ROOT / "target" / "peers" / f"{path.stem}_{tolerance_mm}.csv"
-        if kept.exists():
-            return kept, float("nan")
-        kept.parent.mkdir(parents=True, exist_ok=True)
+    def time(self, thing, poses, radius=RADIUS, repeat=20):
+        """Returns the processor times of `repeat` presses at all poses, microseconds a press."""
+        out = np.empty((len(poses), SIDE, SIDE))
+        return timed(lambda _: self.patches[radius].press(thing, poses, out=out, threads=1), range(repeat), len(poses))
+
+    def at_depth(self, thing, poses):
+        """Returns the poses after the travel to the depth `DEPTH`."""
+        _, contacts = self.patches[RADIUS].press(thing, poses, depth=DEPTH, contacts=True, threads=1)
+        there = poses.copy()
+        there[:, 2] -= contacts.travel
+        return there
+
+    def pack(self, mesh, name, tolerance_mm):
+        """Returns the packed spheres of a mesh and the packing time, seconds; NaN if an earlier run has packed the mesh."""
+        folder = ROOT / "target" / "peers" / f"{name}_{tolerance_mm}"
+        is_new = not folder.exists()
         start = time.perf_counter()
-        command = [self.binary, "objects", "pack", str(path), "--surface-error-mm", str(tolerance_mm), "--out", str(kept)]
-        subprocess.run(command, check=True, capture_output=True)
-        return kept, time.perf_counter() - start
+        spheres = mesh.pack(1e-3 * tolerance_mm, cache=folder)
+        return spheres, time.perf_counter() - start if is_new else float("nan")
 
 
 class Peer:
@@ -247,43 +245,37 @@ def error_of(felt, truth):
     return off.mean(), np.percentile(off, 95), off.max()
 
 
-def timed(evaluate, poses):
-    """Returns the processor time of each pose's evaluation, microseconds."""
+def timed(evaluate, poses, n=1):
+    """Returns the processor time of each pose's evaluation, which consists of n touches, microseconds a touch."""
     times = []
     for pose in poses:
-        start = time.thread_time()
+        start = time.process_time()
         evaluate(pose)
-        times.append(1e6 * (time.thread_time() - start))
+        times.append(1e6 * (time.process_time() - start) / n)
     return times
 
 
 def compare(object_name, truth, peers, ours, sources, poses, rounds):
     """Returns the table rows of an object. Peers and bubbletouch alternate; the times are medians over all rounds.
 
-    `truth` has the exact readings of each quantity; `sources` has the quantity, name, arguments and packing time of each source of ours.
+    `truth` has the exact readings of each quantity; `sources` has the quantity, name, object and packing time of each source of ours. For the way of points,
+    bubbletouch presses balls of nearly no radius at the foremost points.
     """
     times = {method: [] for method in (*peers, *range(len(sources)))}
-    pressed = [lambda repeat=1, source=source: press(ours, *source[::2], poses, repeat) for source in sources]
+    at = {BALLS: (poses, RADIUS), POINTS: (poses - [0, 0, RADIUS, 0, 0, 0, 0], POINT_RADIUS)}
     for _ in range(rounds):
-        for number, press_all in enumerate(pressed):
-            times[number].append(press_all(repeat=20)[1]["us"])
+        for number, (quantity, _, thing, _) in enumerate(sources):
+            times[number] += ours.time(thing, *at[quantity])
         for peer in peers:
             times[peer] += timed(peer.evaluate, poses)
     rows = []
-    for number, (quantity, setting, _, build_s) in enumerate(sources):
-        errors = error_of(pressed[number]()[0], truth[quantity])
+    for number, (quantity, setting, thing, build_s) in enumerate(sources):
+        errors = error_of(ours.press(thing, *at[quantity]), truth[quantity])
         rows.append(("bubbletouch", quantity, "bubbletouch", setting, statistics.median(times[number]), errors, build_s))
     for peer in peers:
         errors = error_of(np.array([peer.read(pose) for pose in poses]), truth[peer.quantity])
         rows.append(("MuJoCo", peer.quantity, peer.method, peer.setting, statistics.median(times[peer]), errors, peer.build_s))
     return [row_of(object_name, len(poses), *row) for row in rows]
-
-
-def press(ours, quantity, source, poses, repeat=1):
-    """Presses an object with bubbletouch; for the way of points, with balls of nearly no radius at the foremost points."""
-    if quantity == BALLS:
-        return ours.press(source, poses, repeat=repeat)
-    return ours.press(source, poses - [0, 0, RADIUS, 0, 0, 0, 0], repeat=repeat, radius=POINT_RADIUS)
 
 
 def row_of(object_name, n_touches, program, quantity, method, setting, us, errors, build_s):
@@ -312,18 +304,15 @@ def machine():
 def on_mesh(path, ours, options):
     mesh = trimesh.load(path, process=False)
     print(f"{path.stem}: {len(mesh.faces)} triangles", flush=True)
-    high = draw_poses(mesh.bounds, options.touches, seed=len(mesh.faces))
-    exact = ["--mesh", str(path), "--model", "mesh"]
-    _, said = ours.press(exact, high, depth=DEPTH)
-    poses = high.copy()
-    poses[:, 2] -= 1e-3 * np.array([press["travel_mm"] for press in said["presses"]])
+    exact = bt.Mesh.read(path)
+    poses = ours.at_depth(exact, draw_poses(mesh.bounds, options.touches, seed=len(mesh.faces)))
     sources = [(BALLS, "exact mesh", exact, 0.0), (POINTS, "exact mesh", exact, 0.0)]
     for tolerance in options.tolerances_mm:
-        kept, build_s = ours.pack(path, tolerance)
-        sources.append((BALLS, f"packed within {tolerance:g} mm", ["--spheres", str(kept)], build_s))
+        spheres, build_s = ours.pack(exact, path.stem, tolerance)
+        sources.append((BALLS, f"packed within {tolerance:g} mm", spheres, build_s))
     rays = Rays(mesh)
     points = np.array([rays.read(pose) for pose in poses])
-    truth = {BALLS: ours.press(exact, poses)[0], POINTS: points, DISTANCE: depths_by_distance(mesh, poses, points > 0)}
+    truth = {BALLS: ours.press(exact, poses), POINTS: points, DISTANCE: depths_by_distance(mesh, poses, points > 0)}
     sensors = [TactileSensor(mesh, depth) for depth in options.octree_depths]
     bodies = [Bodies(mesh, n, dt) for dt in options.dts for n in options.steps]
     return compare(path.stem, truth, [rays, *sensors, *bodies], ours, sources, poses, options.rounds)
@@ -331,16 +320,11 @@ def on_mesh(path, ours, options):
 
 def on_ball(ours, options, radius=0.05):
     """Returns the table rows of a ball, which is one exact sphere without a mesh."""
-    file = ours.scratch / "ball.csv"
-    file.write_text(f"x,y,z,r\n0,0,0,{radius}\n")
-    high = draw_poses(np.array([[-radius] * 3, [radius] * 3]), options.touches, seed=1)
-    source = ["--spheres", str(file)]
-    _, said = ours.press(source, high, depth=DEPTH)
-    poses = high.copy()
-    poses[:, 2] -= 1e-3 * np.array([press["travel_mm"] for press in said["presses"]])
-    truth = {BALLS: ours.press(source, poses)[0]}
+    ball = bt.SphereUnion([[0.0, 0.0, 0.0]], [radius])
+    poses = ours.at_depth(ball, draw_poses(np.array([[-radius] * 3, [radius] * 3]), options.touches, seed=1))
+    truth = {BALLS: ours.press(ball, poses)}
     bodies = [Bodies(radius, n, dt) for dt in options.dts for n in options.steps]
-    return compare("ball_100mm", truth, bodies, ours, [(BALLS, "one sphere", source, 0.0)], poses, options.rounds)
+    return compare("ball_100mm", truth, bodies, ours, [(BALLS, "one sphere", ball, 0.0)], poses, options.rounds)
 
 
 def tell(rows):
@@ -359,7 +343,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--objects", type=Path, required=True, help="a folder of closed PLY meshes in metres")
     parser.add_argument("--names", nargs="*", help="only these meshes (names without ending); all when left out")
-    parser.add_argument("--binary", default=str(ROOT / "target" / "release" / "bubbletouch"))
     parser.add_argument("--touches", type=int, default=10, help="touches an object")
     parser.add_argument("--rounds", type=int, default=3, help="how often all take turns")
     parser.add_argument("--tolerances-mm", type=float, nargs="*", default=[0.5, 0.2, 0.1])
@@ -372,18 +355,16 @@ def main():
     paths = sorted(path for path in options.objects.glob("*.ply") if not options.names or path.stem in options.names)
     if not paths:
         parser.error(f"no PLY meshes of these names in {options.objects}")
-    with tempfile.TemporaryDirectory() as scratch:
-        ours = Ours(options.binary, scratch)
-        rows = kept(options.out) if options.append else []
-        if not options.append:
-            rows += on_ball(ours, options)
-            tell(rows)
-        for path in paths:
-            new = on_mesh(path, ours, options)
-            tell(new)
-            rows = [row for row in rows if row["object"] != path.stem] + new
-            write(options.out, rows)
-    write(options.out, rows)
+    ours = Ours()
+    rows = kept(options.out) if options.append else []
+    if not options.append:
+        rows += on_ball(ours, options)
+        tell(rows)
+    for path in paths:
+        new = on_mesh(path, ours, options)
+        tell(new)
+        rows = [row for row in rows if row["object"] != path.stem] + new
+        write(options.out, rows)
 
 
 def kept(path):
