@@ -156,7 +156,7 @@ fn each_fault_of_a_recording_is_refused_in_each_format() {
     );
     let forms = "numbers in one array of labels and texts in the other";
     fault(with_test(), "labels_test", texts("c"), forms);
-    let shapes = "touches of 1 frames of 1 × 5 taxels; touches of 1 frames of 1 × 6 taxels";
+    let shapes = "touches of 1 frame of 1 × 5 taxels; touches of 1 frame of 1 × 6 taxels";
     let narrow = Content::Numbers(frames(N, 5));
     fault(with_test(), "frames_test", narrow, shapes);
     // Classes of which no touch trains are a fault of the study.

@@ -1,5 +1,6 @@
 //! Errors with messages for the user: invalid input, and failures of the system.
 
+use crate::text::toml_text::list_for_number;
 use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -107,8 +108,11 @@ impl Error {
         Self::input(path.display(), given, allowed)
     }
 
-    /// Creates an input error from a TOML error, with file, line and column.
+    /// Creates an input error from a TOML error, with file, line and column, or with the key if its value is a list in place of a number.
     pub fn toml(place: &str, text: &str, error: &toml::de::Error) -> Self {
+        if let Some(error) = list_for_number(place, text, error) {
+            return error;
+        }
         let position = error.span().map_or(String::new(), |span| {
             let before = &text[..span.start.min(text.len())];
             let line = before.matches('\n').count() + 1;

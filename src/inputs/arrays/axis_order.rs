@@ -6,6 +6,7 @@
 
 use crate::error::{Error, Result};
 use crate::inputs::units::{MAX_FRAMES, MAX_SIDE};
+use bubbletouch_sim::text::spelling::counted;
 use ndarray::{Array2, ArrayD};
 
 /// Maximum ratio of the last two axis lengths for which these two axes are interpreted as rows and columns of a grid. With a larger value, time may be mistaken
@@ -155,7 +156,8 @@ impl FrameShape {
                 1 => String::new(),
                 n => format!(" of {n} values"),
             };
-            format!("touches of {n_frames} frames of {rows} × {columns} taxels{values}")
+            let frames = counted(n_frames, "frame");
+            format!("touches of {frames} of {rows} × {columns} taxels{values}")
         };
         let (own, wanted) = (axes(self), axes(first));
         if own == wanted {
@@ -355,7 +357,7 @@ fn words(shape: &[usize], order: &str) -> String {
         (Some(_), Some(n)) => format!(" of {n} values"),
         _ => String::new(),
     };
-    let frames = length('t').map_or(String::new(), |n| format!("{n} frames of "));
+    let frames = length('t').map_or(String::new(), |n| format!("{} of ", counted(n, "frame")));
     format!("{} touches of {frames}{taxels}{values}", of('n'))
 }
 

@@ -148,12 +148,21 @@ impl WrittenPart {
             (name.to_owned(), scaled(value.get_ref(), unit))
         };
         let table: Table = self.0.iter().map(field).collect();
-        let shape = Shape::deserialize(Value::Table(table));
+        let shape = Shape::deserialize(Value::Table(table.clone()));
         let refused = |error: toml::de::Error| {
             let is_text = |(key, value): &(&String, &Spanned<Value>)| {
                 key.ends_with("_mm") && !is_numbers(value.get_ref())
             };
-            let key = self.0.iter().find(is_text).map_or("shape", |(key, _)| key);
+            // The key at which a number belongs, or else a key with a text.
+            let is_number = |(key, _): &(&String, &Spanned<Value>)| {
+                let mut table = table.clone();
+                let name = key.strip_suffix("_mm").unwrap_or(key);
+                table.insert(name.to_owned(), 1.0.into());
+                Shape::deserialize(Value::Table(table)).is_ok()
+            };
+            let mut keys = self.0.iter();
+            let key = keys.find(is_number).or(self.0.iter().find(is_text));
+            let key = key.map_or("shape", |(key, _)| key);
             let given = error.message().replace('\n', ", ");
             Error::input(key, given, "numbers and lists of numbers in mm")
         };

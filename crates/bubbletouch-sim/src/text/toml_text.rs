@@ -5,6 +5,8 @@ use super::toml_numbers::check_bounds;
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
@@ -30,6 +32,37 @@ pub fn check_numbers(place: &str, text: &str) -> Result<()> {
     let read = text.parse::<toml::Table>();
     read.map_err(|error| Error::toml(place, text, &error))?;
     check_bounds(place, text)
+}
+
+/// Returns the error of a list that is the value of a key with one number, with file, line and key; `None` for other errors.
+pub(crate) fn list_for_number(place: &str, text: &str, error: &toml::de::Error) -> Option<Error> {
+    let expected = error.message().trim();
+    let number = match expected.strip_prefix("invalid type: sequence, expected ")? {
+        "f64" => "number",
+        "usize" | "u64" | "u32" => "whole number",
+        _ => return None,
+    };
+    let span = error.span()?;
+    let key = key_at("", DeTable::parse(text).ok()?.get_ref(), &span)?;
+    let place = format!("{place}:{}, key {key}", line_of(text, span.start));
+    let allowed = format!("one {number}: no list of this key in this kind of file");
+    Some(Error::input(place, "a list", allowed))
+}
+
+/// Returns the path of the key whose value has a byte range of the text. An entry of a list has its number, counted from 1: `part[1].diameter_mm`.
+fn key_at(prefix: &str, table: &DeTable, span: &Range<usize>) -> Option<String> {
+    table.iter().find_map(|(name, value)| {
+        let path = format!("{prefix}{}", name.get_ref());
+        match value.get_ref() {
+            _ if value.span() == *span => Some(path),
+            DeValue::Table(inner) => key_at(&format!("{path}."), inner, span),
+            DeValue::Array(values) => (1..).zip(values).find_map(|(number, value)| {
+                let inner = value.get_ref().as_table()?;
+                key_at(&format!("{path}[{number}]."), inner, span)
+            }),
+            _ => None,
+        }
+    })
 }
 
 /// Writes a study with all default values as TOML.

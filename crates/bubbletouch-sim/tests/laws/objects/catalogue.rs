@@ -257,7 +257,7 @@ fn a_wrong_catalogue_names_file_line_and_object() {
     let changes = r#"= 80 | =  | own.toml, line 6, object "mug": 
         height_mm | hieght_mm | own.toml, line 7, object `mug`, part 1 (cylinder): hieght_mm: given for a cylinder; perhaps `height_mm`
         80 | "wide" | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm: invalid type: string
-        80 | [1, 2] | own.toml, line 5, object `mug`, part 1 (cylinder): shape: invalid type: sequence
+        80 | [1, 2] | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm: invalid type: sequence
         "cylinder" | "cilinder" | own.toml, line 5, object `mug`, part 1 (cilinder): shape: `cilinder`; perhaps `cylinder`
         "cylinder" | 3 | own.toml, line 5, object `mug`, part 1: shape: missing
         source = "us"; |  | own.toml, line 1, object "mug": missing field `source`
