@@ -80,7 +80,7 @@ impl Study for SaturationStudy {
         check.keys("saturation", &spec.saturation, &Self::keys())?;
         let of_touches = (&spec.skin, &spec.touches);
         let (array, placement) = check.touches_of_one_array(&mut spec.objects, of_touches)?;
-        check.used_springs(of_touches, false, "no such key")?;
+        check.used_keys(&spec, of_touches, Some("no such key"))?;
         let objects = load_objects(&spec.objects, source.packings.as_deref())?;
         let touched = draw_touches(objects, &placement, &Seed::new(spec.seed))?;
         let mut configurations = Vec::new();

@@ -1,13 +1,14 @@
 //! Checks of the values of keys in study files. Each error contains the file, the key, the given value, and the allowed values.
 
 use crate::error::{Error, Result};
-use crate::inputs::keys::{AxisPlace, KeyAbout};
+use crate::inputs::keys::{AxisPlace, GivenKey, KeyAbout};
 use crate::inputs::memory::{check_memory, machine_memory};
 use crate::inputs::range::Range;
 use crate::inputs::toml_value::{number, table_of, value_at};
 use crate::inputs::units::{MM, millimetres};
 use bubbletouch_sim::text::numbers::short_number;
 use serde::Serialize;
+use std::any::Any;
 
 /// Maximum number of values that one key may sweep. A longer list indicates a mistake, and the search for duplicates compares all pairs of values.
 pub const MAX_VALUES: usize = 10_000;
@@ -26,6 +27,9 @@ pub enum Rule {
     Excludes(&'static str, &'static [&'static str]),
 }
 
+/// Path of a key whose value differs from the usual one, and the error if the value has no effect.
+pub(crate) type Effect = (String, Option<Error>);
+
 /// Checker of the keys and values in one study file.
 pub struct Check<'a> {
     /// Name of the study file in error messages.
@@ -38,18 +42,19 @@ impl Check<'_> {
         Error::input(format!("{}, key {key}", self.place), given, allowed)
     }
 
-    /// Checks the keys of the table `name` against the list `keys`; returns the keys that the table contains. Each number must be in the range of its key; each
-    /// list must contain values and no duplicates. An entry of an array of tables has its number in the name: `stability.parts[1]`.
+    /// Checks the keys of the table `name` against the list `keys`. Each number must be in the range of its key; each list must contain values and no
+    /// duplicates. Keys must not replace each other, and must meet their conditions on the table. An entry of an array of tables has its number in the name:
+    /// `stability.parts[1]`.
     ///
     /// # Errors
     /// If the check fails; the error names the file, the key and the allowed values.
     pub fn keys(
         &self,
         name: &str,
-        table: &impl Serialize,
+        spec: &(impl Serialize + 'static),
         keys: &[KeyAbout],
-    ) -> Result<toml::Table> {
-        let table = table_of(table);
+    ) -> Result<()> {
+        let table = table_of(spec);
         let path = name.split('[').next().unwrap_or(name);
         for about in keys {
             let key = about.path.strip_prefix(path);
@@ -57,11 +62,61 @@ impl Check<'_> {
             let Some((key, value)) = key.and_then(|key| Some((key, value_at(&table, key)?))) else {
                 continue;
             };
+            if let Some(replaced) = about.replaces.filter(|own| table.contains_key(*own)) {
+                let both = format!("both {replaced} and {key}");
+                return Err(self.error(name, both, "one of them"));
+            }
+            let key = format!("{name}.{key}");
             if !matches!(about.range, Range::Unchecked) {
-                self.key_value(&format!("{name}.{key}"), value, about)?;
+                self.key_value(&key, value, about)?;
+            }
+            let given = GivenKey::new(about, value);
+            if let Some(error) = given.and_then(|given| self.no_effect(&key, given, &[spec])) {
+                return Err(error);
             }
         }
-        Ok(table)
+        Ok(())
+    }
+
+    /// Checks that the keys of a study meet their conditions on the given values.
+    ///
+    /// # Errors
+    /// If a value that differs from the usual one has no effect.
+    pub fn acting(
+        &self,
+        study: &impl Serialize,
+        keys: &[KeyAbout],
+        seen: &[&dyn Any],
+    ) -> Result<()> {
+        let mut effects = self.effects("", study, keys, seen).into_iter();
+        let error = effects.find_map(|(_, error)| error);
+        error.map_or(Ok(()), Err)
+    }
+
+    /// Returns the keys with conditions whose values differ from the usual ones. Each key has its path with the given prefix, and the error if a condition on the
+    /// given values is not met.
+    pub(crate) fn effects(
+        &self,
+        prefix: &str,
+        study: &impl Serialize,
+        keys: &[KeyAbout],
+        seen: &[&dyn Any],
+    ) -> Vec<Effect> {
+        let study = table_of(study);
+        let keys = keys.iter().filter(|about| about.acts.is_some());
+        let given = keys.filter_map(|about| {
+            let given = GivenKey::new(about, value_at(&study, about.path)?)?;
+            let path = format!("{prefix}{}", about.path);
+            let error = self.no_effect(&path, given, seen);
+            Some((path, error))
+        });
+        given.collect()
+    }
+
+    /// Returns the error of a key, with its path, if its value has no effect.
+    fn no_effect(&self, path: &str, key: GivenKey, seen: &[&dyn Any]) -> Option<Error> {
+        let none = key.no_effect(seen)?;
+        Some(self.error(path, none.given, none.allowed))
     }
 
     /// Checks the value, or the list of values, of a key against its allowed range.

@@ -1,8 +1,9 @@
 //! Descriptions of the keys of study files: range, axis, role, title, unit and scale of each key, from its declaration (the macro `params!`).
 
 use crate::inputs::range::Range;
-use crate::inputs::toml_value::{has_only, is_at};
+use crate::inputs::toml_value::{has_only, is_at, number};
 use crate::table::{Column, Role, Scale};
+use std::any::Any;
 
 /// Description of a key of study files, which also defines the key's table column and axis.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +30,82 @@ pub struct KeyAbout {
     pub names: Option<&'static [(&'static str, &'static str)]>,
     /// Rank of the key's column among the settings that charts omit if other settings determine them; see [`Column::gives_way`].
     pub gives_way: Option<u8>,
+    /// Key of the same table that this key replaces; a table must not contain both.
+    pub replaces: Option<&'static str>,
+    /// Conditions under which the key acts, from the macro [`acts!`](crate::acts). If it is `None`, the key always acts.
+    pub acts: Option<&'static [Acts]>,
+    /// Whether all kinds of studies that press one array use the key. If it is `None`, only studies of recognition do.
+    pub of_all_kinds: Option<bool>,
+    /// Whether training touches and test touches share the value. If it is `None`, the table `[test]` may contain the key.
+    pub of_all_touches: Option<bool>,
+}
+
+/// Condition under which a key acts. It gets the key with its value, and a plan, a specification or a table of the study. Returns `None` if the value acts, or if
+/// the condition looks at a table or plan of another type.
+pub type Acts = fn(GivenKey, &dyn Any) -> Option<NoEffect>;
+
+/// Key with a value other than the usual one.
+#[derive(Clone, Copy, Debug)]
+pub struct GivenKey<'a> {
+    /// Description of the key.
+    pub about: &'a KeyAbout,
+    /// Value of the key, or all its values.
+    pub value: &'a toml::Value,
+}
+
+/// Parts of the error of a value that has no effect.
+#[derive(Clone, Debug)]
+pub struct NoEffect {
+    /// Value, and the reason why it has no effect.
+    pub given: String,
+    /// Description of what is allowed.
+    pub allowed: String,
+}
+
+impl<'a> GivenKey<'a> {
+    /// Creates the key with its value; `None` if the value has the effect of the absent key.
+    pub(crate) fn new(about: &'a KeyAbout, value: &'a toml::Value) -> Option<Self> {
+        let given = Self { about, value };
+        given.first().map(|_| given)
+    }
+
+    /// Returns the value, or the first one of a list, that differs from the usual value.
+    fn first(self) -> Option<&'a toml::Value> {
+        let one = std::slice::from_ref(self.value);
+        let mut values = self.value.as_array().map_or(one, Vec::as_slice).iter();
+        values.find(|value| !self.about.is_usual(value))
+    }
+
+    /// Returns the value with the reason why it has no effect; without a reason, no value is allowed.
+    pub fn but(self, reason: &str) -> String {
+        match (reason, self.first().and_then(number), self.first()) {
+            ("", ..) => "given".to_owned(),
+            (_, Some(number), _) => format!("{number}, but {reason}"),
+            (_, None, given) => format!("{}, but {reason}", given.unwrap_or(self.value)),
+        }
+    }
+
+    /// Returns the first condition on the given values that is not met; `None` if the value acts.
+    pub(crate) fn no_effect(self, seen: &[&dyn Any]) -> Option<NoEffect> {
+        let mut conditions = self.about.acts.unwrap_or_default().iter();
+        conditions.find_map(|acts| seen.iter().find_map(|seen| acts(self, *seen)))
+    }
+}
+
+/// Declares the conditions under which a key acts. Each has the type of the value at which it looks: a plan, a specification or a table of a study. The reason
+/// and what is allowed follow. A key of a `Plan` acts if its conditions are met in one variant of the study. Other conditions must be met in all variants.
+#[macro_export]
+macro_rules! acts {
+    ($($type:ty: |$seen:ident| $acts:expr => $reason:expr, $allowed:expr);+ $(;)?) => {{
+        const ACTS: &[$crate::inputs::keys::Acts] = &[$(|key, seen| {
+            let $seen = seen.downcast_ref::<$type>()?;
+            match $acts {
+                true => None,
+                false => Some($crate::inputs::keys::NoEffect { given: key.but($reason), allowed: $allowed.to_owned() }),
+            }
+        }),+];
+        ACTS
+    }};
 }
 
 /// Place at which a key may have a list of values that are swept.
@@ -86,6 +163,10 @@ impl KeyAbout {
             scale: None,
             names: None,
             gives_way: None,
+            replaces: None,
+            acts: None,
+            of_all_kinds: None,
+            of_all_touches: None,
         }
     }
 

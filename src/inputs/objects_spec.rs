@@ -1,6 +1,8 @@
 //! Specification of objects: the table `[objects]` of a study or scene file.
 
+use crate::acts;
 use crate::files::{FilePath, SetName};
+use crate::inputs::keys::Acts;
 use crate::inputs::params::{named, params, words};
 use crate::inputs::range::Range::{Any, Positive, Unchecked};
 use crate::inputs::range::SURFACE_ERROR;
@@ -11,6 +13,10 @@ named!(LengthUnit);
 
 /// Default maximum distance between the surface of a solid and the spheres that represent it, mm.
 const SURFACE_ERROR_MM: f64 = 0.25;
+
+/// Condition of the keys that meshes alone have.
+const OF_MESHES: &[Acts] = acts![ObjectsSpec: |objects| objects.meshes.is_some()
+    => "", "it only beside meshes = \"FOLDER\": solids are spheres within surface_error_mm"];
 
 params! {
     /// Keys of the table `[objects]`: the objects of a study or scene.
@@ -23,15 +29,15 @@ params! {
         /// Folder of PLY, OBJ, STL, Collada or glTF meshes with one object per file, relative to the study file.
         meshes: Option<FilePath> => Unchecked, Condition, Axes;
         /// Model that is built from each mesh: `mesh` (default), `packed` or `vertex_spheres`.
-        model: Option<ModelSpec> => Any, Condition, Axes;
+        model: Option<ModelSpec> => Any, Condition, Axes, acts: OF_MESHES;
         /// Length unit of the mesh files. Default: metres. The size of each mesh must then be within plausible limits.
-        unit: Option<LengthUnit> => Any, Condition, Axes;
+        unit: Option<LengthUnit> => Any, Condition, Axes, acts: OF_MESHES;
         /// Maximum distance between the surface of a solid or packed mesh and its spheres, mm, at least 1e-6. Spheres extend at most half of this distance beyond
         /// the surface, so the mean heights are equal. Default: 0.25, or a tenth of the finest pitch with `model = "packed"`, which gives a mean deflection error
         /// of about 2 % of the pitch.
         surface_error_mm: Option<f64> => SURFACE_ERROR, Condition, Axes;
         /// Maximum width of holes that are closed before a mesh is packed or used, mm. Default: no holes are closed.
-        close_holes_mm: Option<f64> => Positive, Condition, Axes;
+        close_holes_mm: Option<f64> => Positive, Condition, Axes, acts: OF_MESHES;
     }
     unread {
         /// Range of allowed sizes of meshes without a given unit. This is not a key of the file: the plan derives the limits from the arrays.

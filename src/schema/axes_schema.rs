@@ -1,9 +1,9 @@
 //! Schemas of the tables `[axes]` and `[test]`, which repeat keys of other tables.
 
 use super::properties;
-use crate::inputs::keys::AxisPlace;
+use crate::inputs::keys::{AxisPlace, find};
 use crate::inputs::toml_value::is_at;
-use crate::studies::recognition::plan::tested::{SHARED, TABLES};
+use crate::studies::recognition::plan::tested::TABLES;
 use crate::studies::recognition::spec::keys::recognition_keys;
 use serde_json::{Map, Value, json};
 
@@ -21,8 +21,8 @@ fn test_table(schema: &Value) -> Value {
         let path = format!("#/properties/{name}");
         let table = &schema["properties"][name];
         let keys = properties(table).filter(|(key, _)| {
-            let key = format!("{name}.{key}");
-            !SHARED.contains(&&key[..])
+            let about = find(recognition_keys(), &format!("{name}.{key}"));
+            about.is_none_or(|about| about.of_all_touches.is_none())
         });
         let keys =
             keys.map(|(key, _)| (key.clone(), reference(&format!("{path}/properties/{key}"))));

@@ -37,6 +37,6 @@ pub use crate::studies::study::{
 };
 pub use crate::table::{ChartSpec, File, Mark, Table};
 pub(crate) use crate::world::{ImageShape, Placement, Taxel, Touch, TouchAxis};
-pub use crate::{params, row, study_file, words};
+pub use crate::{acts, params, row, study_file, words};
 pub(crate) use bubbletouch_svm::split::Split;
 pub(crate) use serde::{Deserialize, Serialize};

@@ -1,9 +1,11 @@
 //! Steps that several kinds of studies share: the check of touches of one array, groups of rows, medians of computing times, and recognition with classifiers
 //! that are trained on touches of approximate object models.
 
+use crate::inputs::params::Described;
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
 use crate::statistics::p_status::CONFIDENCE;
 use crate::studies::prelude::*;
+use crate::studies::recognition::spec::OneArray;
 use crate::table::Columns;
 use bubbletouch_sim::statistics::interval::Interval;
 use bubbletouch_svm::dataset::{Dataset, dataset};
@@ -26,6 +28,25 @@ impl Check<'_> {
         let array = self.grid(skin)?;
         objects.settle_surface_error(std::slice::from_ref(&array));
         Ok((array, self.placement(touches)?))
+    }
+
+    /// Checks that the given keys of a study in which one array touches all objects have an effect. `without_force` states what is allowed in place of keys of
+    /// forces; it is `None` if the study reads forces.
+    ///
+    /// # Errors
+    /// If a value other than the usual one has no effect.
+    pub fn used_keys<S: Described + Serialize>(
+        &self,
+        spec: &S,
+        (skin, touches): (&SkinSpec, &TouchesSpec),
+        without_force: Option<&'static str>,
+    ) -> Result<()> {
+        let one_array = OneArray {
+            skin: skin.clone(),
+            touches: touches.clone(),
+            without_force,
+        };
+        self.acting(spec, keys_of::<S>(), &[&one_array])
     }
 }
 

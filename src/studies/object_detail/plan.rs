@@ -112,7 +112,7 @@ impl ObjectDetailPlan {
         }
         let placement = check.placement(&spec.touches)?;
         let of_force = "no such key: the study compares deflections at rest";
-        check.used_springs((&spec.skin, &spec.touches), false, of_force)?;
+        check.used_keys(&spec, (&spec.skin, &spec.touches), Some(of_force))?;
         let wanted = &spec.object_detail;
         check.keys("object_detail", wanted, keys_of::<ObjectDetailStudySpec>())?;
         if wanted.methods.contains(&DetailMethod::Mesh) {

@@ -1,6 +1,6 @@
 //! Keys of a reconstruction study, and its plan: the checked values in SI units.
 
-use crate::engine::axes::CombineSpec;
+use crate::inputs::keys::Acts;
 use crate::inputs::params::named;
 use crate::sensing::{Dictionary, Effort, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
@@ -35,6 +35,10 @@ const MAX_ATOMS: usize = 100_000_000;
 
 named!(Solver, Basis);
 
+/// Condition of the limits of ℓ1 minimisation.
+const OF_L1: &[Acts] = acts![ReconstructionSpec: |wanted| wanted.solver.values().contains(&Solver::L1)
+    => "no solver of the study uses it", "l1 among reconstruction.solver, or no such key"];
+
 params! {
     /// Keys of `[reconstruction]`: solvers and dictionaries that reconstruct frames.
     pub struct ReconstructionSpec {
@@ -45,16 +49,18 @@ params! {
         /// Maximum number of atoms of a dictionary, at least 2. The atoms with the most energy in the training frames are used. Default: all, or 256 for PCA.
         atoms: Option<usize> => Count(2, MAX_ATOMS), Choice, Never;
         /// Maximum number of atoms per frame that matching pursuit may select, at least 1. Default: 128.
-        most_atoms: usize = Effort::default().most_atoms => COUNT, Choice, Never;
+        most_atoms: usize = Effort::default().most_atoms => COUNT, Choice, Never,
+            acts: acts![ReconstructionSpec: |wanted| wanted.solver.values().contains(&Solver::Omp)
+                => "no solver of the study uses it", "omp among reconstruction.solver, or no such key"];
         /// Regularisation parameter λ of the ℓ1 problem, as a multiple of the universal threshold σ a √(2 ln k), positive. Here σ is the noise standard deviation,
         /// a the root mean square norm of the columns of ΦΨ, and k the number of atoms. σ is at least 0.001 of the root mean square of the training frames.
         /// Default: 0.3.
-        lambda_scale: f64 = Effort::default().lambda_scale => Positive, Choice, Never;
+        lambda_scale: f64 = Effort::default().lambda_scale => Positive, Choice, Never, acts: OF_L1;
         /// Duality gap at which the ℓ1 solver stops, relative to the minimised objective, positive. Default: 0.01.
-        tolerance: f64 = Effort::default().tolerance => Positive, Choice, Never;
+        tolerance: f64 = Effort::default().tolerance => Positive, Choice, Never, acts: OF_L1;
         /// Maximum number of steps of the ℓ1 solver per frame, at least 1. `n_capped` counts the frames that need more, as frames without noise may do. Default:
         /// 2000.
-        most_steps: usize = Effort::default().most_steps => COUNT, Choice, Never;
+        most_steps: usize = Effort::default().most_steps => COUNT, Choice, Never, acts: OF_L1;
         /// Fraction of the touches that are held out for testing, between 0 and 1. Default: 0.25.
         test_fraction: f64 = 0.25 => Part, Condition, Never;
         /// Axis: number of atoms in each randomly drawn set (support) for which isometry statistics are computed. Default: 8 and 32.
@@ -107,22 +113,17 @@ impl ReconstructionPlan {
         check.noise_is_last(&spec.signal)?;
         let reads_force = spec.signal.steps.contains(&StepSpec::Force);
         let of_force = "\"force\" among signal.steps beside it";
-        check.used_springs(of_touches, reads_force, of_force)?;
+        check.used_keys(&spec, of_touches, (!reads_force).then_some(of_force))?;
         check.sensing(&spec.sensing, &array)?;
         check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
-        let allowed = "no such key: drawn ensembles select no taxels";
-        check.absent(("sensing", &spec.sensing), &["selection"], allowed)?;
-        if let Some(rate) = spec.sensing.readings_per_s {
-            let allowed = "no such key: only studies of recognition state the time to read a frame";
-            return Err(check.error("sensing.readings_per_s", rate, allowed));
-        }
+        let allowed = "no such key: only studies of recognition use it";
+        check.of_all_kinds("sensing", &spec.sensing, allowed)?;
         let wanted = &spec.reconstruction;
         check.keys(
             "reconstruction",
             wanted,
             keys_of::<ReconstructionStudySpec>(),
         )?;
-        check.efforts(wanted)?;
         let dictionaries = check.dictionaries(wanted, array.grid())?;
         let axes = [
             spec.sensing.ensemble.values().len(),
@@ -223,14 +224,6 @@ impl Check<'_> {
     /// Returns an error if a signal step follows the noise. Solvers assume independent noise on every taxel and need a clean frame for comparison.
     fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
         let refuse = |key, given: &str, allowed| Err(self.error(key, given, allowed));
-        if signal.test_sensor.is_some() {
-            let allowed = "no such key: only studies of recognition test on another skin";
-            return refuse("signal.test_sensor", "given", allowed);
-        }
-        if signal.combine != CombineSpec::All {
-            let allowed = "no such key: noise is the only axis of the signal, so that there is nothing to combine";
-            return refuse("signal.combine", "given", allowed);
-        }
         if signal.axes.get("smoothing_mm").is_some() {
             return refuse(
                 "signal.smoothing_mm",
@@ -255,26 +248,6 @@ impl Check<'_> {
             ),
             _ => Ok(()),
         }
-    }
-
-    /// Returns an error if the study sets a solver limit that none of its solvers uses.
-    fn efforts(&self, wanted: &ReconstructionSpec) -> Result<()> {
-        let (given, usual) = (wanted.effort(), Effort::default());
-        let pursuit = (Solver::Omp, "omp");
-        let l1 = (Solver::L1, "l1");
-        for (key, is_set, (solver, name)) in [
-            ("most_atoms", given.most_atoms != usual.most_atoms, pursuit),
-            ("lambda_scale", given.lambda_scale != usual.lambda_scale, l1),
-            ("tolerance", given.tolerance != usual.tolerance, l1),
-            ("most_steps", given.most_steps != usual.most_steps, l1),
-        ] {
-            if is_set && !wanted.solver.values().contains(&solver) {
-                let allowed = format!("{name} among reconstruction.solver, or no such key");
-                let given = "given, but no solver of the study uses it";
-                return Err(self.error(&format!("reconstruction.{key}"), given, allowed));
-            }
-        }
-        Ok(())
     }
 
     fn dictionaries(&self, wanted: &ReconstructionSpec, grid: &Grid) -> Result<Vec<Basis>> {

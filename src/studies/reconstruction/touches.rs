@@ -110,7 +110,7 @@ fn read(
 ) -> Result<Array2<f64>> {
     let skin = ReadSkin {
         chains: vec![Chain::new(&plan.signal_steps(noise), plan.array.patch())?],
-        taxel: *plan.array.taxel(),
+        array: &plan.array,
         speed: plan.spec.touches.speed_mm_per_s * MM,
         frames,
     };

@@ -5,7 +5,6 @@ use crate::scene::spec::SHAPE_RULES;
 use crate::scene::spec_motion::metres;
 use crate::scene::{Carrier, Movement, ObjectSpec, PlannedRobot, Reader};
 use crate::studies::prelude::*;
-use crate::studies::recognition::spec::STIFFNESS;
 use crate::studies::whole_body::spec::*;
 use crate::world::{MeshFolders, Motion, Oscillation, Robot};
 use glam::DVec3;
@@ -106,7 +105,6 @@ impl WholeBodyPlan {
         check.body_recognition(&wanted.recognition, n_measured)?;
         let mut ladders = wanted.ladders.iter();
         ladders.try_for_each(|ladders| check.touched_at_taxels(ladders))?;
-        check.has_springs(wanted)?;
         let radius_mm = wanted.taxel_radius_mm.unwrap_or(0.5 * wanted.pitch_mm);
         Ok(Self {
             taxel: Taxel {
@@ -146,11 +144,8 @@ fn scene_plan(reader: &Reader, number: usize, scene: &BodySceneSpec) -> Result<S
     let check = &reader.check;
     check.keys(&prefix, scene, keys_of::<WholeBodyStudySpec>())?;
     let object = &scene.object;
-    let misplaced = [
-        ("free", object.free.is_some()),
-        ("press", object.press.is_some()),
-    ];
-    if let Some((name, _)) = misplaced.into_iter().find(|(_, is_given)| *is_given) {
+    let free = object.free.map(|_| "free");
+    if let Some(name) = free.or(object.press.as_ref().map(|_| "press")) {
         let allowed = "at and motion, and depth_mm beside the object";
         return Err(check.error(&key(&format!("object.{name}")), "given", allowed));
     }
@@ -220,17 +215,6 @@ fn direction(reader: &Reader, key: &str, from: [f64; 3]) -> Result<DVec3> {
 }
 
 impl Check<'_> {
-    /// Checks that the springs of the taxels have an effect: they return taxels with dampers to rest.
-    fn has_springs(&self, wanted: &WholeBodySpec) -> Result<()> {
-        let stiffness = wanted.stiffness_n_per_m;
-        if stiffness != STIFFNESS && wanted.damping_n_s_per_m == 0.0 {
-            let given = format!("{stiffness}, but the skin has no damper");
-            let allowed = "a whole_body.damping_n_s_per_m above 0 beside it";
-            return Err(self.error("whole_body.stiffness_n_per_m", given, allowed));
-        }
-        Ok(())
-    }
-
     /// Checks that each touch of the series of growing skins fits on at least one skin.
     fn touched_at_taxels(&self, ladders: &LaddersSpec) -> Result<()> {
         let most = LaddersSpec::max_touched(ladders.taxels.iter().copied().max().unwrap_or(0));

@@ -33,7 +33,9 @@ params! {
         /// Stroke s of a taxel, mm, positive: its maximum deflection. Default: 2.
         stroke_mm: f64 = 2.0 => Positive, Choice, Never;
         /// Stiffness k of a taxel, N/m, positive. Default: 100.
-        stiffness_n_per_m: f64 = STIFFNESS => Positive, Choice, Never;
+        stiffness_n_per_m: f64 = STIFFNESS => Positive, Choice, Never,
+            acts: acts![WholeBodySpec: |body| body.damping_n_s_per_m > 0.0
+                => "the skin has no damper", "a whole_body.damping_n_s_per_m above 0 beside it"];
         /// Damping coefficient c of a taxel, N·s/m, at least 0. Default: 0.
         damping_n_s_per_m: f64 = 0.0 => NotNegative, Choice, Never;
         /// Duration of a simulated step, ms, positive. Default: 1.

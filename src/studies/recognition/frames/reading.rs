@@ -5,7 +5,7 @@ use crate::random::Seed;
 use crate::sensing::Projection;
 use crate::signal::{Chain, Recording, SignalWorkspace};
 use crate::studies::recognition::frames::Frames;
-use crate::studies::recognition::plan::of_channel;
+use crate::studies::recognition::plan::{TaxelArray, of_channel};
 use crate::world::Taxel;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis};
 use rayon::prelude::*;
@@ -23,17 +23,24 @@ pub struct Reading<'a> {
     pub projection: &'a Projection,
 }
 
-/// Skin with all data to read its touches: signal chains, taxel parameters and frames of the touches.
+/// Skin with all data to read its touches: signal chains, array and frames of the touches.
 #[derive(Clone, Debug)]
 pub struct ReadSkin<'a> {
     /// Signal chain for each channel of the skin. A skin that reads shear has three channels, any other skin one.
     pub chains: Vec<Chain>,
-    /// Taxel parameters of the skin.
-    pub taxel: Taxel,
+    /// Array of taxels, with the keys of `[skin]`.
+    pub array: &'a TaxelArray,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
     /// Frames of all touches on this skin.
     pub frames: &'a Frames,
+}
+
+impl ReadSkin<'_> {
+    /// Reads a frame of the touches before the signal chain: the deflections of all taxels, metres, then their shear forces (if read), newtons.
+    fn read(&self, frame: usize, out: &mut [f64]) {
+        self.frames.read(frame, out);
+    }
 }
 
 /// Touch to be read by a skin: its number, random seed, timing and preceding touch.
@@ -127,19 +134,19 @@ fn measure_block(
     for (touch, frames) in touches.iter().zip(of_touches) {
         let skin = &reading.skins[touch.skin];
         for (frame, row) in frames.chunks_exact_mut(n_values).enumerate() {
-            skin.frames.read(touch.number * n_frames + frame, row);
+            skin.read(touch.number * n_frames + frame, row);
         }
         let remembers = skin.chains.iter().any(Chain::remembers);
         let before = touch.before.filter(|_| remembers);
         if let Some(before) = before {
             working.deepest.resize(n_values, 0.0);
             let last = (before + 1) * n_frames - 1;
-            skin.frames.read(last, &mut working.deepest);
+            skin.read(last, &mut working.deepest);
         }
         let touch = TouchToRead { before, ..*touch };
         match (before, &skin.chains[..]) {
             (None, [chain]) => {
-                let rates = rates_of(frames, &skin.taxel, skin.speed, &mut working.rates);
+                let rates = rates_of(frames, skin.array.taxel(), skin.speed, &mut working.rates);
                 let recording = recording(frames, (rates, 0), &touch);
                 chain.apply_recording(recording, &touch.seed, &mut working.scratch);
             }
@@ -199,7 +206,7 @@ fn read_channel(
     for frame in frames.chunks_exact(n_values) {
         with_history.extend_from_slice(&frame[taxels.clone()]);
     }
-    let rates = rates_of(with_history, &skin.taxel, skin.speed, rates);
+    let rates = rates_of(with_history, skin.array.taxel(), skin.speed, rates);
     let recording = recording(with_history, (rates, n_before), touch);
     let named = of_channel(&touch.seed, channel);
     chains[channel].apply_recording(recording, &named, scratch);

@@ -100,7 +100,7 @@ fn read(
     }
     let skin = ReadSkin {
         chains: chains(plan, group)?,
-        taxel: *array.taxel(),
+        array,
         speed: plan.speed,
         frames: &frames,
     };

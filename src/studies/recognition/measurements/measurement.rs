@@ -314,18 +314,18 @@ fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
 
 /// Returns the skin of the training touches. If the test touches have another skin, it follows.
 fn skins<'a>(
-    inputs: &MeasurementInputs,
+    inputs: &MeasurementInputs<'a>,
     (learned, tested): (&'a Frames, &'a Frames),
     trial: u64,
 ) -> Result<Vec<ReadSkin<'a>>> {
-    let make = |seed: Seed, differing: Option<&TestInputs>, frames| -> Result<ReadSkin<'a>> {
+    let make = |seed: Seed, differing: Option<&TestInputs<'a>>, frames| -> Result<ReadSkin<'a>> {
         let (array, signal, speed) = match differing {
             Some(test) => (test.array, &test.signal, test.speed),
             None => (inputs.array, &inputs.signal, inputs.speed),
         };
         Ok(ReadSkin {
             chains: array.chains(&seed, |skin| signal.steps(skin))?,
-            taxel: *array.taxel(),
+            array,
             speed,
             frames,
         })

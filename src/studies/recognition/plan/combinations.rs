@@ -2,7 +2,6 @@
 
 use crate::signal::SensorError;
 use crate::studies::prelude::*;
-use crate::studies::recognition::spec::PoseSplit;
 use crate::world::RestPoses;
 
 /// Combination of keys that a study refuses.
@@ -26,27 +25,19 @@ macro_rules! refusals {
 refusals! {
     /// Refused combinations of `[skin]`, `[touches]`, `[human_touch]` and `[signal]`.
     OF_TOUCHES:
-    "skin.layout" if |spec| is_curved(spec) && spec.skin.curvature_radius_mm.is_none()
+    "skin.layout" if |spec| spec.is_curved() && spec.skin.curvature_radius_mm.is_none()
         => spec.skin.layout.unwrap_or_default().words(), "skin.curvature_radius_mm beside a cylinder or a cap";
-    "touches.speed_mm_per_s" if |spec| is_curved(spec) && spec.touches.speed_mm_per_s > 0.0
+    "touches.speed_mm_per_s" if |spec| spec.is_curved() && spec.touches.speed_mm_per_s > 0.0
         => spec.touches.speed_mm_per_s, "0: taxels of a curved layout move at speeds of their own";
-    "skin.sensed" if |spec| spec.human_touch.is_some() && senses_force(spec)
-        => "given", "no such key in a study of human touches";
-    "signal.steps" if |spec| senses_force(spec) && spec.signal.steps.contains(&StepSpec::Force)
+    "signal.steps" if |spec| spec.senses_force() && spec.signal.steps.contains(&StepSpec::Force)
         => "force", "no such step where skin.sensed is a force from the first step on";
-    "touches.speed_mm_per_s" if |spec| spec.touches.speed_mm_per_s > 0.0 && (slides(spec) || reads_shear(spec))
+    "touches.speed_mm_per_s" if |spec| spec.touches.speed_mm_per_s > 0.0 && (spec.slides() || spec.reads_shear())
         => spec.touches.speed_mm_per_s, "0 where skin.sensed is shear, and where touches slide";
     "touches" if |spec| spec.places_objects() && spec.touches == TouchesSpec::default()
         => "no such table", "a table [touches]: how the objects are touched";
     "human_touch" if |spec| spec.human_touch.is_some() && (spec.objects != ObjectsSpec::default() || spec.touches != TouchesSpec::default())
         => "beside [objects] or [touches]", "it alone: it is what touches, and how";
-    "recognition.group_by" if |spec| spec.human_touch.is_some() && spec.recognition.group_by.is_some()
-        => "given", "no such key: human touches have no groups";
-    "skin.damping_n_s_per_m" if |spec| spec.human_touch.is_some() && spec.skin.damping_n_s_per_m != 0.0
-        => "given", "0: the skin of human touches has no damper";
 }
-
-const SPLIT_BY_POSE: &str = "no such key: the split says what is held out";
 
 refusals! {
     /// Refused combinations of `[recognition]`, the trials and the test touches.
@@ -58,11 +49,7 @@ refusals! {
         => "given beside c_grid or gamma_grid", "a given c and gamma: folds need touches of every object";
     "recognition.class_imbalance" if |spec| spec.recognition.is_informed() && is_imbalanced(spec)
         => "given beside next_touch = \"most_informative\"", "another next_touch: folds need touches of every object";
-    "recognition.group_by" if |spec| splits_by_pose(spec) && spec.recognition.group_by.is_some()
-        => "given", SPLIT_BY_POSE;
-    "recognition.folds" if |spec| splits_by_pose(spec) && spec.recognition.folds.is_some()
-        => "given", SPLIT_BY_POSE;
-    "recognition.split" if |spec| splits_by_pose(spec) && !spec.places_objects()
+    "recognition.split" if |spec| spec.splits_by_pose() && !spec.places_objects()
         => spec.recognition.split.word(), "\"random\": only touches that a study places have a known pose";
     "recognition.next_touch" if |spec| chooses_touches(spec) && !spec.places_objects()
         => first_chosen(spec), "\"random\": only touches that a study places have a known pose";
@@ -79,30 +66,8 @@ refusals! {
     "trials" if |spec| !(spec.trials / n_projections(spec)).is_multiple_of(n_folds(spec))
         => format!("{} splits of {} projections each", spec.trials / n_projections(spec), n_projections(spec)),
            format!("a multiple of recognition.folds = {} splits", n_folds(spec));
-    "skin.sensed" if |spec| spec.recorded.is_none() && reads_shear(spec) && rubs(spec) && spec.skin.friction.is_none()
+    "skin.sensed" if |spec| spec.recorded.is_none() && spec.reads_shear() && spec.rubs() && spec.skin.friction.is_none()
         => "shear", "skin.friction beside it";
-}
-
-pub(super) fn is_curved(spec: &StudySpec) -> bool {
-    spec.skin.layout.unwrap_or_default().is_curved()
-}
-
-/// Returns whether the taxels read forces, without a step of the signal chain.
-pub(super) fn senses_force(spec: &StudySpec) -> bool {
-    spec.skin.sensed.unwrap_or_default() != SensedSpec::Deflection
-}
-
-pub(super) fn slides(spec: &StudySpec) -> bool {
-    spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)
-}
-
-/// Returns whether taxels move along the object. On a flat array that is pressed straight on, no taxel does.
-pub(super) fn rubs(spec: &StudySpec) -> bool {
-    slides(spec) || is_curved(spec)
-}
-
-pub(super) fn reads_shear(spec: &StudySpec) -> bool {
-    spec.skin.sensed == Some(SensedSpec::Shear)
 }
 
 /// Returns whether the test touches are read by another skin.
@@ -129,10 +94,6 @@ fn is_imbalanced(spec: &StudySpec) -> bool {
         .iter()
         .flat_map(Axis::values);
     ratios.any(|ratio| ratio != 1.0)
-}
-
-fn splits_by_pose(spec: &StudySpec) -> bool {
-    spec.recognition.split != PoseSplit::Random
 }
 
 fn chooses_touches(spec: &StudySpec) -> bool {

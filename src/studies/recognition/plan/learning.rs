@@ -174,6 +174,11 @@ impl SensingSpec {
         }
     }
 
+    /// Returns whether an ensemble of the study selects taxels.
+    pub(crate) fn selects_taxels(&self) -> bool {
+        self.ensemble.values().contains(&Ensemble::Selected)
+    }
+
     /// Returns the numbers m of measurements for an array of `n_taxels`, each at least 1. If neither a ratio nor a number is given, the only number is
     /// `n_taxels`.
     pub fn measurements_on(&self, n_taxels: usize) -> Vec<usize> {
@@ -187,6 +192,18 @@ impl SensingSpec {
 }
 
 impl RecognitionSpec {
+    /// Returns whether some features are of images.
+    pub(crate) fn has_images(&self) -> bool {
+        let mut features = self.all_features().into_iter();
+        features.any(|features| features.of_image().is_some())
+    }
+
+    /// Returns whether some features combine the frames of a touch in another way than by the deepest one.
+    pub(crate) fn combines_frames(&self) -> bool {
+        let values = Axis::optional_values(&self.temporal_features);
+        values != [Some(TemporalFeatures::Deepest)]
+    }
+
     /// Returns whether training touches have tilted copies for some value of the key `tilt_augmentation`.
     pub fn has_copies(&self) -> bool {
         let numbers = self.tilt_augmentation.iter().flat_map(Axis::values);

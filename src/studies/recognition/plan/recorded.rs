@@ -5,7 +5,6 @@ use crate::studies::prelude::*;
 use crate::studies::recognition::plan::PlacedSensor;
 use crate::studies::recognition::spec::ZeroSpec;
 use crate::world::{ArrayLayout, Grid};
-use glam::DVec2;
 
 impl RecordedSpec {
     /// Sets the number of values per taxel in the recorded frames, which depends on the quantity that the skin reads.
@@ -48,26 +47,7 @@ impl Check<'_> {
             let allowed = "it alone: it is what the skin has read";
             return Err(self.error("recorded", given, allowed));
         }
-        let learned = ("recognition", &spec.recognition);
-        let allowed = "no such key: recorded.groups says what stays together";
-        self.absent(learned, &["group_by"], allowed)?;
         self.table("recorded", recorded)?;
-        if !recorded.sensors.is_empty() {
-            let of_each = [
-                "frames",
-                "frames_test",
-                "order",
-                "grid",
-                "columns",
-                "layout",
-                "lengths",
-                "lengths_test",
-                "zero",
-                "full_scale",
-            ];
-            let allowed = "this key in each of [[recorded.sensors]]";
-            self.absent(("recorded", recorded), &of_each, allowed)?;
-        }
         // Zeros from a file are compared with the full scale when the frames are read.
         if let (Some(full_scale), ZeroSpec::One(zero)) = (recorded.full_scale, &recorded.zero)
             && full_scale == *zero
@@ -78,14 +58,6 @@ impl Check<'_> {
         self.of_time(recorded, spec)?;
         let place = |error: Error| error.under(format!("{}, ", self.place));
         recorded.check_files().map_err(place)?;
-        if recorded.has_test_set() {
-            let allowed = "no such key: recorded.frames_test is the test set";
-            self.absent(learned, &["folds", "test_fraction"], allowed)?;
-            self.absent(("recorded", recorded), &["splits"], allowed)?;
-        } else if recorded.splits.is_some() {
-            let allowed = "no such key: recorded.splits has the split of each trial";
-            self.absent(learned, &["folds", "test_fraction"], allowed)?;
-        }
         for key in ["skin.pitch_mm", "skin.size_mm", "skin.taxels"] {
             let n = spec.axes.n_values(key);
             if n > 1 {
@@ -148,8 +120,6 @@ impl Check<'_> {
         if skin.layout.unwrap_or_default() != ArrayLayout::Grid {
             return self.array_of_layout(&sensors, skin);
         }
-        let allowed = "no such key: rows and columns are those of the recorded frames";
-        self.absent(("skin", skin), &["taxels", "size_mm"], allowed)?;
         let pitch_mm = skin.pitch_mm;
         let (mut placed, mut n_taxels) = (Vec::new(), 0);
         for (name, sensor) in &sensors {
@@ -177,21 +147,20 @@ impl Check<'_> {
                 pitch: pitch_mm * MM,
             }),
         };
-        let array = match (grid, placed) {
+        match (grid, placed) {
             (Some(grid), placed) => {
                 grid.check()?;
-                let array = TaxelArray::new(ArrayLayout::Grid, (grid, taxel), 0.0)?;
-                match placed {
+                let array = TaxelArray::new(skin, (grid, taxel))?;
+                Ok(match placed {
                     Some(_) => array,
                     None => array.without_places(),
-                }
+                })
             }
             (None, placed) => {
                 let sensors = placed.unwrap_or_default();
-                TaxelArray::listed(&sensors, taxel, pitch_mm * MM)?
+                TaxelArray::listed(skin, &sensors, taxel, pitch_mm * MM)
             }
-        };
-        array.reading(skin.sensed(), DVec2::ZERO)
+        }
     }
 
     /// Returns the array with the layout of `skin.layout`, which must have the taxels of the recording.

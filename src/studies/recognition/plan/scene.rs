@@ -58,14 +58,7 @@ impl Check<'_> {
     /// If the check fails; the error names the file, the key and the allowed values.
     pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
         self.table("objects", objects)?;
-        if objects.meshes.is_some() {
-            return Ok(());
-        }
-        let of_meshes = ["model", "unit", "close_holes_mm"];
-        let allowed =
-            "it only beside meshes = \"FOLDER\": solids are spheres within surface_error_mm";
-        self.absent(("objects", objects), &of_meshes, allowed)?;
-        if objects.sets.is_empty() {
+        if objects.meshes.is_none() && objects.sets.is_empty() {
             let allowed = "sets = [...] or meshes = \"FOLDER\" (or --objects FOLDER)";
             return Err(self.error("objects", "neither sets nor meshes", allowed));
         }
@@ -84,8 +77,7 @@ impl Check<'_> {
         let taxel = skin.taxel(skin.pitch_mm);
         grid.check()?;
         taxel.check()?;
-        let radius = skin.curvature_radius_mm.unwrap_or(0.0) * MM;
-        let array = TaxelArray::new(skin.layout.unwrap_or_default(), (grid, taxel), radius);
+        let array = TaxelArray::new(skin, (grid, taxel));
         let place = || format!("{}, key skin.curvature_radius_mm, ", self.place);
         array.map_err(|error| error.under(place()))
     }
@@ -95,15 +87,8 @@ impl Check<'_> {
     /// # Errors
     /// If the check fails; the error names the file, the key and the allowed values.
     pub fn grid(&self, skin: &SkinSpec) -> Result<TaxelArray> {
-        let of_taxels = [
-            "taxel_radius_mm",
-            "stroke_mm",
-            "stiffness_n_per_m",
-            "damping_n_s_per_m",
-        ];
-        let of_grids = [&["pitch_mm", "size_mm", "taxels"], &of_taxels[..]].concat();
         let allowed = "no such key: only studies of recognition use it";
-        self.only(("skin", skin), &of_grids, allowed)?;
+        self.of_all_kinds("skin", skin, allowed)?;
         self.array(skin)
     }
 
@@ -130,17 +115,8 @@ impl Check<'_> {
     /// # Errors
     /// If the check fails; the error names the file, the key and the allowed values.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
-        let of_poses = [
-            "offset_x_mm",
-            "offset_y_mm",
-            "yaw_deg",
-            "tilt_x_deg",
-            "tilt_y_deg",
-        ];
-        let of_presses = ["rest", "per_object", "depth_mm", "speed_mm_per_s"];
         let allowed = "no such key: only studies of recognition and of breaking points use it";
-        let of_touches = [&of_poses[..], &of_presses].concat();
-        self.only(("touches", touches), &of_touches, allowed)?;
+        self.of_all_kinds("touches", touches, allowed)?;
         self.placed(touches)
     }
 

@@ -51,11 +51,10 @@ impl Check<'_> {
         skin: &SkinSpec,
         touches: &TouchesSpec,
     ) -> Result<TaxelArray> {
-        let sensed = skin.sensed();
         let length = touches.slide_mm.unwrap_or(0.0) * MM;
         let direction = touches.slide_deg.unwrap_or(0.0).to_radians();
         let slide = length * DVec2::from_angle(direction);
-        self.array(skin)?.reading(sensed, slide)
+        Ok(self.array(skin)?.sliding(slide))
     }
 }
 

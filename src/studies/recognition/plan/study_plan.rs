@@ -6,7 +6,8 @@
 use crate::studies::prelude::*;
 use crate::studies::recognition::plan::combinations::{OF_LEARNING, OF_TOUCHES};
 use crate::studies::recognition::plan::{Condition, KeepTogether};
-use crate::studies::recognition::spec::SpreadSpec;
+use crate::studies::recognition::spec::{SpreadSpec, recognition_keys};
+use std::any::Any;
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -68,6 +69,10 @@ impl Plan {
             Some(recorded) => check.recorded(recorded, &spec)?,
             None => check.touching_array(&spec.skin, &spec.touches)?,
         };
+        let mut seen: Vec<&dyn Any> = vec![&spec];
+        seen.extend(spec.recorded.iter().map(|recorded| recorded as &dyn Any));
+        seen.extend(spec.human_touch.iter().map(|human| human as &dyn Any));
+        check.acting(&spec, recognition_keys(), &seen)?;
         check.human_touch(&spec, &array)?;
         let placement = match spec.places_objects() {
             false => check.placed(&TouchesSpec {

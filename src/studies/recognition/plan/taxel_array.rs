@@ -18,6 +18,8 @@ const PICTURE_CELLS: f64 = 3.0;
 /// Array of taxels: its layout, the quantity that its taxels read, and its slide along the object. Every layout has the density and size of a square grid.
 #[derive(Clone, Debug)]
 pub struct TaxelArray {
+    /// Keys of `[skin]`, without those that `grid` contains.
+    skin: Arc<SkinSpec>,
     grid: Grid,
     taxel: Taxel,
     layout: ArrayLayout,
@@ -33,11 +35,13 @@ pub struct TaxelArray {
 }
 
 impl TaxelArray {
-    /// Creates an array with a layout of the density and size of `grid`. `radius` is the radius of curvature, metres; flat layouts ignore it.
+    /// Creates an array of a skin, with a layout of the density and size of `grid`.
     ///
     /// # Errors
-    /// If the grid or the taxel is invalid, or the layout does not fit the radius.
-    pub fn new(layout: ArrayLayout, (grid, taxel): (Grid, Taxel), radius: f64) -> Result<Self> {
+    /// If the grid, the taxel or a spring is invalid, or the layout does not fit the radius of curvature.
+    pub fn new(skin: &SkinSpec, (grid, taxel): (Grid, Taxel)) -> Result<Self> {
+        let layout = skin.layout.unwrap_or_default();
+        let radius = skin.curvature_radius_mm.unwrap_or(0.0) * MM;
         let patch = match layout {
             ArrayLayout::Grid => Patch::grid(grid, taxel)?,
             _ => {
@@ -45,15 +49,19 @@ impl TaxelArray {
                 Patch::new(layout.words(), places, Taxels::Equal(taxel))?
             }
         };
-        let radius = if layout.is_curved() { radius } else { 0.0 };
-        Ok(Self::of_patch((layout, radius), (grid, taxel), patch))
+        Self::of_patch(skin, (grid, taxel), patch)
     }
 
     /// Creates the array of sensors whose taxels have listed positions. `pitch` is the side of the square area per taxel, metres.
     ///
     /// # Errors
     /// If a sensor or the taxel is invalid.
-    pub fn listed(sensors: &[PlacedSensor], taxel: Taxel, pitch: f64) -> Result<Self> {
+    pub fn listed(
+        skin: &SkinSpec,
+        sensors: &[PlacedSensor],
+        taxel: Taxel,
+        pitch: f64,
+    ) -> Result<Self> {
         let (listed, layout) = ListedTaxels::new(sensors)?;
         let side = (layout.n_taxels() as f64).sqrt().round() as usize;
         let (nx, ny) = (side, side);
@@ -61,39 +69,39 @@ impl TaxelArray {
         let of_grid = (Grid { nx, ny, pitch }, taxel);
         Ok(Self {
             listed: Some(Arc::new(listed)),
-            ..Self::of_patch((ArrayLayout::Grid, 0.0), of_grid, patch)
+            ..Self::of_patch(skin, of_grid, patch)?
         })
     }
 
-    /// Returns the array of a patch that reads deflections and does not slide.
-    fn of_patch(
-        (layout, radius): (ArrayLayout, f64),
-        (grid, taxel): (Grid, Taxel),
-        patch: Patch,
-    ) -> Self {
-        Self {
+    /// Returns the array of a patch that does not slide.
+    fn of_patch(skin: &SkinSpec, (grid, taxel): (Grid, Taxel), patch: Patch) -> Result<Self> {
+        let sensed = skin.sensed();
+        if let Sensed::Shear(shear) = &sensed {
+            shear.check()?;
+        }
+        let layout = skin.layout.unwrap_or_default();
+        let radius = skin.curvature_radius_mm.filter(|_| layout.is_curved());
+        Ok(Self {
+            skin: Arc::new(SkinSpec {
+                size_mm: None,
+                taxels: None,
+                ..skin.clone()
+            }),
             grid,
             taxel,
             layout,
-            radius,
-            sensed: Sensed::Deflection,
+            radius: radius.unwrap_or(0.0) * MM,
+            sensed,
             slide: DVec2::ZERO,
             is_placed: true,
             listed: None,
             patch: Arc::new(patch),
-        }
+        })
     }
 
-    /// Sets the quantity that the taxels read, and the distances that the pressed array slides along its x and y axes, metres.
-    ///
-    /// # Errors
-    /// If the shear springs are invalid.
-    pub fn reading(mut self, sensed: Sensed, slide: DVec2) -> Result<Self> {
-        if let Sensed::Shear(shear) = &sensed {
-            shear.check()?;
-        }
-        (self.sensed, self.slide) = (sensed, slide);
-        Ok(self)
+    /// Sets the distances that the pressed array slides along its x and y axes, metres.
+    pub fn sliding(self, slide: DVec2) -> Self {
+        Self { slide, ..self }
     }
 
     /// Returns the array with unknown taxel positions, for recorded skins without a layout.
@@ -116,6 +124,11 @@ impl TaxelArray {
     /// Returns the patch that consists of the array's taxels.
     pub fn patch(&self) -> &Patch {
         &self.patch
+    }
+
+    /// Returns the keys of `[skin]`, without the numbers of rows and columns.
+    pub fn skin(&self) -> &SkinSpec {
+        &self.skin
     }
 
     /// Returns the square grid of the array. For another layout, returns the grid that defines its density and size.
@@ -396,9 +409,9 @@ impl Serialize for TaxelArray {
         let absent = self.patch.absent().iter().enumerate();
         let absent = absent.filter_map(|(taxel, is_absent)| is_absent.then_some(taxel));
         let absent: Vec<usize> = absent.collect();
-        let of_layout = (&self.grid, &self.taxel, &self.layout, self.radius);
+        let of_skin = (&*self.skin, &self.grid, &self.taxel);
         let of_places = (self.is_placed, self.listed.as_deref(), absent);
-        (of_layout, &self.sensed, self.slide.to_array(), of_places).serialize(serializer)
+        (of_skin, self.slide.to_array(), of_places).serialize(serializer)
     }
 }
 

@@ -10,25 +10,18 @@
 //! The study with these keys is planned as any other study. Test touches have the same numbers as the study's touches, so the splits are equal. Projections,
 //! features and classifiers are fitted to the training touches.
 
+use crate::inputs::keys::find;
 use crate::inputs::sensor_errors::NOISES;
 use crate::inputs::toml_value::table_of;
 use crate::studies::prelude::*;
 use crate::studies::recognition::plan::Condition;
-use crate::studies::recognition::spec::SignalAxis;
+use crate::studies::recognition::spec::{SignalAxis, recognition_keys};
 use std::sync::Arc;
 use toml::{Table, Value};
 
 /// Names of the tables whose keys may also occur in `[test]`, in a study that places objects.
 pub(crate) const TABLES: &[&str] = &["objects", "skin", "touches", "signal"];
 const TABLES_OF_OTHERS: &[&str] = &["signal"];
-
-/// Keys that `[test]` must not contain, because test touches and training touches share their values.
-pub(crate) const SHARED: [&str; 4] = [
-    "touches.per_object",
-    "touches.frames",
-    "signal.test_sensor",
-    "signal.combine",
-];
 
 impl Check<'_> {
     /// Returns the plan of the test touches, given the plan of the study without `[test]`; `None` if the study has no table `[test]`.
@@ -61,7 +54,7 @@ impl Check<'_> {
             let Value::Table(own) = own else { continue };
             for (key, value) in keys {
                 let path = format!("{name}.{key}");
-                if SHARED.contains(&&path[..]) {
+                if find(recognition_keys(), &path).is_some_and(|key| key.of_all_touches.is_some()) {
                     let allowed = format!("{path}, which training and test touches share");
                     return Err(self.error(&format!("test.{path}"), value, allowed));
                 }

@@ -1,15 +1,17 @@
 //! Keys of `[recognition]` that are declared by classifiers, such as `n_trees`.
 
-use crate::inputs::keys::{AxisPlace, KeyAbout};
+use crate::inputs::keys::{Acts, AxisPlace, GivenKey, KeyAbout, NoEffect};
 use crate::inputs::params::{Described, key_schema, sentence};
 use crate::inputs::range::Range;
 use crate::inputs::toml_value::{number, number_value};
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::classifiers::parameters::{DefaultValue, declared};
+use crate::learning::classifiers::parameters::{DefaultValue, declared, users};
+use crate::studies::recognition::plan::Plan;
 use crate::table::Role;
 use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
+use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
@@ -40,6 +42,20 @@ impl ClassifierParameters {
             changed.expect("the ranges of all keys of a study are checked")
         })
     }
+}
+
+/// Condition of the keys of `[recognition]` that some classifiers use.
+pub(super) const OF_CLASSIFIER: &[Acts] = &[of_classifier];
+
+/// Returns why a parameter has no effect in a study whose classifiers do not use it.
+fn of_classifier(key: GivenKey, seen: &dyn Any) -> Option<NoEffect> {
+    let kinds = seen.downcast_ref::<Plan>()?.spec.recognition.kinds();
+    let (name, value) = (key.about.name(), key.value);
+    let is_used = kinds.iter().any(|kind| kind.uses(name));
+    (!is_used).then(|| NoEffect {
+        given: format!("{value}, but no classifier of the study uses it"),
+        allowed: users(name) + " among recognition.classifier, or no such key",
+    })
 }
 
 /// Writes the parameters as keys of a table, in the order of their declaration.
@@ -86,7 +102,10 @@ impl Described for ClassifierParameters {
         keys.extend(declared().map(|parameter| {
             let path = format!("recognition.{}", parameter.key).leak();
             let range = Range::Declared(parameter);
-            KeyAbout::new(path, AxisPlace::Axes, Role::Choice, range)
+            KeyAbout {
+                acts: Some(OF_CLASSIFIER),
+                ..KeyAbout::new(path, AxisPlace::Axes, Role::Choice, range)
+            }
         }));
     }
 

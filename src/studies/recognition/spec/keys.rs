@@ -2,8 +2,9 @@
 
 use crate::inputs::keys::{AxisPlace, find};
 use crate::inputs::range::Range::{self, Between};
-use crate::inputs::toml_value::{is_at, table_of};
+use crate::inputs::toml_value::{is_at, table_of, value_at};
 use crate::studies::prelude::*;
+use std::collections::BTreeMap;
 
 /// Maximum number of trials of a study, because the splits of all trials are kept in memory.
 pub(super) const MAX_TRIALS: usize = 100_000;
@@ -27,15 +28,6 @@ pub(super) const OVER_TIME: &[(&str, &str)] = &[
     ("summarised", "moments and course"),
 ];
 pub(super) const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
-
-/// Pairs of keys that exclude each other.
-const ONE_OF: [[&str; 2]; 5] = [
-    ["skin.size_mm", "skin.taxels"],
-    ["sensing.ratio", "sensing.measurements"],
-    ["recognition.c", "recognition.c_grid"],
-    ["recognition.gamma", "recognition.gamma_grid"],
-    ["recognition.test_fraction", "recognition.folds"],
-];
 
 /// Returns the descriptions of all keys of a recognition study.
 ///
@@ -68,49 +60,27 @@ pub(crate) fn key(path: &str) -> &'static KeyAbout {
 }
 
 impl Check<'_> {
-    /// Checks the keys of a table of a recognition study; returns the keys that the table contains.
-    pub(crate) fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
-        let given = self.keys(name, table, recognition_keys())?;
-        let inner = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
-        for [first, second] in ONE_OF {
-            if let (Some(first), Some(second)) = (inner(first), inner(second))
-                && given.contains_key(first)
-                && given.contains_key(second)
-            {
-                let both = format!("both {first} and {second}");
-                return Err(self.error(name, both, "one of them"));
-            }
-        }
-        Ok(given)
+    /// Checks the keys of a table of a recognition study.
+    pub(crate) fn table(&self, name: &str, table: &(impl Serialize + 'static)) -> Result<()> {
+        self.keys(name, table, recognition_keys())
     }
 
-    /// Checks that none of the named keys of a table is given, unless its value has the effect of the absent key.
-    pub(crate) fn absent(
+    /// Checks that a table contains only keys that all kinds of studies use, unless the value of another key has the effect of the absent key.
+    pub(crate) fn of_all_kinds(
         &self,
-        (name, table): (&str, &impl Serialize),
-        keys: &[&str],
+        name: &str,
+        table: &impl Serialize,
         allowed: &str,
     ) -> Result<()> {
-        let table = table_of(table);
-        let given = keys.iter().find_map(|own| {
-            let path = format!("{name}.{own}");
-            let value = table.get(*own)?;
-            (!key(&path).is_usual(value)).then_some(path)
-        });
-        given.map_or(Ok(()), |path| Err(self.error(&path, "given", allowed)))
-    }
-
-    /// Checks that a table contains none but the named keys, unless the value of another key has the effect of the absent key.
-    pub(crate) fn only(
-        &self,
-        (name, table): (&str, &impl Serialize),
-        keys: &[&str],
-        allowed: &str,
-    ) -> Result<()> {
-        let others = table_of(table);
-        let others: Vec<&str> = others.keys().map(String::as_str).collect();
-        let others = others.into_iter().filter(|key| !keys.contains(key));
-        self.absent((name, table), &others.collect::<Vec<_>>(), allowed)
+        let tables = BTreeMap::from([(name, table_of(table))]);
+        let tables = table_of(&tables);
+        let is_given = |key: &&KeyAbout| {
+            let value = value_at(&tables, key.path);
+            value.is_some_and(|value| !key.is_usual(value))
+        };
+        let mut others = recognition_keys().iter();
+        let other = others.find(|key| key.of_all_kinds.is_none() && is_given(key));
+        other.map_or(Ok(()), |key| Err(self.error(key.path, "given", allowed)))
     }
 
     /// Checks and returns the value of a numeric key of recognition studies.

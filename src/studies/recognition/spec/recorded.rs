@@ -2,15 +2,20 @@
 
 use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape, spaced};
 use crate::inputs::arrays::{FileArray, TableContent, is_member};
+use crate::inputs::keys::Acts;
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::inputs::params::is_default;
 use crate::inputs::range::Range::{Any, Count, NotNegative, Positive, Unchecked};
 use crate::inputs::units::MAX_FRAMES;
 use crate::studies::prelude::*;
 use crate::studies::recognition::spec::{
-    RecordedSensorSpec, SensorChoice, SensorPlace, ZeroSpec, sensor_spec, sensor_table,
+    OF_TEST_SET, RecordedSensorSpec, SensorChoice, SensorPlace, ZeroSpec, sensor_spec, sensor_table,
 };
 use std::path::{Path, PathBuf};
+
+/// Condition of the keys of `[recorded]` that each of several sensors has in a table of its own.
+pub(super) const OF_EACH_SENSOR: &[Acts] = acts![RecordedSpec: |recorded| recorded.sensors.is_empty()
+    => "", "this key in each of [[recorded.sensors]]"];
 
 sensor_spec! {
     /// Keys of `[recorded]`: frames that a real skin recorded, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). The table `[skin]` gives the pitch and the
@@ -19,7 +24,7 @@ sensor_spec! {
         /// File with the frames. Its shape is (n, rows, columns), (n, F, rows, columns) for F frames per touch, or (n, taxels) without rows and columns.
         /// Any numeric type of up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
         #[serde(skip_serializing_if = "is_default")]
-        frames: PathBuf = PathBuf::new() => Unchecked, Condition, Axes;
+        frames: PathBuf = PathBuf::new() => Unchecked, Condition, Axes, acts: OF_EACH_SENSOR;
         /// File with the tangential forces of a skin that reads shear, newtons: two forces across the axis of each taxel. The array has the axes of `frames` plus
         /// an axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
         shear: Option<PathBuf> => Unchecked, Condition, Axes;
@@ -30,7 +35,8 @@ sensor_spec! {
         groups: Option<PathBuf> => Unchecked, Condition, Axes;
         /// Archive `.npz` with the split of each trial t: arrays `train_t` and `test_t` of touch numbers from 0, or of a bool for each touch. Touches in neither
         /// array are not used. Replaces `test_fraction` and `folds`.
-        splits: Option<PathBuf> => Unchecked, Condition, Axes;
+        splits: Option<PathBuf> => Unchecked, Condition, Axes,
+            acts: acts![RecordedSpec: |recorded| !recorded.has_test_set() => "", OF_TEST_SET];
         /// Number F of frames to which each touch is resampled, at least 1. Frames are interpolated linearly at F instants, evenly spaced from the first to
         /// the last frame. If F is 1, the last frame is used. Default: all frames.
         resampled_frames: Option<usize> => Count(1, MAX_FRAMES), Choice, Axes;

@@ -16,30 +16,30 @@ macro_rules! sensor_spec {
                 $($keys)*
                 /// File with the frames of a separate test set, with the array axes of `frames`; all touches of `frames` are then training touches. In an archive, the
                 /// array `frames_test`, or the array with the sensor's name and `_test`, is read if it exists.
-                frames_test: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                frames_test: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes, acts: $crate::studies::recognition::spec::recorded::OF_EACH_SENSOR;
                 /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels.
                 /// If the frames have rows and columns, the axis `c` contains the values of a taxel, and each value has an image. Otherwise `c` contains the
                 /// taxels. Default: `n y x`, `n t y x` or `n c`.
-                order: Option<String> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                order: Option<String> => $crate::inputs::range::Range::Unchecked, Condition, Axes, acts: $crate::studies::recognition::spec::recorded::OF_EACH_SENSOR;
                 /// Numbers of rows and columns of the sensor, if the axis `c` of the frames lists its taxels row by row.
-                grid: Option<[usize; 2]> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                grid: Option<[usize; 2]> => $crate::inputs::range::Range::Unchecked, Condition, Axes, acts: $crate::studies::recognition::spec::recorded::OF_EACH_SENSOR;
                 /// Columns of a table (`.csv`, `.tsv`, `.txt`) that are readings: names or patterns, separated by commas, such as `taxel_*`. In a pattern, `*` stands
                 /// for any text and `#` for a number. The taxels have the order of the columns in the file. Default: all columns, whose names may differ in numbers
                 /// alone.
-                columns: Option<String> => $crate::inputs::range::Range::Unchecked, Choice, Axes;
+                columns: Option<String> => $crate::inputs::range::Range::Unchecked, Choice, Axes, acts: $crate::studies::recognition::spec::recorded::OF_EACH_SENSOR;
                 /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames. Formats: `.csv`, `.npz`, `.txt` or
                 /// `.ini` (iCub), `.json` (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid. If one of several axes `c` counts the
                 /// positions, the other axes count values at each position, such as events of two signs.
-                layout: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                layout: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes, acts: $crate::studies::recognition::spec::recorded::OF_EACH_SENSOR;
                 /// File with the number of frames of each touch, shape (n,), from 1 to the number of frames in the array. Without this key, frames at the end of a touch
                 /// in which all readings are NaN are missing. Touches of unequal length need `resampled_frames`.
-                lengths: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                lengths: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes, acts: $crate::studies::recognition::spec::recorded::OF_EACH_SENSOR;
                 /// File with the number of frames of each touch of the separate test set, in the format of `lengths`.
-                lengths_test: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes;
+                lengths_test: Option<PathBuf> => $crate::inputs::range::Range::Unchecked, Condition, Axes, acts: $crate::studies::recognition::spec::recorded::OF_EACH_SENSOR;
                 /// Reading of an untouched taxel: one number, or a file with one number per taxel. Default: 0.
-                zero: ZeroSpec = ZeroSpec::default() => $crate::inputs::range::Range::Finite, Condition, Axes;
+                zero: ZeroSpec = ZeroSpec::default() => $crate::inputs::range::Range::Finite, Condition, Axes, acts: $crate::studies::recognition::spec::recorded::OF_EACH_SENSOR;
                 /// Reading of a taxel at full scale, where the deflection equals the stroke. Default: the largest reading of the sensor.
-                full_scale: Option<f64> => $crate::inputs::range::Range::Finite, Condition, Axes;
+                full_scale: Option<f64> => $crate::inputs::range::Range::Finite, Condition, Axes, acts: $crate::studies::recognition::spec::recorded::OF_EACH_SENSOR;
             }
             $(unread { $($unread)* })?
         }

@@ -1,5 +1,6 @@
 //! Specification of the signal chain: the table `[signal]`.
 
+use crate::acts;
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
 use crate::inputs::keys::KeyAbout;
@@ -7,6 +8,8 @@ use crate::inputs::params::{Described, empty_table, is_default, key_schema, para
 use crate::inputs::range::Range::{Any, Unchecked};
 use crate::inputs::sensor_errors::{SMOOTHING, TestSensor, signal_keys};
 use crate::signal::SensorError;
+use crate::studies::recognition::plan::Plan;
+use crate::studies::recognition::spec::OneArray;
 use crate::table::Scale;
 use serde::de::MapAccess;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -23,11 +26,16 @@ params! {
         #[serde(flatten)]
         axes: SignalAxes;
         /// Axis: skin on which test touches are simulated, `same_skin` (default, the training skin) or `another_skin`.
-        test_sensor: Option<Axis<TestSensor>> => Any, Condition, Table, scale: Scale::Words, usual: || "same_skin".into();
+        test_sensor: Option<Axis<TestSensor>> => Any, Condition, Table, scale: Scale::Words, usual: || "same_skin".into(), of_all_touches: true,
+            acts: acts![OneArray: |_of| false => "", "no such key: only studies of recognition test on another skin"];
         /// Rule that combines the axes of `[signal]`: `all` (default) or `one_at_a_time`. The axes of `[signal]` are always combined with all other axes of the
         /// study.
         #[serde(skip_serializing_if = "is_default")]
-        combine: CombineSpec = CombineSpec::All => Any, Condition, Axes;
+        combine: CombineSpec = CombineSpec::All => Any, Condition, Axes, of_all_touches: true, acts: acts![
+            Plan: |plan| plan.spec.signal.axes.given().filter(|(.., axis)| axis.values().len() > 1).count() > 1
+                => "fewer than two keys of [signal] have several values", "no such key, or two axes in [signal]";
+            OneArray: |_of| false => "", "no such key: noise is the only axis of the signal, so that there is nothing to combine";
+        ];
     }
 }
 
