@@ -116,16 +116,6 @@ def test_audit_reads_a_recording(arrays):
     assert said == [f.sentence for f in bt.audit(frames, labels, groups, permutations=399).findings]
 
 
-def test_arrays_of_a_wrong_type_are_refused(arrays):
-    frames, labels, _ = arrays
-    with pytest.raises(ValueError, match=r"recorded\.frames: elements of type complex128; numbers"):
-        accuracy({"frames": frames.astype(complex), "labels": labels})
-    with pytest.raises(ValueError, match=r"recorded\.labels, position 0: None; integers or texts"):
-        accuracy({"frames": frames, "labels": [None, *labels[1:]]})
-    with pytest.raises(ValueError, match="59"):
-        accuracy({"frames": frames, "labels": labels[1:]})
-
-
 def test_npz(arrays, tmp_path):
     frames, labels, groups = arrays
     np.savez(tmp_path / "a.npz", frames=frames, labels=labels, groups=groups)
@@ -311,53 +301,6 @@ def test_lerobot(arrays, tmp_path, version):
     data.write_bytes(data.read_bytes()[:100])
     with pytest.raises(ValueError, match=r"(episode_|file-)0+\w*\.parquet: .*; a complete Parquet file"):
         bt.read_recorded(tmp_path / "set")
-
-
-def write(kind, path, arrays):
-    """Writes arrays by name to a file of a format; skips if the package of the format is not installed."""
-    if kind == "npz":
-        np.savez(path, **arrays)
-    elif kind == "h5":
-        h5py = pytest.importorskip("h5py")
-        with h5py.File(path, "w") as file:
-            for name, array in arrays.items():
-                file[name] = array.astype("S") if array.dtype.kind == "U" else array
-    else:
-        pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
-        pq.write_table(pa.table({name: pa.array(list(array)) for name, array in arrays.items()}), path)
-
-
-@pytest.mark.parametrize("kind", ["npz", "h5", "parquet"])
-def test_wrong_files_are_refused(kind, arrays, tmp_path):
-    frames, labels, _ = arrays
-    rows = frames.reshape(N, 64).astype(np.float64)
-    file = tmp_path / f"a.{kind}"
-
-    def refused(given, words, **options):
-        write(kind, file, given)
-        with pytest.raises(ValueError, match=words):
-            bt.read_recorded(file, **options)
-
-    refused({"tactile": rows, "labels": labels}, rf"a\.{kind}: no array `frames`; one of (tactile, labels|labels, tactile)")
-    refused({"frames": rows, "labels": labels}, f"a.{kind}: no array `object`; one of ", labels="object")
-    if kind != "parquet":
-        refused({"frames": rows, "labels": labels[1:]}, rf"a\.{kind}, `labels`: shape \(59,\); \(60,\), a value for each touch")
-    refused({"frames": rows, "labels": np.where(np.arange(N) == 7, np.nan, 1.0)}, f"a.{kind}, `labels`, position 7: nan; integers or texts")
-    refused({"frames": labels, "labels": labels}, f"a.{kind}, array `frames`: elements of type .*; numbers")
-    one_hot = (labels[:, None] == np.array(["ball", "cup", "pen"])).astype(np.float64)
-    write(kind, file, {"frames": rows, "labels": one_hot})
-    assert bt.read_recorded(file).labels.tolist() == one_hot.argmax(axis=1).tolist()
-    refused({"frames": rows, "labels": rows}, rf"a\.{kind}, `labels`: shape \(60, 64\); \(60,\), a value for each touch")
-    write(kind, file, {"frames": rows, "labels": labels})
-    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
-    with pytest.raises(ValueError, match=f"a.{kind}.*: cannot be read .*; a complete "):
-        bt.read_recorded(file)
-    file.write_bytes(b"nothing")
-    with pytest.raises(ValueError, match=f"a.{kind}: cannot be read .*; a complete "):
-        bt.read_recorded(file)
-    # A NaN is a missing reading, which the study judges.
-    write(kind, file, {"frames": np.where(np.arange(64) == 3, np.nan, rows), "labels": labels})
-    assert np.isnan(bt.read_recorded(file).frames[:, 3]).all()
 
 
 def test_places_without_recordings_are_refused(arrays, tmp_path):

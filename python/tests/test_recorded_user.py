@@ -320,6 +320,10 @@ def test_each_fault_is_refused_in_each_format(kind: str, tmp_path: Path) -> None
             ({"groups": np.arange(31)}, r"`groups`: shape \(31,\); \(30,\), a value for each touch"),
             ({"labels": frames}, r"`labels`: shape \(30, 8\); \(30,\), a value for each touch"),
         ]
+        one_hot = (labels[:, None] == np.unique(labels)).astype(np.float64)
+        written(kind, tmp_path / f"hot.{kind}", good | {"labels": one_hot})
+        hot = bt.read_recorded(tmp_path / f"hot.{kind}").labels
+        assert hot is not None and hot.tolist() == one_hot.argmax(axis=1).tolist()
     for number, (change, words) in enumerate(faults):
         file = tmp_path / f"a{number}.{kind}"
         written(kind, file, good | change)
@@ -328,6 +332,8 @@ def test_each_fault_is_refused_in_each_format(kind: str, tmp_path: Path) -> None
     file = tmp_path / f"a.{kind}"
     written(kind, file, good)
     found = bt.read_recorded(file, "frames_*" if is_table else "frames")
+    for name, array in good.items():
+        assert np.array_equal(np.asarray(getattr(found, name)).reshape(array.shape), array)
     accuracy(found)
     for name, words in (("labels", "no array `label`"), ("groups", "no array `label`"), ("touches", "no array `label`")):
         with pytest.raises(ValueError, match=rf"a\.{kind}: {words}; one of "):
@@ -341,11 +347,15 @@ def test_each_fault_is_refused_in_each_format(kind: str, tmp_path: Path) -> None
     written(kind, file, {"frames": frames})
     with pytest.raises(ValueError, match="key recorded.labels: no such key"):
         accuracy(bt.read_recorded(file, "frames_*" if is_table else "frames"))
+    written(kind, file, {"tactile": frames, "labels": labels})
+    if kind != "csv":
+        with pytest.raises(ValueError, match=rf"a\.{kind}: no array `frames`; one of "):
+            bt.read_recorded(file)
     if kind != "zarr":
         whole = file.read_bytes()
         for n in (len(whole) // 2, 10, 0):
             file.write_bytes(whole[:n])
-            with pytest.raises(ValueError, match=rf"a\.{kind}"):
+            with pytest.raises(ValueError, match=rf"a\.{kind}{'' if kind == 'csv' else '.*: cannot be read .*; a complete '}"):
                 bt.read_recorded(file, "frames_*" if is_table else "frames")
     if kind == "parquet":
         pa = pytest.importorskip("pyarrow")
