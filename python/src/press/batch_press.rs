@@ -67,11 +67,11 @@ pub fn press<'py>(
     let single = dtype.map(|dtype| is_single(py, dtype)).transpose()?;
     let array = match out {
         Some(out) => {
-            let has = out.getattr("dtype");
-            if let (Some(dtype), Some(single), Ok(has)) = (dtype, single, has)
-                && single != is_single(py, &has)?
-            {
-                return Err(bad_input("dtype", dtype, format!("{has}, which out has")));
+            if let (Some(dtype), Some(single)) = (dtype, single) {
+                let has = out.getattr("dtype")?;
+                if single != is_single(py, &has)? {
+                    return Err(bad_input("dtype", dtype, format!("{has}, which out has")));
+                }
             }
             check_out(out, &shape)?;
             out.clone()
@@ -238,15 +238,16 @@ impl Batch<'_> {
 
 /// Returns an error if an object cannot receive the frames because of its type, shape or memory layout.
 fn check_out(out: &Object, shape: &[usize]) -> PyResult<()> {
-    let array = out.cast::<PyUntypedArray>();
-    let given = match &array {
-        Ok(array) => format!("dtype {}", array.dtype()),
-        Err(_) => out.get_type().to_string(),
-    };
     let is_frames =
         out.is_instance_of::<PyArrayDyn<f64>>() || out.is_instance_of::<PyArrayDyn<f32>>();
-    let array = array.ok().filter(|_| is_frames);
-    let array = array.ok_or_else(|| bad_input("out", given, "an array of float32 or float64"))?;
+    let array = match out.cast::<PyUntypedArray>() {
+        Ok(array) if is_frames => array,
+        other => {
+            let dtype = |array: &Bound<PyUntypedArray>| format!("dtype {}", array.dtype());
+            let given = other.map_or_else(|_| out.get_type().to_string(), dtype);
+            return Err(bad_input("out", given, "an array of float32 or float64"));
+        }
+    };
     if array.shape() != shape {
         return Err(bad_input("out", shape_of(array.shape()), shape_of(shape)));
     }

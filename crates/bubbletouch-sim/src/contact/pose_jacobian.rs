@@ -78,3 +78,79 @@ pub fn pose_jacobian(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Press, Workspace};
+    use crate::geometry::Pose;
+    use crate::objects::{Model, Sphere, SphereUnion};
+    use crate::world::{Grid, Taxel};
+    use glam::DQuat;
+    use std::slice::from_ref;
+
+    #[test]
+    fn the_derivatives_are_the_differences_of_presses_at_neighbouring_poses() {
+        let (nx, ny, pitch) = (9, 9, 2e-3);
+        let taxel = Taxel {
+            radius: 1e-3,
+            stiffness: 100.0,
+            damping: 0.0,
+            stroke: 5e-3,
+        };
+        let patch = Patch::grid(Grid { nx, ny, pitch }, taxel).unwrap();
+        let ball = Sphere {
+            center: DVec3::new(2e-3, 1e-3, 0.0),
+            radius: 0.012,
+        };
+        let ball: Model = SphereUnion::new(vec![ball]).unwrap().into();
+        let origin = DVec3::new(0.3e-3, -0.2e-3, 0.011);
+        let goals = [
+            Until::Pose,
+            Until::Travel(1e-3),
+            Until::Depth(2e-3),
+            Until::Force(1.0),
+        ];
+        for until in goals {
+            let press = |motion: [f64; POSE_PARAMETERS]| {
+                let [x, y, z, about_x, about_y, about_z] = motion;
+                let turn = DQuat::from_scaled_axis(DVec3::new(about_x, about_y, about_z));
+                let pose = Pose::new(turn, origin + DVec3::new(x, y, z));
+                let mut workspace = Workspace::new();
+                let press = Press::new(&patch, from_ref(&ball), from_ref(&pose), until);
+                let pressed = press.with_contacts().run(&mut workspace).unwrap();
+                (pressed.unwrap().travel, workspace)
+            };
+            let (travel, workspace) = press([0.0; POSE_PARAMETERS]);
+            let mut changes = vec![0.0; POSE_PARAMETERS * patch.n_taxels()];
+            let origins = [origin - travel * DVec3::Z];
+            let contacts = (workspace.contacts(), &origins[..]);
+            pose_jacobian(until, &patch, contacts, &mut changes);
+            for (row, deflection) in changes.chunks(POSE_PARAMETERS).zip(workspace.deflections()) {
+                assert!(*deflection > 0.0 || row.iter().all(|change| *change == 0.0));
+            }
+            for parameter in 0..POSE_PARAMETERS {
+                let step = 1e-7;
+                let moved = |step: f64| {
+                    let mut motion = [0.0; POSE_PARAMETERS];
+                    motion[parameter] = step;
+                    press(motion).1.deflections().to_vec()
+                };
+                let (after, before) = (moved(step), moved(-step));
+                for contact in workspace
+                    .contacts()
+                    .iter()
+                    .filter(|it| it.deflection > 1e-5)
+                {
+                    let taxel = contact.taxel;
+                    let change = changes[taxel * POSE_PARAMETERS + parameter];
+                    let difference = (after[taxel] - before[taxel]) / (2.0 * step);
+                    assert!(
+                        (change - difference).abs() < 1e-4 * change.abs().max(1.0),
+                        "{until:?}, parameter {parameter}: {change}, {difference}"
+                    );
+                }
+            }
+        }
+    }
+}

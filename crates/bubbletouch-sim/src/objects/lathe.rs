@@ -45,10 +45,7 @@ impl Form for Lathe {
 
     fn support(&self, direction: DVec3) -> f64 {
         let across = direction.truncate().length();
-        let corners = self.outline.vertices().iter();
-        corners
-            .map(|v| v.x * across + v.y * direction.z)
-            .fold(f64::NEG_INFINITY, f64::max)
+        self.outline.support(DVec2::new(across, direction.z))
     }
 
     /// Integrates over slices under the edges of the profile, which count positively where the edges go up.
@@ -236,12 +233,17 @@ impl Ring {
 
     /// Adds the spheres of a ring. The spheres must cover profile points up to the distance `farthest` from their centres.
     fn push_spheres(&self, farthest: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
-        spheres.extend((0..self.n as usize).take(MAX_SPHERES + 1).map(|i| {
-            let (sin, cos) = (TAU * i as f64 / self.n).sin_cos();
-            let center = DVec3::new(self.center.x * cos, self.center.x * sin, self.center.y);
-            fit.covering(center, self.radius, farthest)
-        }));
+        let centers = around_axis(self.center, self.n);
+        spheres.extend(centers.map(|center| fit.covering(center, self.radius, farthest)));
     }
+}
+
+/// Returns `n` points, equally spaced on the circle about z through the point `at` (distance from the axis, height); at most one more than [`MAX_SPHERES`].
+pub(super) fn around_axis(at: DVec2, n: f64) -> impl Iterator<Item = DVec3> {
+    (0..n as usize).take(MAX_SPHERES + 1).map(move |i| {
+        let (sin, cos) = (TAU * i as f64 / n).sin_cos();
+        DVec3::new(at.x * cos, at.x * sin, at.y)
+    })
 }
 
 impl Uncovered {

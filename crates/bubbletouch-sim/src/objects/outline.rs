@@ -39,10 +39,6 @@ impl Edge {
         self.point(along.clamp(0.0, self.length))
     }
 
-    fn distance(&self, point: DVec2) -> f64 {
-        (point - self.nearest(point)).length()
-    }
-
     /// Returns the radius at which a disc that touches the point `foot` and grows along `inward` first touches this edge. Infinite if the disc never touches
     /// the edge.
     ///
@@ -91,12 +87,11 @@ impl Outline {
 
     /// Returns the signed distance to the nearest edge of the surface, metres, negative inside the polygon.
     pub fn distance(&self, point: DVec2) -> f64 {
-        let distances = self.edges.iter().map(|edge| edge.distance(point));
-        let distance = distances.fold(f64::INFINITY, f64::min);
-        if self.contains(point) {
-            -distance
-        } else {
-            distance
+        let (_, foot) = self.nearest(point);
+        let distance = (point - foot).length();
+        match self.contains(point) {
+            true => -distance,
+            false => distance,
         }
     }
 
@@ -116,6 +111,12 @@ impl Outline {
     /// Returns the corners of the polygon, counter-clockwise.
     pub fn vertices(&self) -> &[DVec2] {
         &self.vertices
+    }
+
+    /// Returns the support function of the polygon: the largest v·direction over its corners v.
+    pub fn support(&self, direction: DVec2) -> f64 {
+        let heights = self.vertices.iter().map(|corner| corner.dot(direction));
+        heights.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Returns the corners with the smallest and the largest coordinates of the rectangle around the polygon.

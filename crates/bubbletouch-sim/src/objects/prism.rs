@@ -28,9 +28,7 @@ impl Form for Prism {
     }
 
     fn support(&self, direction: DVec3) -> f64 {
-        let corners = self.outline.vertices().iter();
-        let across = corners.map(|v| v.dot(direction.truncate()));
-        across.fold(f64::NEG_INFINITY, f64::max) + self.half * direction.z.abs()
+        self.outline.support(direction.truncate()) + self.half * direction.z.abs()
     }
 
     fn volume_and_center(&self) -> (f64, DVec3) {

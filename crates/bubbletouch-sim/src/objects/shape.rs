@@ -3,7 +3,7 @@
 use super::outline::polygon_fault;
 use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use std::fmt::Display;
 
 /// Shape in its own frame. All lengths are in metres, at least one nanometre; shapes are centred on the origin unless stated otherwise.
@@ -18,7 +18,6 @@ pub enum Shape {
     /// Box with sharp or rounded edges.
     Box {
         /// Edge lengths along x, y, z.
-        #[serde(deserialize_with = "vector")]
         size: DVec3,
         /// Radius of edges and corners: 0 (sharp), or up to half the smallest edge length.
         #[serde(default)]
@@ -66,13 +65,11 @@ pub enum Shape {
     /// Solid of revolution of a polygon about z, such as a cup, a bowl or a bottle.
     Lathe {
         /// Corners (distance from the axis, height z) in either direction; the outline is closed automatically.
-        #[serde(deserialize_with = "vectors")]
         profile: Vec<DVec2>,
     },
     /// Prism of a polygon in the plane z = 0, centred on this plane, such as a blade or a jaw.
     Prism {
         /// Corners (x, y) in either direction; the outline is closed automatically.
-        #[serde(deserialize_with = "vectors")]
         outline: Vec<DVec2>,
         /// Thickness of the prism along z.
         thickness: f64,
@@ -88,26 +85,10 @@ pub enum Shape {
     #[serde(rename = "strand")]
     SphereSweep {
         /// Points of the polyline; the sweep is closed if the last ball equals the first.
-        #[serde(deserialize_with = "vectors")]
         points: Vec<DVec3>,
         /// Diameter of the ball at each point.
         diameters: Vec<f64>,
     },
-}
-
-/// Reads a vector from a list of numbers.
-fn vector<'de, D: Deserializer<'de>>(source: D) -> std::result::Result<DVec3, D::Error> {
-    <[f64; 3]>::deserialize(source).map(DVec3::from)
-}
-
-/// Reads vectors, given by lists of N numbers.
-fn vectors<'de, const N: usize, V, D>(source: D) -> std::result::Result<Vec<V>, D::Error>
-where
-    [f64; N]: Deserialize<'de> + Into<V>,
-    D: Deserializer<'de>,
-{
-    let lists = Vec::<[f64; N]>::deserialize(source)?;
-    Ok(lists.into_iter().map(Into::into).collect())
 }
 
 /// Names and units of lengths in error messages.

@@ -108,6 +108,14 @@ impl Part {
         self.form.support(inside) + self.pose.translation.dot(direction)
     }
 
+    /// Returns the exact bounding box of the part in the object's frame, metres.
+    fn bounds(&self) -> Aabb {
+        Aabb {
+            min: -DVec3::from_array(DVec3::AXES.map(|axis| self.support(-axis))),
+            max: DVec3::from_array(DVec3::AXES.map(|axis| self.support(axis))),
+        }
+    }
+
     /// Returns the volume of the part, m³, and its centroid in the object's frame, metres.
     pub(super) fn volume_and_center(&self) -> (f64, DVec3) {
         let (volume, center) = self.form.volume_and_center();
@@ -116,9 +124,7 @@ impl Part {
 
     /// Returns whether rounding errors are small compared with the gaps that a packing with the tolerances `fit` may leave.
     pub(super) fn resolves(&self, fit: Fit) -> bool {
-        let along = |axis: DVec3| self.support(axis) + self.support(-axis);
-        let size = DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z)).length();
-        fit.reach() >= self.form.min_reach() * size
+        fit.reach() >= self.form.min_reach() * self.bounds().size().length()
     }
 
     /// Returns spheres whose union approximates the part within the tolerances `fit`.
@@ -209,14 +215,8 @@ impl Solid {
 
     /// Returns the exact bounding box of the parts, metres; subtracted shapes are ignored.
     pub fn bounds(&self) -> Aabb {
-        let support = |direction: DVec3| {
-            let supports = self.parts.iter().map(|part| part.support(direction));
-            supports.fold(f64::NEG_INFINITY, f64::max)
-        };
-        Aabb {
-            min: -DVec3::from_array(DVec3::AXES.map(|axis| support(-axis))),
-            max: DVec3::from_array(DVec3::AXES.map(support)),
-        }
+        let bounds = Aabb::around(self.parts.iter().map(Part::bounds));
+        bounds.expect("a solid has at least one part")
     }
 
     /// Returns the solid after a rigid motion.

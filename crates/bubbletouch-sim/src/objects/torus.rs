@@ -1,11 +1,12 @@
 //! Torus about the z axis: distance, surface and packing.
 
 use super::Sphere;
-use super::fit::{Fit, MAX_SPHERES};
+use super::fit::Fit;
+use super::lathe::around_axis;
 use super::solid::Form;
 use super::surface_patch::SurfacePatch;
-use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use glam::{DVec2, DVec3};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Torus: the points within `tube` of the circle of radius `ring` about z, metres.
 #[derive(Clone, Copy, Debug)]
@@ -42,10 +43,8 @@ impl Form for Torus {
             .sqrt()
             .min(1.0);
         let n = (FRAC_PI_2 / sine.asin()).ceil();
-        spheres.extend((0..n as usize).take(MAX_SPHERES + 1).map(|i| {
-            let (sin, cos) = (TAU * i as f64 / n).sin_cos();
-            fit.swollen(ring * DVec3::new(cos, sin, 0.0), tube)
-        }));
+        let centers = around_axis(DVec2::new(ring, 0.0), n);
+        spheres.extend(centers.map(|center| fit.swollen(center, tube)));
     }
 
     fn patches(&self) -> Vec<SurfacePatch> {
