@@ -69,14 +69,21 @@ pub fn for_each<T: Send, S: Send>(
     py.detach(|| {
         let most = n_items.div_ceil(LEAST_PER_THREAD);
         let scratch = || spare.take().unwrap_or_else(&new_scratch);
-        let pool = match most <= 1 || threads == Some(1) {
-            true => None,
-            false => Some(pool()?),
-        };
-        let n_threads = pool.as_ref().map_or(1, |pool| {
-            let n = threads.unwrap_or_else(|| pool.current_num_threads());
-            n.min(most)
-        });
+        if most <= 1 || threads == Some(1) {
+            let (mut scratch, mut interrupt) = (scratch(), Interrupt::new());
+            let worked = items
+                .into_iter()
+                .enumerate()
+                .try_for_each(|(number, item)| {
+                    work(number, item, &mut scratch)?;
+                    interrupt.check()
+                });
+            spare.give_back(scratch);
+            return worked;
+        }
+        let pool = pool()?;
+        let n_threads = threads.unwrap_or_else(|| pool.current_num_threads());
+        let n_threads = n_threads.min(most);
         let at_once = (n_items / (4 * n_threads)).clamp(1, MAX_AT_ONCE);
         let queue = Mutex::new(items.into_iter().enumerate());
         let failed: Mutex<Option<(usize, PyErr)>> = Mutex::new(None);
@@ -113,16 +120,12 @@ pub fn for_each<T: Send, S: Send>(
             }
             spare.give_back(scratch);
         };
-        let here = || run(Some(Interrupt::new()));
-        match pool {
-            None => here(),
-            Some(pool) => pool.in_place_scope(|scope| {
-                for _ in 1..n_threads {
-                    scope.spawn(|_| run(None));
-                }
-                here();
-            }),
-        }
+        pool.in_place_scope(|scope| {
+            for _ in 1..n_threads {
+                scope.spawn(|_| run(None));
+            }
+            run(Some(Interrupt::new()));
+        });
         match failed.into_inner() {
             Ok(Some((_, error))) => Err(error),
             _ => Ok(()),

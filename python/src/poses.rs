@@ -6,6 +6,7 @@ use bubbletouch::geometry::{Pose, written_rotation, written_rotation_matrix};
 use glam::{DMat3, DQuat, DVec3};
 use ndarray::ArrayView1;
 use pyo3::prelude::*;
+use std::borrow::Cow;
 
 const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without n for one";
 
@@ -59,8 +60,8 @@ impl Poses {
     /// # Errors
     /// If the shape is wrong, or a pose is not finite or contains no rotation; the error names the pose's number, from 0.
     pub fn of_objects(place: &str, given: &Object, n_objects: Option<usize>) -> PyResult<Self> {
-        let allowed = n_objects.map_or(ALLOWED.to_owned(), |k| {
-            format!("(n, {k}, 7) or (n, {k}, 4, 4), one pose an object; without n for one")
+        let allowed = n_objects.map_or(Cow::Borrowed(ALLOWED), |k| {
+            format!("(n, {k}, 7) or (n, {k}, 4, 4), one pose an object; without n for one").into()
         });
         let of_one: &[usize] = n_objects.as_slice();
         let axes_of = |leading: &[usize]| {

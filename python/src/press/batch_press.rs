@@ -14,8 +14,8 @@ use bubbletouch::geometry::Pose;
 use bubbletouch::world;
 use glam::DVec3;
 use numpy::{
-    PyArrayDescr, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
-    PyUntypedArrayMethods, dtype as dtype_of,
+    Element, PyArrayDescr, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
+    dtype as dtype_of,
 };
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -73,21 +73,30 @@ pub fn press<'py>(
                     return Err(bad_input("dtype", dtype, format!("{has}, which out has")));
                 }
             }
-            check_out(out, &shape)?;
             out.clone()
         }
         None => {
             let dtype = match single {
-                Some(true) => "float32",
-                _ => "float64",
+                Some(true) => dtype_of::<f32>(py),
+                _ => dtype_of::<f64>(py),
             };
             zeros(py)?.call1((PyTuple::new(py, &shape)?, dtype))?
         }
     };
-    if let Ok(array) = array.cast::<PyArrayDyn<f32>>() {
-        return batch.fill(py, array.clone(), out.is_none());
+    let is_zero = out.is_none();
+    if let Ok(array) = array.cast::<PyArrayDyn<f64>>() {
+        check_out(array, &shape)?;
+        return batch.fill(py, array.clone(), is_zero);
     }
-    batch.fill(py, array.cast_into::<PyArrayDyn<f64>>()?, out.is_none())
+    if let Ok(array) = array.cast::<PyArrayDyn<f32>>() {
+        check_out(array, &shape)?;
+        return batch.fill(py, array.clone(), is_zero);
+    }
+    let given = match array.getattr("dtype") {
+        Ok(dtype) => format!("dtype {dtype}"),
+        Err(_) => array.get_type().to_string(),
+    };
+    Err(bad_input("out", given, "an array of float32 or float64"))
 }
 
 /// Returns an error if the derivatives for a kind of goal are not implemented: for a depth on a patch that is not flat.
@@ -149,16 +158,14 @@ impl Batch<'_> {
             let frames = writable.as_slice_mut()?;
             self.run(py, (frames, is_zero), changes.transpose()?)?
         };
-        let contacts = contacts
-            .map(|contacts| Bound::new(py, contacts))
-            .transpose()?;
-        let mut results = vec![array.into_any()];
-        results.extend(contacts.map(Bound::into_any));
-        results.extend(changes.map(Bound::into_any));
-        match results.len() {
-            1 => Ok(results.remove(0)),
-            _ => Ok(PyTuple::new(py, results)?.into_any()),
+        if contacts.is_none() && changes.is_none() {
+            return Ok(array.into_any());
         }
+        let contacts = contacts.map(|contacts| Bound::new(py, contacts));
+        let contacts = contacts.transpose()?.map(Bound::into_any);
+        let others = contacts.into_iter().chain(changes.map(Bound::into_any));
+        let results: Vec<Object> = std::iter::once(array.into_any()).chain(others).collect();
+        Ok(PyTuple::new(py, results)?.into_any())
     }
 
     /// Writes a frame and its derivatives for each pose. The arrays contain zeros or values that are overwritten.
@@ -236,18 +243,8 @@ impl Batch<'_> {
     }
 }
 
-/// Returns an error if an object cannot receive the frames because of its type, shape or memory layout.
-fn check_out(out: &Object, shape: &[usize]) -> PyResult<()> {
-    let is_frames =
-        out.is_instance_of::<PyArrayDyn<f64>>() || out.is_instance_of::<PyArrayDyn<f32>>();
-    let array = match out.cast::<PyUntypedArray>() {
-        Ok(array) if is_frames => array,
-        other => {
-            let dtype = |array: &Bound<PyUntypedArray>| format!("dtype {}", array.dtype());
-            let given = other.map_or_else(|_| out.get_type().to_string(), dtype);
-            return Err(bad_input("out", given, "an array of float32 or float64"));
-        }
-    };
+/// Returns an error if an array cannot receive the frames because of its shape or memory layout.
+fn check_out<T: Element>(array: &Bound<PyArrayDyn<T>>, shape: &[usize]) -> PyResult<()> {
     if array.shape() != shape {
         return Err(bad_input("out", shape_of(array.shape()), shape_of(shape)));
     }
