@@ -148,7 +148,12 @@ impl Wording {
         if length.is_finite() && length >= self.shortest {
             return Ok(());
         }
-        let given = format_args!("{length}{}", self.unit);
+        // Few digits also for a length such as 1e-320.
+        let digits = match length.abs() < self.shortest && length != 0.0 {
+            true => format!("{length:e}"),
+            false => length.to_string(),
+        };
+        let given = format_args!("{digits}{}", self.unit);
         let allowed = format_args!("{or}a finite length of at least {}", self.shortest());
         self.refuse(name, given, allowed)
     }

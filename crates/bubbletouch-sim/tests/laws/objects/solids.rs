@@ -223,7 +223,7 @@ fn dimensions_out_of_range_are_refused_by_name() {
         prism outline=[[0,0],[1,0],[nan,nan]] thickness=1 | outline: corner 3, which is not finite
         strand points=[[0,0,0]] diameters=[] | diameters: 1 points and 0 diameters
         strand points=[[0,0,0],[0,0,0]] diameters=[1,1] | points: point 2 as the one before
-        box size=[1,1,1] rounding=1e-10 | rounding: 0.0000000001 m; zero, or a finite length of at least 1e-9 m
+        box size=[1,1,1] rounding=1e-10 | rounding: 1e-10 m; zero, or a finite length of at least 1e-9 m
         tube outer_diameter=1 inner_diameter=0.9999999999 height=1 | inner_diameter: 0.9999999999 m; less than the outer
         prism outline=[[0,0],[1,0],[1,1e-10]] thickness=1 | outline: corner 2 repeated; at least three corners, 1e-9 m or
         strand points=[[0,0,0],[0,0,1e-320]] diameters=[1,1] | points: point 2 as the one before";
