@@ -40,11 +40,12 @@ const OF_RECORDING: [&str; 5] = [
 ];
 
 /// Values that equal the absent key.
-const AS_ABSENT: [(&str, &str); 5] = [
+const AS_ABSENT: [(&str, &str); 6] = [
     ("skin.layout", "\"grid\""),
     ("skin.sensed", "\"deflection\""),
     ("skin.sensed", "\"force\""),
     ("signal.adc_bits", "0"),
+    ("signal.test_sensor", "\"same_skin\""),
     ("sensing.selection", "\"greedy\""),
 ];
 
