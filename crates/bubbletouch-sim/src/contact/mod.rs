@@ -41,7 +41,7 @@ mod friction;
 mod grid;
 mod hold_force;
 mod instructions;
-mod lanes_below;
+pub(crate) mod lanes;
 pub(crate) mod law;
 mod mesh;
 mod pose_jacobian;
@@ -63,7 +63,6 @@ pub use grid::Row;
 pub use hold_force::{HeldForce, MovedObject};
 pub use instructions::Instructions;
 pub(crate) use instructions::for_instructions;
-pub(crate) use lanes_below::LanesBelow;
 pub use law::saturation_limit;
 #[doc(hidden)]
 pub use law::triangle::stopping_height;

@@ -4,7 +4,7 @@ use super::draped_patch::{BLOCK, DrapedPatch, Tile};
 use super::lanes::{Balls, LANES};
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
-use crate::contact::LanesBelow;
+use crate::contact::lanes::SelectedLanes;
 use crate::contact::law::{beats, indent, squares_in_front};
 use glam::DVec3;
 
@@ -68,13 +68,13 @@ struct Descent<'a> {
     /// Level of the tree of bounding balls that the iterator has reached.
     level: usize,
     /// For each level down to the present one, the index of the visited block and its balls that are still to be visited.
-    blocks: [(usize, LanesBelow); MAX_LEVELS],
+    blocks: [(usize, SelectedLanes); MAX_LEVELS],
 }
 
 impl<'a> Descent<'a> {
     #[inline(always)]
     fn new(levels: &'a [Vec<Balls>], center: DVec3, reach: f64) -> Self {
-        let mut blocks = [(0, LanesBelow::default()); MAX_LEVELS];
+        let mut blocks = [(0, SelectedLanes::default()); MAX_LEVELS];
         blocks[0].1 = levels[0][0].near(center, reach);
         Self {
             levels,

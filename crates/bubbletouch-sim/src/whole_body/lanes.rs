@@ -1,6 +1,6 @@
 //! Blocks of eight values: searches test eight balls at a time, and presses evaluate eight taxels at a time.
 
-use crate::contact::LanesBelow;
+use crate::contact::lanes::SelectedLanes;
 use crate::objects::{ClusterBounds, MAX_IN_CLUSTER, Sphere, SphereClusters};
 use glam::{DMat3, DVec3};
 
@@ -41,7 +41,7 @@ impl Balls {
 
     /// Returns the indices of the balls whose distance from `center` is less than their radius plus `reach`, metres.
     #[inline(always)]
-    pub fn near(&self, center: DVec3, reach: f64) -> LanesBelow {
+    pub fn near(&self, center: DVec3, reach: f64) -> SelectedLanes {
         let mut gaps = [0.0; LANES];
         for (k, gap) in gaps.iter_mut().enumerate() {
             let (dx, dy, dz) = (
@@ -52,7 +52,7 @@ impl Balls {
             let reach = (self.radius[k] + reach) * ROUNDING;
             *gap = dx * dx + dy * dy + dz * dz - reach * reach;
         }
-        LanesBelow::new(&gaps, 0.0)
+        SelectedLanes::below(&gaps, 0.0)
     }
 }
 
@@ -160,8 +160,8 @@ pub(super) struct Placed {
 impl Placed {
     /// Returns the indices of the spheres that may touch the patch.
     #[inline(always)]
-    pub fn near(&self) -> LanesBelow {
-        LanesBelow::new(&self.gaps, 0.0)
+    pub fn near(&self) -> SelectedLanes {
+        SelectedLanes::below(&self.gaps, 0.0)
     }
 
     /// Returns the centre of one sphere, and the sum of the radii of taxel and sphere, metres.
@@ -188,17 +188,4 @@ pub(super) fn ball_around(points: impl Iterator<Item = DVec3> + Clone) -> Sphere
         center,
         radius: distances.fold(0.0, f64::max),
     }
-}
-
-/// Returns the largest value of a block.
-#[inline(always)]
-pub(super) fn largest(values: &[f64; LANES]) -> f64 {
-    let larger = |a: f64, b: f64| if a > b { a } else { b };
-    let mut most = *values;
-    for half in [4, 2, 1] {
-        for k in 0..half {
-            most[k] = larger(most[k], most[k + half]);
-        }
-    }
-    most[0]
 }

@@ -4,7 +4,8 @@ use super::SphereClusters;
 use super::body_patch::{BodyPatch, Surface};
 use super::lanes::{LANES, View};
 use super::patch_state::PatchState;
-use crate::contact::{Instructions, LanesBelow, for_instructions};
+use crate::contact::lanes::SelectedLanes;
+use crate::contact::{Instructions, for_instructions};
 use crate::geometry::Pose;
 use glam::{DMat3, DVec3};
 
@@ -81,7 +82,7 @@ fn push_each(state: &mut PatchState, surface: &impl Pushed, object: &SphereClust
     view.lay_gaps(bounds, &mut gaps[..bounds.len()]);
     let mut n_evaluated = 0;
     for (look, gaps) in gaps.as_chunks::<LANES>().0.iter().enumerate() {
-        for k in LanesBelow::new(gaps, 0.0) {
+        for k in SelectedLanes::below(gaps, 0.0) {
             let cluster = look * LANES + k;
             let (center, reach) = view.ball(bounds, cluster);
             if !surface.is_near(center, reach) {

@@ -1,7 +1,8 @@
 //! Patch made of a row of taxels repeated along a line: flat, or a part of a cylinder.
 
-use super::lanes::{Balls, FAR, LANES, ball_around, filled, largest};
+use super::lanes::{Balls, FAR, LANES, ball_around, filled};
 use crate::contact::Lines;
+use crate::contact::lanes::largest;
 use crate::contact::law::{beats, indent, squares_in_front};
 use crate::objects::Sphere;
 use crate::world::Extrusion;

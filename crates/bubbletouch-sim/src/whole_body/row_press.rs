@@ -8,7 +8,7 @@ use super::lanes::LANES;
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
 use super::row_patch::{RowPatch, SphereOverBundle};
-use crate::contact::LanesBelow;
+use crate::contact::lanes::SelectedLanes;
 use crate::contact::law::{beats, indent};
 use glam::DVec3;
 
@@ -45,7 +45,7 @@ impl Pushed for RowPatch {
                 }
             }
         }
-        if !LanesBelow::new(&lowest, self.behind()).is_empty() {
+        if !SelectedLanes::below(&lowest, self.behind()).is_empty() {
             push_through(state, self, &under, center.z, widest.sqrt());
         } else if !under.is_empty() {
             push_rows(state, self, &under, center.z, widest.sqrt());

@@ -15,6 +15,8 @@
 
 use super::lines::{GridLines, Lines};
 use super::pair_batch::Pair;
+use crate::contact::lanes::{least, most};
+use crate::contact::mesh::directions::Directions;
 use crate::geometry::Pose;
 use crate::objects::mesh_blocks::{
     ALL_SIDES, Block, BlockNode, INNER_SIDES, LANES, Lane, MAX_DEPTH, MeshBlocks, OUTER_SIDES,
@@ -96,18 +98,6 @@ fn nearest_whole(number: f32) -> f32 {
 #[inline(always)]
 fn integer(number: f32) -> u32 {
     (number + WHOLE).to_bits() & 0x7f_ffff
-}
-
-/// Returns the smaller number; a single instruction, unlike `f32::min`.
-#[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// Returns the larger number; a single instruction, unlike `f32::max`.
-#[inline(always)]
-fn most(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// Taxels that the triangles of each lane may stop, and a lower bound of their heights.
@@ -300,20 +290,6 @@ struct Found {
     is_behind: bool,
     /// Whether there is only one candidate.
     is_one: bool,
-}
-
-/// Directions of contact of the triangles of one lane, times the radius of the taxels.
-struct Directions {
-    /// Length by which the triangles are moved along their axis, metres; zero if the side of the surface is not certain.
-    shift: f32,
-    /// Radius of the taxels if the side of the surface is not certain, otherwise zero, metres. A component of a direction is then between minus and plus the sum of
-    /// the spread and the absolute component of the axis.
-    both: f32,
-    /// Length by which the moved triangles are enlarged, metres: the whole radius if they may be behind the substrate, because the search then evaluates all their
-    /// parts.
-    spread: f32,
-    /// Whether triangles may be behind the substrate.
-    is_low: bool,
 }
 
 impl BlockSearch {
@@ -690,15 +666,8 @@ impl BlockSearch {
     /// Returns the directions of contact of the triangles of a lane. `up` is the vertical component of the axis, `bottom` the lowest point of the triangles.
     #[inline(always)]
     fn directions(&self, up: f32, spread: f32, bottom: f32) -> Directions {
-        let is_low = bottom - self.reach - self.slack < self.behind;
-        let is_certain = (up.abs() > spread + 1e-5) & !is_low;
-        let side = if up < 0.0 { self.reach } else { -self.reach };
-        Directions {
-            shift: if is_certain { side } else { 0.0 },
-            both: if is_certain { 0.0 } else { self.reach },
-            spread: self.reach * (if is_low { 1.0 } else { spread }),
-            is_low,
-        }
+        let taxel = (self.reach, self.behind);
+        Directions::new((up, spread), bottom, taxel, (0.0, self.slack))
     }
 
     #[inline(always)]

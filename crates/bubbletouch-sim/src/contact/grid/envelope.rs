@@ -18,6 +18,7 @@ use super::pair_batch::{
 use super::placed_objects::PlacedObjects;
 use crate::contact::Until;
 use crate::contact::instructions::{Instructions, for_instructions};
+use crate::contact::lanes::SelectedLanes;
 use crate::contact::law::stop_in_front;
 use crate::contact::law::triangle::{FACE_SLACK, SweptEdge, SweptFace, corner_height};
 use crate::contact::mesh::skin_mesh::MeshAt;
@@ -262,7 +263,7 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
             let (mut large, low) = (placed.candidates.lanes, &placed.candidates.low);
             while large != 0 {
                 let mut lowest = large.trailing_zeros() as usize;
-                for lane in lanes(large) {
+                for lane in SelectedLanes::of_bits(large) {
                     lowest = if low[lane] < low[lowest] {
                         lane
                     } else {
@@ -289,7 +290,7 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
         sweep.note_behind(&candidates);
         // The children are sorted with the lowest last, so that the lowest child is visited first.
         let start = n_waiting;
-        for lane in lanes(candidates.lanes) {
+        for lane in SelectedLanes::of_bits(candidates.lanes) {
             let low = candidates.low[lane];
             if sweep.is_hidden(&candidates.rectangle(lane), low) {
                 continue;
@@ -309,22 +310,6 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
     sweep.evaluate_waiting();
 }
 
-/// Returns the indices of the set bits, ascending.
-#[inline(always)]
-fn lanes(bits: u32) -> impl Iterator<Item = usize> {
-    set_bits(u64::from(bits))
-}
-
-/// Returns the indices of the set bits, ascending.
-#[inline(always)]
-fn set_bits(mut bits: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let bit = bits.trailing_zeros();
-        bits &= bits.wrapping_sub(1);
-        (bit < 64).then_some(bit as usize)
-    })
-}
-
 impl Sweep<'_> {
     /// Returns the travel, metres, beyond which the heights do not affect the press.
     #[inline(always)]
@@ -336,7 +321,7 @@ impl Sweep<'_> {
     /// Adds the candidates behind whose substrates triangles may lie.
     #[inline(always)]
     fn note_behind(&mut self, candidates: &Candidates) {
-        for lane in lanes(candidates.behind) {
+        for lane in SelectedLanes::of_bits(candidates.behind) {
             let [columns, rows] = candidates.rectangle(lane);
             cover(&mut self.behind_substrate[0], columns);
             cover(&mut self.behind_substrate[1], rows);
@@ -369,11 +354,11 @@ impl Sweep<'_> {
             beside |= u64::from(tested.lanes & !tested.faces) << (number * LANES);
         }
         self.waiting[0].reserve(TESTS * LANES);
-        for bit in set_bits(faces) {
+        for bit in SelectedLanes::of_bits(faces) {
             let (tested, lane) = (&self.tests[bit / LANES % TESTS], bit % LANES);
             self.wait(0, tested.pair(first, lane), tested.high[lane]);
         }
-        for bit in set_bits(beside) {
+        for bit in SelectedLanes::of_bits(beside) {
             let (tested, lane) = (&self.tests[bit / LANES % TESTS], bit % LANES);
             let pair = tested.pair(first, lane);
             let is_open = self.envelope.heights[pair.taxel as usize] > f64::from(pair.low);
@@ -488,7 +473,7 @@ impl Sweep<'_> {
             return self.lower_by_rule(&triangle, [column..column + 1, row..row + 1]);
         }
         let at = DVec2::new(self.lines.x.positions[column], self.lines.y.positions[row]);
-        for part in lanes(parts as u32) {
+        for part in SelectedLanes::of_bits(parts) {
             if part < 3 {
                 self.edges.add(pair, at, (triangle, part));
                 continue;

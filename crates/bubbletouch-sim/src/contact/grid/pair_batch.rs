@@ -3,6 +3,7 @@
 //! The formulas are in [`triangle`](crate::contact::law::triangle). The numbers of the pairs are stored in columns. The loops over pairs have no branches, and the compiler converts them to vector instructions.
 
 use super::lines::GridLines;
+use crate::contact::lanes::least;
 use crate::contact::law::triangle::{SweptEdge, SweptFace};
 use crate::objects::mesh_blocks::ContactTriangle;
 use glam::{DMat3, DVec2, DVec3};
@@ -298,12 +299,6 @@ impl EdgePairs {
             self.heights[lane] = edge.height(DVec2::new(self.x[lane], self.y[lane]));
         }
     }
-}
-
-/// Returns the smaller number; a single instruction, unlike `f64::min`.
-#[inline(always)]
-fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
 }
 
 #[inline(always)]

@@ -2,9 +2,10 @@
 
 use super::placed_objects::PlacedObjects;
 use super::placed_sphere::{PlacedSphere, View};
+use crate::contact::Until;
 use crate::contact::instructions::for_instructions;
+use crate::contact::lanes::SelectedLanes;
 use crate::contact::law;
-use crate::contact::{LanesBelow, Until};
 use crate::objects::{Model, SphereClusters};
 
 /// Scratch memory of a search for the spheres that can press a grid.
@@ -79,9 +80,9 @@ impl SphereSearch {
         for limit in [lowest.next_up(), f64::INFINITY] {
             for (union, view, starts) in self.unions(placed.objects) {
                 for (look, starts) in starts.iter().enumerate() {
-                    for k in LanesBelow::new(starts, limit.min(first)) {
+                    for k in SelectedLanes::below(starts, limit.min(first)) {
                         let cluster = union.cluster(look * LOOK + k);
-                        for sphere in LanesBelow::new(&view.starts(&cluster), first) {
+                        for sphere in SelectedLanes::below(&view.starts(&cluster), first) {
                             if let Some(sphere) = view.place(&cluster.at(sphere), first) {
                                 first = first.min(sphere.first_touch(placed.lines));
                             }
@@ -100,9 +101,9 @@ impl SphereSearch {
         found.clear();
         for (union, view, starts) in self.unions(objects) {
             for (look, starts) in starts.iter().enumerate() {
-                for k in LanesBelow::new(starts, limit) {
+                for k in SelectedLanes::below(starts, limit) {
                     let cluster = union.cluster(look * LOOK + k);
-                    for sphere in LanesBelow::new(&view.starts(&cluster), limit) {
+                    for sphere in SelectedLanes::below(&view.starts(&cluster), limit) {
                         let placed = view.place(&cluster.at(sphere), limit);
                         found.extend(placed.filter(&counts));
                     }

@@ -1,7 +1,7 @@
 //! Contact with a sphere: the deflection that it requires, for single taxels and for lanes of N taxels.
 
 use super::behind::is_in_front;
-use crate::contact::LanesBelow;
+use crate::contact::lanes::SelectedLanes;
 
 /// Factor slightly below 1, by more than the rounding error, for comparisons of squared deflections before a root is taken. If larger, rounding decides
 /// comparisons; if smaller, roots are taken needlessly.
@@ -52,7 +52,7 @@ pub(crate) fn beats<const N: usize>(
     for k in 0..N {
         shortfalls[k] = shortfall(squares[k], heights[k], deflections[k]);
     }
-    !LanesBelow::new(&shortfalls, 0.0).is_empty()
+    !SelectedLanes::below(&shortfalls, 0.0).is_empty()
 }
 
 /// Raises each deflection to √q − h, the deflection that contact with a sphere requires, if this value is larger and q is positive. The symbols q and h are

@@ -7,11 +7,11 @@
 //! A triangle counts for a taxel unless its far side is behind the taxel's substrate. The rule is evaluated only for triangles that reach behind the substrate
 //! ([`MeshAt::stop_in_front`]). A taxel whose substrate may be inside a solid mesh is examined by [`MeshAt::entered`].
 
-use super::eight::{Eight, GROUPS, N};
-use super::line_search::{Boxes, Triangles};
+use super::line_search::{Bounds, Facet, Pairs};
 use super::skin_mesh::{MeshAt, Stop};
-use super::taxel_lines::{Lines, TaxelLines, Thickness};
+use super::taxel_lines::{Ray, TaxelLines, Thickness};
 use crate::contact::instructions::for_instructions;
+use crate::contact::lanes::SelectedLanes;
 use crate::contact::law::triangle;
 use crate::objects::mesh_blocks::{Block, BlockNode, LANES, MAX_DEPTH};
 use crate::world::{LEAF, Leaf};
@@ -62,7 +62,7 @@ const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
 #[derive(Clone, Copy)]
 struct Waiting {
     /// Lower bounds of the heights for each taxel, metres.
-    low: [f32; N],
+    low: [f32; LEAF],
     /// Lower bound of the heights along the thick line, metres.
     lowest: f32,
     /// Twice the index of a node, or twice the index of a block plus one.
@@ -74,7 +74,7 @@ struct Waiting {
 impl SearchStack {
     pub fn new() -> Self {
         let root = Waiting {
-            low: [f32::NEG_INFINITY; N],
+            low: [f32::NEG_INFINITY; LEAF],
             lowest: f32::NEG_INFINITY,
             child: 0,
             taxels: 0,
@@ -109,7 +109,7 @@ fn stop_each(mesh: &MeshAt, leaf: &Leaf, stops: &mut LeafStops, stack: &mut Sear
         stops,
     };
     search.descend(&mut stack.0);
-    for taxel in set_bits(search.behind & lines.active) {
+    for taxel in SelectedLanes::of_bits(search.behind & lines.active) {
         search.enter(taxel);
     }
 }
@@ -119,14 +119,14 @@ fn rounded_up(height: f64) -> f32 {
     (height as f32).next_up()
 }
 
-/// Returns the indices of the set bits, ascending.
+/// Returns one bit for each lane whose value is below its limit.
 #[inline(always)]
-fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = bits.trailing_zeros();
-        bits &= bits.wrapping_sub(1);
-        (lane < 32).then_some(lane as usize)
-    })
+fn lanes_below<const N: usize>(values: &[f32; N], limits: &[f32; N]) -> u32 {
+    let mut bits = 0;
+    for k in 0..N {
+        bits |= u32::from(values[k] < limits[k]) << k;
+    }
+    bits
 }
 
 /// State of the search for the triangles that stop the taxels of one leaf.
@@ -135,30 +135,30 @@ struct LeafSearch<'a> {
     leaf: &'a Leaf,
     lines: &'a TaxelLines,
     /// Heights of the taxels, rounded up to single precision, metres.
-    limits: [f32; N],
+    limits: [f32; LEAF],
     /// One bit for each taxel behind whose substrate triangles may lie.
     behind: u32,
     stops: &'a mut LeafStops,
 }
 
 impl LeafSearch<'_> {
-    /// Returns one bit for each taxel with a lower bound below its present height.
-    #[inline(always)]
-    fn below(&self, low: Eight) -> u32 {
-        low.is_below(Eight::new(&self.limits)).bits()
-    }
-
     /// Returns the largest height along the thick line at which a triangle stops a taxel below its present height, metres.
     #[inline(always)]
     fn top(&self) -> f32 {
-        self.lines.top(Eight::new(&self.limits)) + self.lines.slack
+        self.lines.thick.top(&self.limits) + self.lines.slack
+    }
+
+    /// Returns the limit of the lower bounds along the thick line of parts that may stop a taxel, metres.
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.top().next_up()
     }
 
     #[inline(always)]
     fn descend(&mut self, stack: &mut [Waiting; STACK]) {
         let blocks = self.mesh.model().blocks();
         stack[0] = Waiting {
-            low: [f32::NEG_INFINITY; N],
+            low: [f32::NEG_INFINITY; LEAF],
             lowest: f32::NEG_INFINITY,
             child: 0,
             taxels: self.lines.active,
@@ -168,7 +168,7 @@ impl LeafSearch<'_> {
             n_waiting -= 1;
             let waiting = &stack[n_waiting];
             let (child, number) = (waiting.child, (waiting.child / 2) as usize);
-            let taxels = waiting.taxels & self.below(Eight::new(&waiting.low));
+            let taxels = waiting.taxels & lanes_below(&waiting.low, &self.limits);
             if taxels == 0 || waiting.lowest > self.top() {
                 continue;
             }
@@ -190,35 +190,40 @@ impl LeafSearch<'_> {
     ) {
         let TaxelLines {
             lines,
-            middle,
-            thickness,
+            thick,
             slack,
             ..
         } = self.lines;
-        let limit = Eight::splat(self.top());
-        let (mut near, mut behind, mut lows) = (0, 0, [[0.0; N]; GROUPS]);
-        for (group, low) in lows.iter_mut().enumerate() {
-            let children = Boxes::of_node(node, group);
-            let thick = children.compare::<true>(middle, thickness, *slack);
-            near |= (thick.near & thick.low.is_at_most(limit).bits()) << (N * group);
-            behind |= thick.behind << (N * group);
-            *low = thick.low.to_lanes();
+        let mut children = Pairs::<LANES>::NONE;
+        for lane in 0..LANES {
+            let child = Bounds::of_child(node, lane);
+            children.set(
+                lane,
+                child.compare::<true>(&thick.line, &thick.thickness, *slack),
+            );
         }
+        let near = children.near & node.used & lanes_below(&children.low, &[self.limit(); LANES]);
         let start = *n_waiting;
-        for lane in set_bits(near & node.used) {
+        for lane in SelectedLanes::of_bits(near) {
             let mut waiting = Waiting {
-                low: [f32::NEG_INFINITY; N],
-                lowest: lows[lane / N][lane % N],
+                low: [f32::NEG_INFINITY; LEAF],
+                lowest: children.low[lane],
                 child: node.children[lane],
                 taxels,
             };
             // An inner node in front of all substrates is larger than most leaves, so the comparison with each taxel would exclude few.
-            if waiting.child % 2 == 1 || behind >> lane & 1 == 1 {
-                let child = Boxes::of_child(node, lane);
-                let pairs = child.compare::<false>(lines, &Thickness::ZERO, *slack);
+            if waiting.child % 2 == 1 || children.behind >> lane & 1 == 1 {
+                let child = Bounds::of_child(node, lane);
+                let mut pairs = Pairs::<LEAF>::NONE;
+                for k in 0..LEAF {
+                    pairs.set(
+                        k,
+                        child.compare::<false>(&lines.at(k), &Thickness::default(), *slack),
+                    );
+                }
                 self.behind |= pairs.behind & taxels;
-                waiting.taxels &= pairs.near & self.below(pairs.low);
-                waiting.low = pairs.low.to_lanes();
+                waiting.taxels &= pairs.near & lanes_below(&pairs.low, &self.limits);
+                waiting.low = pairs.low;
             }
             if waiting.taxels == 0 {
                 continue;
@@ -237,45 +242,53 @@ impl LeafSearch<'_> {
     #[inline(always)]
     fn visit(&mut self, block: &Block, taxels: u32) {
         let TaxelLines {
-            rays,
             lines,
-            middle,
-            thickness,
+            thick,
             slack,
             ..
         } = self.lines;
         let first = block.first as usize;
         if taxels.count_ones() <= FEW {
-            let center = self.mesh.model().blocks().center;
-            for taxel in set_bits(taxels) {
-                let line = Lines::one(&rays[taxel], center, self.leaf.behind[taxel]);
-                for group in 0..GROUPS {
-                    let used = block.used >> (N * group) & 0xff;
-                    let triangles = Triangles::of_block(block, group);
-                    let pairs = triangles.compare::<false>(&line, &Thickness::ZERO, *slack);
-                    self.behind |= u32::from(pairs.behind & used != 0) << taxel;
-                    let low = pairs.low.to_lanes();
-                    for lane in set_bits(pairs.near & used) {
-                        if low[lane] < self.limits[taxel] {
-                            self.lower(first + N * group + lane, taxel);
-                        }
+            for taxel in SelectedLanes::of_bits(taxels) {
+                let line = lines.at(taxel);
+                let mut pairs = Pairs::<LANES>::NONE;
+                for lane in 0..LANES {
+                    let facet = Facet::of_block(block, lane);
+                    pairs.set(
+                        lane,
+                        facet.compare::<false>(&line, &Thickness::default(), *slack),
+                    );
+                }
+                self.behind |= u32::from(pairs.behind & block.used != 0) << taxel;
+                for lane in SelectedLanes::of_bits(pairs.near & block.used) {
+                    if pairs.low[lane] < self.limits[taxel] {
+                        self.lower(first + lane, taxel);
                     }
                 }
             }
             return;
         }
-        let limit = Eight::splat(self.top());
-        let mut near = 0;
-        for group in 0..GROUPS {
-            let triangles = Triangles::of_block(block, group);
-            let thick = triangles.compare::<true>(middle, thickness, *slack);
-            near |= (thick.near & thick.low.is_at_most(limit).bits()) << (N * group);
+        let mut triangles = Pairs::<LANES>::NONE;
+        for lane in 0..LANES {
+            let facet = Facet::of_block(block, lane);
+            triangles.set(
+                lane,
+                facet.compare::<true>(&thick.line, &thick.thickness, *slack),
+            );
         }
-        for lane in set_bits(near & block.used) {
-            let triangle = Triangles::of_lane(block, lane);
-            let pairs = triangle.compare::<false>(lines, &Thickness::ZERO, *slack);
+        let low = lanes_below(&triangles.low, &[self.limit(); LANES]);
+        for lane in SelectedLanes::of_bits(triangles.near & block.used & low) {
+            let facet = Facet::of_block(block, lane);
+            let mut pairs = Pairs::<LEAF>::NONE;
+            for k in 0..LEAF {
+                pairs.set(
+                    k,
+                    facet.compare::<false>(&lines.at(k), &Thickness::default(), *slack),
+                );
+            }
             self.behind |= pairs.behind & taxels;
-            for taxel in set_bits(pairs.near & taxels & self.below(pairs.low)) {
+            let low = lanes_below(&pairs.low, &self.limits);
+            for taxel in SelectedLanes::of_bits(pairs.near & taxels & low) {
                 self.lower(first + lane, taxel);
             }
         }
@@ -284,7 +297,7 @@ impl LeafSearch<'_> {
     /// Lowers the height of a taxel to the height at which a triangle stops the taxel. `place` is the index of the triangle in the order of the blocks.
     #[inline(never)]
     fn lower(&mut self, place: usize, taxel: usize) {
-        let ray = &self.lines.rays[taxel];
+        let ray = Ray::new(self.mesh, self.leaf, taxel);
         // In this frame the taxel rises from the origin along z.
         let (x, y) = ray.direction.any_orthonormal_pair();
         let turn = DMat3::from_cols(x, y, ray.direction).transpose();
@@ -299,7 +312,7 @@ impl LeafSearch<'_> {
             self.stops.triangles[taxel] = Some(self.mesh.model().blocks().numbers[place]);
             if self.stops.is_lowest {
                 self.stops.heights = [height; LEAF];
-                self.limits = [rounded_up(height); N];
+                self.limits = [rounded_up(height); LEAF];
             } else {
                 self.stops.heights[taxel] = height;
                 self.limits[taxel] = rounded_up(height);

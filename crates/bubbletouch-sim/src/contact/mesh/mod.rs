@@ -2,12 +2,13 @@
 //!
 //! | stage | input → output |
 //! |---|---|
+//! | `directions` | the axis of a part of a mesh → bounds of the directions of contact |
 //! | `taxel_lines` | eight taxels of any layout → their axes in the frame of a mesh, and a thick line around them |
-//! | `line_search` | lines, and boxes or triangles → pairs that may touch, with lower bounds of the heights |
+//! | `line_search` | a line, and a box or triangle → whether they may touch, with a lower bound of the height |
 //! | `leaf_stops` | a mesh and eight taxels → heights and triangles |
 //! | `skin_mesh` | a mesh at a pose: rules for triangles behind the substrate and for substrates inside the mesh |
 
-mod eight;
+pub(super) mod directions;
 mod leaf_stops;
 mod line_search;
 pub(super) mod skin_mesh;
