@@ -78,7 +78,7 @@ pub(super) fn check_starts(
             if !is_free(free.object) {
                 continue;
             }
-            let smaller = free.object.ball.1.min(other.object.ball.1);
+            let smaller = free.object.ball.radius.min(other.object.ball.radius);
             let tolerance = free.object.surface_error + other.object.surface_error;
             let overlap = free.overlap(other);
             if overlap > tolerance.min(MAX_SHARE * smaller) {
@@ -98,22 +98,15 @@ pub(super) fn check_starts(
 }
 
 impl Start<'_> {
-    /// Returns the bounding ball of the object in the world frame: centre and radius, metres.
+    /// Returns the bounding ball of the object in the world frame, metres.
     fn ball(&self) -> Sphere {
-        let (center, radius) = self.object.ball;
-        Sphere {
-            center: self.pose.transform_point(center),
-            radius,
-        }
+        self.object.ball.placed(&self.pose)
     }
 
     /// Returns the spheres of the object in the world frame that intersect a ball, sorted by their smallest x coordinate.
     fn spheres_near(&self, ball: &Sphere) -> Vec<Sphere> {
         let spheres = self.model.spheres().map_or(&[][..], SphereUnion::spheres);
-        let placed = spheres.iter().map(|sphere| Sphere {
-            center: self.pose.transform_point(sphere.center),
-            ..*sphere
-        });
+        let placed = spheres.iter().map(|sphere| sphere.placed(&self.pose));
         let mut near: Vec<Sphere> = placed
             .filter(|sphere| overlap(sphere, ball) > 0.0)
             .collect();

@@ -11,7 +11,7 @@ use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
 use crate::inputs::toml_value::table_of;
 use crate::inputs::units::MM;
 use crate::mesh::SizeLimits;
-use crate::objects::{Catalogue, Model, Solid, pack};
+use crate::objects::{Catalogue, Model, Solid, Sphere, pack};
 use crate::spelling::nearest_names;
 use crate::world::Motion;
 use glam::DVec3;
@@ -26,8 +26,8 @@ pub struct PlannedObject {
     pub movement: Movement,
     /// Control of the force on a patch, for an object with imposed motion and a target force; otherwise `None`.
     pub press: Option<PlannedPress>,
-    /// Bounding ball of the object (centre, radius), object frame, metres.
-    pub(super) ball: (DVec3, f64),
+    /// Bounding ball of the object, object frame, metres.
+    pub(super) ball: Sphere,
     /// Maximum distance between the spheres and the object's surface, metres.
     pub(super) surface_error: f64,
 }
@@ -266,13 +266,14 @@ impl Reader<'_> {
     }
 }
 
-/// Returns a bounding ball of the model (centre and radius), whose centre is the centre of the model's bounding box.
-fn ball(model: &Model) -> (DVec3, f64) {
-    let bounds = model.bounds();
-    let center = bounds.center();
-    let radius = match model {
-        Model::Spheres(union) => union.reach_from(center),
-        Model::Mesh(_) => 0.5 * bounds.size().length(),
-    };
-    (center, radius)
+/// Returns a bounding ball of the model, whose centre is the centre of the model's bounding box.
+fn ball(model: &Model) -> Sphere {
+    let around = Sphere::around(&model.bounds());
+    match model {
+        Model::Spheres(union) => Sphere {
+            radius: union.reach_from(around.center),
+            ..around
+        },
+        Model::Mesh(_) => around,
+    }
 }

@@ -9,7 +9,7 @@ use crate::contact::{
 };
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::objects::Model;
+use crate::objects::{Model, Sphere};
 use glam::DVec3;
 
 /// Poses, models and bounding balls of all objects of a scene.
@@ -19,8 +19,8 @@ pub(super) struct PlacedObjects<'p> {
     pub models: &'p [Model],
     /// Pose of each object, `world_from_object`; escaped objects are placed far from all patches.
     pub poses: Vec<Pose>,
-    /// Bounding ball of each object (centre, radius), object frame, metres.
-    pub balls: Vec<(DVec3, f64)>,
+    /// Bounding ball of each object, object frame, metres.
+    pub balls: Vec<Sphere>,
 }
 
 /// Pose of objects without contact: far from all patches, but with a finite squared distance.
@@ -43,18 +43,13 @@ impl PlacedObjects<'_> {
         )
     }
 
-    /// Returns whether any object may touch the patch: the bounding box of the taxels intersects the bounding ball of an object.
+    /// Returns whether any object may touch the patch.
     pub fn can_reach(&self, skin: &SkinState) -> bool {
         let tree = skin.patch.skin.tree();
-        let Some(bounds) = tree.bounds() else {
-            return false;
-        };
         let mut objects = self.seen_by(skin).zip(&self.balls);
-        objects.any(|(pose, &(center, radius))| {
-            let center = pose.transform_point(center);
-            let reach = radius + tree.largest_radius();
-            // Margin for rounding errors: far above 1e-16 and far below a measurable distance.
-            bounds.distance_squared(center) <= reach * reach * (1.0 + 1e-9)
+        objects.any(|(pose, ball)| {
+            let Sphere { center, radius } = ball.placed(&pose);
+            tree.is_near(center, radius)
         })
     }
 }

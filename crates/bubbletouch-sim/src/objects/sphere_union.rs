@@ -18,6 +18,29 @@ pub struct Sphere {
 }
 
 impl Sphere {
+    /// Returns the sphere around a box, with the centre of the box.
+    pub fn around(bounds: &Aabb) -> Self {
+        Self {
+            center: bounds.center(),
+            radius: 0.5 * bounds.size().length(),
+        }
+    }
+
+    /// Returns the sphere moved by a pose.
+    pub fn placed(&self, pose: &Pose) -> Self {
+        Self {
+            center: pose.transform_point(self.center),
+            ..*self
+        }
+    }
+
+    /// Returns whether two spheres have a point in common.
+    #[inline]
+    pub fn meets(&self, other: &Self) -> bool {
+        let reach = self.radius + other.radius;
+        self.center.distance_squared(other.center) <= reach * reach
+    }
+
     /// Returns the bounding box of the sphere, metres.
     pub fn bounds(&self) -> Aabb {
         Aabb {

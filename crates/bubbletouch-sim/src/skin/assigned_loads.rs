@@ -4,10 +4,9 @@
 //! at the nearest patch of the carrier, if that is nearer than the diameter of the patch.
 
 use super::point_loads::PointLoad;
-use crate::geometry::{Pose, distinct_places};
-use crate::objects::nearest_distances;
+use crate::geometry::{Aabb, Pose, distinct_places};
+use crate::objects::{Sphere, nearest_distances};
 use crate::world::Patch;
-use glam::DVec3;
 
 /// Least cosine between a normal force and the axis of the nearest taxel, reversed: contacts up to 60° off the axis act on the patch. If larger, contacts on
 /// the rims of curved skins are lost; if smaller, contacts on the side of a finger act on its pad.
@@ -25,8 +24,10 @@ pub(super) struct LoadRange {
     /// Largest distance from the axis of the nearest taxel, metres: the largest spacing, or the largest radius if that is larger. If larger, contacts beside
     /// the skin act on it; if smaller, contacts on the rim do not.
     pub margin: f64,
-    /// Centre and radius of a ball around all taxels, in the patch frame, metres.
-    pub ball: (DVec3, f64),
+    /// Ball around all taxels (their spheres at rest and the substrate below them), in the patch frame, metres.
+    pub ball: Sphere,
+    /// Diameter of a ball around the taxels at rest, metres.
+    pub diameter: f64,
 }
 
 impl LoadRange {
@@ -35,15 +36,19 @@ impl LoadRange {
         let (centers, taxels) = (patch.layout().centers(), patch.taxels().all());
         let radius = taxels.iter().map(|taxel| taxel.radius).fold(0.0, f64::max);
         let stroke = taxels.iter().map(|taxel| taxel.stroke).fold(0.0, f64::max);
-        let min = centers.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let max = centers
-            .iter()
-            .copied()
-            .fold(DVec3::NEG_INFINITY, DVec3::max);
+        let bottoms = centers.iter().zip(patch.layout().axes()).enumerate();
+        let bottoms = bottoms
+            .map(|(taxel, (center, axis))| center + patch.taxels().at(taxel).substrate() * axis);
+        let at_rest = Aabb::around_points(centers.iter().copied());
+        let ball = Sphere::around(&at_rest.joined(&Aabb::around_points(bottoms)));
         Self {
             reach: stroke + 2.0 * radius,
             margin: radius.max(largest_spacing(patch)),
-            ball: (0.5 * (min + max), 0.5 * (max - min).length() + radius),
+            ball: Sphere {
+                radius: ball.radius + radius,
+                ..ball
+            },
+            diameter: at_rest.size().length() + 2.0 * radius,
         }
     }
 }
@@ -103,7 +108,7 @@ pub(super) fn assign_loads(patches: &[LoadedPatch], contacts: &[BodyLoad]) -> As
         match nearest {
             Some((number, local, _, true)) => found.loads.push((number, object, local)),
             Some((number, local, distance, false))
-                if distance <= 2.0 * patches[number].range.ball.1 =>
+                if distance <= patches[number].range.diameter =>
             {
                 found.beside.push((number, object, local.normal.length()));
             }
@@ -293,7 +298,7 @@ mod tests {
         }
         // Beyond the diameter of the patch, and on another carrier.
         let diameter = 2.0 * (20f64.sqrt() * 1e-3 + 1e-3);
-        assert!((2.0 * range.ball.1 - diameter).abs() < 1e-15);
+        assert!((range.diameter - diameter).abs() < 1e-15);
         let far = push(&pose, [4e-3 + outside * diameter, 2e-3, 0.0], tilted(0.0));
         let other = push(&pose, [0.0, 0.0, 0.0], tilted(0.0));
         let found = assign_loads(&patches, &[on_body(0, 5, far), on_body(1, 5, other)]);

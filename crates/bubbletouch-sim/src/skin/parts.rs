@@ -96,11 +96,9 @@ impl SkinPatch {
     /// Returns whether a body may be closer to the patch than `margin`, metres. The test uses the bounding box of the body in its own frame and the ball
     /// around the patch.
     pub fn is_near(&self, body: &Body, patch_from_body: &Pose, margin: f64) -> bool {
-        let (center, radius) = self.range.ball;
-        let center = patch_from_body.inverse().transform_point(center);
-        let nearest = center.clamp(body.bounds.min, body.bounds.max);
-        let reach = radius + margin;
-        center.distance_squared(nearest) <= reach * reach
+        let ball = self.range.ball.placed(&patch_from_body.inverse());
+        let reach = ball.radius + margin;
+        body.bounds.distance_squared(ball.center) <= reach * reach
     }
 
     /// Returns the patch with a stroke that is larger by `reach`, metres.

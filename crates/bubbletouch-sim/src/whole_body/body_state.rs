@@ -75,10 +75,10 @@ impl BodyState {
         self.balls.clear();
         self.balls
             .extend(patches.iter().zip(world_from_patches).map(|(patch, pose)| {
-                let Sphere { center, radius } = patch.ball();
+                let ball = patch.ball();
                 Sphere {
-                    center: pose.transform_point(center),
-                    radius: radius + patch.taxel().radius,
+                    radius: ball.radius + patch.taxel().radius,
+                    ..ball.placed(pose)
                 }
             }));
         Ok(())
@@ -110,7 +110,7 @@ impl BodyState {
             let number = number as usize;
             let placed = objects.iter().zip(world_from_objects).zip(object_balls);
             let near = placed
-                .filter(|(_, ball)| are_near(ball, &balls[number]))
+                .filter(|(_, ball)| ball.meets(&balls[number]))
                 .map(|((object, pose), _)| (object, pose.seen_from(&poses[number])));
             state.step(&body.patches()[number], near, dt, instructions);
         };
@@ -185,13 +185,13 @@ impl BodyState {
 
     fn find_busy(&mut self, objects: &[SphereClusters], world_from_objects: &[Pose]) {
         self.object_balls.clear();
+        let placed = objects.iter().zip(world_from_objects);
         self.object_balls
-            .extend(objects.iter().zip(world_from_objects).map(in_world));
+            .extend(placed.map(|(object, pose)| object.ball().placed(pose)));
         self.busy.clear();
         self.busy.reserve(self.patches.len());
         for (number, (state, ball)) in self.patches.iter().zip(&self.balls).enumerate() {
-            let is_near = |object: &Sphere| are_near(object, ball);
-            if !state.is_at_rest() || self.object_balls.iter().any(is_near) {
+            if !state.is_at_rest() || self.object_balls.iter().any(|it| it.meets(ball)) {
                 self.busy.push(number as u32);
             }
         }
@@ -209,21 +209,6 @@ impl BodyState {
         }
         self.contact
     }
-}
-
-/// Returns the bounding ball of an object at a pose, in the world frame.
-fn in_world((object, pose): (&SphereClusters, &Pose)) -> Sphere {
-    let Sphere { center, radius } = object.ball();
-    Sphere {
-        center: pose.transform_point(center),
-        radius,
-    }
-}
-
-/// Returns whether two balls overlap.
-fn are_near(a: &Sphere, b: &Sphere) -> bool {
-    let reach = a.radius + b.radius;
-    a.center.distance_squared(b.center) <= reach * reach
 }
 
 /// Calls `step` with the index of each listed state and the state itself; `first` is the index of the first element of `states`. Threads share the work by

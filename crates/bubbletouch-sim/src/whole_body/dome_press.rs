@@ -66,6 +66,7 @@ impl Pushed for DomePatch {
 }
 
 /// Returns the largest angle φ, radians, for which `around · cos φ` is at least `least`, plus a rounding margin. Returns `None` if there is no such angle.
+#[inline(always)]
 fn half_width(least: f64, around: f64) -> Option<f64> {
     if least > around * (1.0 + ROUNDING) {
         return None;
@@ -78,6 +79,7 @@ fn half_width(least: f64, around: f64) -> Option<f64> {
 
 /// Returns the taxels of a ring within `half_width` radians of an angle, as ranges of indices in the ring. There are up to three ranges if the ring is
 /// closed.
+#[inline(always)]
 fn covered(ring: &DomeRing, angle: f64, half_width: f64) -> [Range<usize>; 3] {
     [-TAU, 0.0, TAU].map(|turn| {
         let middle = (angle + turn - ring.start) / ring.step;

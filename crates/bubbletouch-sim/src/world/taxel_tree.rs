@@ -7,6 +7,7 @@
 use super::layouts::split_across;
 use super::{Layout, Taxel, Taxels};
 use crate::geometry::Aabb;
+use crate::objects::Sphere;
 use glam::DVec3;
 
 /// Maximum number of taxels in a leaf, evaluated with one or two vector instructions. If larger, taxels are evaluated needlessly; if smaller, more bounding
@@ -111,6 +112,16 @@ impl TaxelTree {
     /// Returns the bounding box of all taxels (their centres at rest and the substrate below them), metres; `None` if there are no taxels.
     pub fn bounds(&self) -> Option<&Aabb> {
         self.nodes.first().map(|root| &root.bounds)
+    }
+
+    /// Returns a ball that contains all taxels (their spheres at rest and the substrate below them), metres; `None` if there are no taxels.
+    pub fn ball(&self) -> Option<Sphere> {
+        let root = self.nodes.first()?;
+        let ball = Sphere::around(&root.bounds);
+        Some(Sphere {
+            radius: ball.radius + root.radius,
+            ..ball
+        })
     }
 
     /// Returns the largest radius of a taxel, metres.

@@ -123,13 +123,12 @@ impl Pairs {
         behind: &[(Key, Part)],
     ) {
         let tree = skin.patch.tree();
-        let Some(bounds) = tree.bounds() else { return };
         // A sphere can move by twice the step: by translation and by rotation.
         let more = GRAZING * tree.depth() + 2.0 * margins.step;
         let to_patch = skin.world_from_patch.inverse();
         let is_near = |body: &Body| {
-            let away = bounds.distance_squared(to_patch.transform_point(body.center));
-            away.sqrt() <= body.arm() + tree.largest_radius() + more
+            let center = to_patch.transform_point(body.center);
+            tree.is_near(center, body.arm() + more)
         };
         if !bodies.iter().any(is_near) {
             return;

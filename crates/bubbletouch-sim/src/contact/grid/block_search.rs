@@ -8,11 +8,6 @@
 //!
 //! All bounds are enlarged by `slack`, far more than the rounding of single precision, so they never exclude a contact.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "a loop over the axes of several vectors is clearer with an index"
-)]
-
 use super::lines::{GridLines, Lines};
 use super::pair_batch::Pair;
 use crate::contact::lanes::{least, most};
@@ -21,7 +16,7 @@ use crate::geometry::Pose;
 use crate::objects::mesh_blocks::{
     ALL_SIDES, Block, BlockNode, INNER_SIDES, LANES, Lane, MAX_DEPTH, MeshBlocks, OUTER_SIDES,
 };
-use glam::{DMat3, DVec3};
+use glam::{BVec3, DMat3, Mat3, Vec3, Vec3Swizzles};
 use std::ops::Range;
 
 /// Bound of the rounding errors of single precision, relative to the lengths in the scene. Each bound is computed from about ten numbers, each rounded by 6e-8.
@@ -30,10 +25,9 @@ const ROUNDING: f64 = 2e-6;
 /// Transform of a mesh to the frame of a grid, and the limits of the search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockSearch {
-    /// Rows of the rotation matrix.
-    rows: [[f32; 3]; 3],
+    rotation: Mat3,
     /// Centre of the mesh in the frame of the grid, metres.
-    center: [f32; 3],
+    center: Vec3,
     /// Sum of a taxel's radius and the rounding of the mesh, metres.
     reach: f32,
     /// Height of the substrate, metres; −∞ if triangles count at any height.
@@ -101,7 +95,7 @@ fn integer(number: f32) -> u32 {
 }
 
 /// Taxels that the triangles of each lane may stop, and a lower bound of their heights.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub(super) struct Candidates {
     /// First column, and the column after the last; whole numbers.
@@ -134,7 +128,7 @@ impl Candidates {
 }
 
 /// Triangles of a block in the frame of the grid.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub(super) struct PlacedBlock {
     /// Candidates of the triangles. Lanes with few candidates are omitted from `lanes`.
@@ -162,24 +156,6 @@ pub(super) struct PlacedBlock {
     /// taxels under the face, and is infinite if the triangle may be behind the substrate.
     below: Lane,
     above: Lane,
-}
-
-impl PlacedBlock {
-    pub const EMPTY: Self = Self {
-        candidates: Candidates::NONE,
-        n_few: 0,
-        next: [[0.0; LANES]; 2],
-        end: [0.0; LANES],
-        corners: [[[0.0; LANES]; 3]; 3],
-        moved: [[0.0; LANES]; 2],
-        sign: [0.0; LANES],
-        sides: [0; LANES],
-        wide: [0.0; LANES],
-        height: [0.0; LANES],
-        slope: [[0.0; LANES]; 2],
-        below: [0.0; LANES],
-        above: [0.0; LANES],
-    };
 }
 
 /// One candidate of each triangle of a block.
@@ -216,7 +192,7 @@ impl Tested {
 }
 
 /// Pairs of taxels and triangles in the frame of the grid.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(align(64))]
 pub(super) struct PlacedPairs {
     /// Corners of the triangles, metres, and the vectors by which the faces are moved.
@@ -234,18 +210,6 @@ pub(super) struct PlacedPairs {
 }
 
 impl PlacedPairs {
-    pub const EMPTY: Self = Self {
-        corners: [[[0.0; LANES]; 3]; 3],
-        moved: [[0.0; LANES]; 2],
-        sign: [0.0; LANES],
-        x: [0.0; LANES],
-        y: [0.0; LANES],
-        low: [0.0; LANES],
-        high: [0.0; LANES],
-        pairs: [Pair::NONE; LANES],
-        n: 0,
-    };
-
     /// Adds the pair of the triangle in a lane of a block and its tested taxel if `is_wanted`, without a branch, because the processor cannot predict it.
     #[inline(always)]
     pub fn add(
@@ -272,8 +236,8 @@ impl PlacedPairs {
 
 /// Bounds of the centres of taxels that the triangles of one lane stop.
 struct Bounds {
-    low: [f32; 3],
-    high: [f32; 2],
+    low: Vec3,
+    high: Vec3,
     /// Highest point of the triangles, metres.
     top: f32,
     /// Height below which triangles count as behind the substrate, metres.
@@ -303,10 +267,9 @@ impl BlockSearch {
         let center = pose.transform_point(blocks.center);
         let last = |lines: &Lines| lines.positions.last().copied().unwrap_or(0.0);
         let length = blocks.radius + center.length() + reach + last(&lines.x) + last(&lines.y);
-        let row = |row: DVec3| row.to_array().map(|number| number as f32);
         Self {
-            rows: [rotation.row(0), rotation.row(1), rotation.row(2)].map(row),
-            center: row(center),
+            rotation: rotation.as_mat3(),
+            center: center.as_vec3(),
             reach: reach as f32,
             behind: behind as f32,
             slack: (ROUNDING * length) as f32,
@@ -319,7 +282,7 @@ impl BlockSearch {
     #[inline(always)]
     pub fn is_in_front(&self, blocks: &MeshBlocks) -> bool {
         let behind = self.behind + self.reach + 2.0 * self.slack;
-        let [_, _, up] = self.rows;
+        let up = self.rotation.row(2);
         let mut stack = [0_u32; (LANES - 1) * MAX_DEPTH + 1];
         let mut n_waiting = usize::from(behind > f32::NEG_INFINITY);
         while n_waiting > 0 {
@@ -327,10 +290,8 @@ impl BlockSearch {
             let node = &blocks.nodes[(stack[n_waiting] / 2) as usize];
             let mut lanes = 0;
             for lane in 0..LANES {
-                let [x, y, z] = get(&node.center, lane);
-                let [a, b, c] = get(&node.half, lane);
-                let half = up[0].abs() * a + up[1].abs() * b + up[2].abs() * c;
-                let low = self.center[2] + up[0] * x + up[1] * y + up[2] * z - half;
+                let half = up.abs().dot(get(&node.half, lane));
+                let low = self.center.z + up.dot(get(&node.center, lane)) - half;
                 lanes |= u32::from(low < behind) << lane;
             }
             lanes &= node.used;
@@ -350,35 +311,34 @@ impl BlockSearch {
     /// Returns the candidates of the children of a node below a limit, metres.
     #[inline(always)]
     pub fn node(&self, node: &BlockNode, limit: f32) -> Candidates {
-        let [to_x, to_y, up] = self.rows;
+        let Mat3 {
+            x_axis,
+            y_axis,
+            z_axis,
+        } = self.rotation;
+        let (to_x, to_y) = (self.rotation.row(0), self.rotation.row(1));
+        let up = self.rotation.row(2);
+        let absolute = Mat3::from_cols(x_axis.abs(), y_axis.abs(), z_axis.abs());
         let mut candidates = Candidates::NONE;
         let (mut lanes, mut behind) = (0, 0);
         for lane in 0..LANES {
-            let axis = self.turned(get(&node.axis, lane));
+            let axis = self.rotation * get(&node.axis, lane);
             let center = self.placed(get(&node.center, lane));
             let own = get(&node.half, lane);
-            let mut half = [0.0; 3];
-            for k in 0..3 {
-                let [a, b, c] = self.rows[k];
-                half[k] = a.abs() * own[0] + b.abs() * own[1] + c.abs() * own[2];
-            }
+            let half = absolute * own;
             let Directions {
                 shift,
                 both,
                 spread,
                 ..
-            } = self.directions(axis[2], node.spread[lane], center[2] - half[2]);
-            let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
-            let mut middle = [0.0; 3];
-            for k in 0..3 {
-                middle[k] = center[k] + shift * axis[k];
-                let wide = half[k] + least(spread + both * axis[k].abs(), self.reach) + self.slack;
-                (low[k], high[k]) = (middle[k] - wide, middle[k] + wide);
-            }
-            let top = center[2] + half[2];
+            } = self.directions(axis.z, node.spread[lane], center.z - half.z);
+            let middle = center + shift * axis;
+            let wide = (both * axis.abs() + spread).min(Vec3::splat(self.reach));
+            let wide = half + wide + self.slack;
+            let (low, top) = (middle - wide, center.z + half.z);
             let bounds = Bounds {
                 low,
-                high: [high[0], high[1]],
+                high: middle + wide,
                 top,
                 // Triangles that reach in front of the substrate are examined one by one.
                 back: top + self.reach,
@@ -387,23 +347,18 @@ impl BlockSearch {
             // A single candidate may be beside the shadow of the bounding box, enlarged by `spread`. Let a line have the direction u and contain the point o,
             // and let a box around the origin have the half sizes h. The line misses the box if |o × u| exceeds `h_j |u_k| + h_k |u_j|` in a component i. In
             // the frame of the mesh, u is the third row of the rotation matrix.
-            let x = self.columns.at(found.columns[0]) - middle[0];
-            let y = self.rows_of_taxels.at(found.rows[0]) - middle[1];
-            let mut gap = f32::NEG_INFINITY;
-            for i in 0..3 {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                let along_x = to_x[j] * up[k] - to_x[k] * up[j];
-                let along_y = to_y[j] * up[k] - to_y[k] * up[j];
-                let reach = own[j] * up[k].abs() + own[k] * up[j].abs();
-                gap = most(gap, (along_x * x + along_y * y).abs() - reach);
-            }
+            let x = self.columns.at(found.columns[0]) - middle.x;
+            let y = self.rows_of_taxels.at(found.rows[0]) - middle.y;
+            let reach = own.yzx() * up.zxy().abs() + own.zxy() * up.yzx().abs();
+            let gap = (to_x.cross(up) * x + to_y.cross(up) * y).abs() - reach;
+            let gap = most(most(gap.x, gap.y), gap.z);
             let spread = if both > 0.0 { self.reach } else { spread };
             let is_missed = found.is_one & (gap > spread + 2.0 * self.slack);
             for k in 0..2 {
                 candidates.columns[k][lane] = found.columns[k];
                 candidates.rows[k][lane] = found.rows[k];
             }
-            candidates.low[lane] = low[2];
+            candidates.low[lane] = low.z;
             lanes |= u32::from(found.is_wanted & !is_missed) << lane;
             behind |= u32::from(found.is_behind) << lane;
         }
@@ -418,48 +373,41 @@ impl BlockSearch {
         let (mut lanes, mut behind, mut n_few) = (0, 0, 0);
         let [a, b, c] = &block.corners;
         for lane in 0..LANES {
-            let normal = self.turned(get(&block.normal, lane));
-            let a = self.placed(get(a, lane));
-            let b = self.placed(get(b, lane));
-            let c = self.placed(get(c, lane));
-            let bottom = least(least(a[2], b[2]), c[2]);
+            let normal = self.rotation * get(&block.normal, lane);
+            let corners = [
+                self.placed(get(a, lane)),
+                self.placed(get(b, lane)),
+                self.placed(get(c, lane)),
+            ];
+            let [a, b, c] = corners;
+            let (lowest, highest) = (a.min(b).min(c), a.max(b).max(c));
             let Directions {
                 shift,
                 both,
                 spread,
                 is_low,
-            } = self.directions(normal[2], block.spread[lane], bottom);
-            let wide = spread + self.slack;
+            } = self.directions(normal.z, block.spread[lane], lowest.z);
             // No direction is longer than one.
             let far = self.reach + self.slack;
-            let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
-            for k in 0..3 {
-                let lowest = least(least(a[k], b[k]), c[k]);
-                let highest = most(most(a[k], b[k]), c[k]);
-                let moved = shift * normal[k];
-                let wide = wide + both * normal[k].abs();
-                low[k] = most(lowest + moved - wide, lowest - far);
-                high[k] = least(highest + moved + wide, highest + far);
-            }
+            let (moved, wide) = (shift * normal, both * normal.abs() + (spread + self.slack));
+            let low = (lowest + moved - wide).max(lowest - far);
+            let high = (highest + moved + wide).min(highest + far);
             let bounds = Bounds {
                 low,
-                high: [high[0], high[1]],
-                top: most(most(a[2], b[2]), c[2]),
-                back: bottom,
+                high,
+                top: highest.z,
+                back: lowest.z,
             };
             let found = self.find(&bounds, limit);
-            let corners = [a, b, c];
             for k in 0..3 {
-                for corner in 0..3 {
-                    placed.corners[corner][k][lane] = corners[corner][k];
-                }
+                set(&mut placed.corners[k], lane, corners[k]);
             }
-            placed.sign[lane] = if normal[2] > 0.0 { 1.0 } else { -1.0 };
+            placed.sign[lane] = if normal.z > 0.0 { 1.0 } else { -1.0 };
             let is_certain = shift != 0.0;
             // A ball that touches the triangle at a point is at most as far from the plane of the triangle as from the point. Its centre is therefore not below
             // the plane moved down by the radius.
-            let steepness = 1.0 / normal[2];
-            let is_flat = normal[2].abs() > 1e-3;
+            let steepness = 1.0 / normal.z;
+            let is_flat = normal.z.abs() > 1e-3;
             // Without certain directions, the distance from the moved triangle is at most the diameter of a taxel.
             let wide = if is_certain & is_flat {
                 spread
@@ -467,8 +415,8 @@ impl BlockSearch {
                 2.0 * self.reach
             };
             placed.wide[lane] = wide + 2.0 * self.slack;
-            placed.height[lane] = a[2] - self.reach * normal[2].abs();
-            let side = if normal[2] < 0.0 {
+            placed.height[lane] = a.z - self.reach * normal.z.abs();
+            let side = if normal.z < 0.0 {
                 self.reach
             } else {
                 -self.reach
@@ -479,7 +427,7 @@ impl BlockSearch {
                 placed.moved[k][lane] = if is_flat { side * normal[k] } else { 0.0 };
             }
             // The plane is evaluated at most this far from the first corner. The rounding of the normal tilts the plane by up to 1e-6 |1/n_z|.
-            let far = (high[0] - low[0]) + (high[1] - low[1]) + 4.0 * self.reach;
+            let far = (high.x - low.x) + (high.y - low.y) + 4.0 * self.reach;
             let error = (4.0 * self.slack + 1e-6 * far * steepness.abs()) * steepness.abs();
             placed.below[lane] = if is_flat { error } else { f32::INFINITY };
             placed.above[lane] = if is_flat & !is_low {
@@ -487,7 +435,7 @@ impl BlockSearch {
             } else {
                 f32::INFINITY
             };
-            let side = if normal[2] < 0.0 {
+            let side = if normal.z < 0.0 {
                 OUTER_SIDES
             } else {
                 INNER_SIDES
@@ -510,7 +458,7 @@ impl BlockSearch {
                 placed.candidates.columns[k][lane] = found.columns[k];
                 placed.candidates.rows[k][lane] = found.rows[k];
             }
-            placed.candidates.low[lane] = low[2];
+            placed.candidates.low[lane] = low.z;
             lanes |= u32::from(found.is_wanted & !has_few) << lane;
             behind |= u32::from(found.is_behind) << lane;
         }
@@ -591,46 +539,44 @@ impl BlockSearch {
         let error = 4.0 * self.reach * self.slack;
         for lane in 0..LANES {
             let (x, y) = (batch.x[lane], batch.y[lane]);
-            let (mut from, mut edge) = ([0.0; 3], [0.0; 3]);
+            let (mut from, mut edge) = (Vec3::ZERO, Vec3::ZERO);
             let (mut farthest, mut ground2) = (0.0, 0.0);
             for k in 0..3 {
                 let a = get(&batch.corners[k], lane);
-                let b = get(&batch.corners[(k + 1) % 3], lane);
-                let e = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-                let beyond = e[1] * (x - batch.moved[0][lane] - a[0])
-                    - e[0] * (y - batch.moved[1][lane] - a[1]);
+                let e = get(&batch.corners[(k + 1) % 3], lane) - a;
+                let beyond =
+                    e.y * (x - batch.moved[0][lane] - a.x) - e.x * (y - batch.moved[1][lane] - a.y);
                 // Squares of distances are compared, because they need no square roots.
                 let distance2 = batch.sign[lane] * beyond * beyond.abs();
-                let length2 = e[0] * e[0] + e[1] * e[1];
+                let length2 = e.x * e.x + e.y * e.y;
                 let is_farther = (k == 0) | (distance2 * ground2 > farthest * length2);
                 farthest = if is_farther { distance2 } else { farthest };
                 ground2 = if is_farther { length2 } else { ground2 };
-                for axis in 0..3 {
-                    from[axis] = if is_farther { a[axis] } else { from[axis] };
-                    edge[axis] = if is_farther { e[axis] } else { edge[axis] };
-                }
+                let is_farther = BVec3::splat(is_farther);
+                from = Vec3::select(is_farther, a, from);
+                edge = Vec3::select(is_farther, e, edge);
             }
             // A vertical side is treated as slightly inclined.
-            let whole2 = ground2 + edge[2] * edge[2];
+            let whole2 = ground2 + edge.z * edge.z;
             let ground2 = ground2 + 1e-7 * whole2;
-            let (to_x, to_y) = (x - from[0], y - from[1]);
-            let cross = edge[0] * to_y - edge[1] * to_x;
-            let along = edge[0] * to_x + edge[1] * to_y;
+            let (to_x, to_y) = (x - from.x, y - from.y);
+            let cross = edge.x * to_y - edge.y * to_x;
+            let along = edge.x * to_x + edge.y * to_y;
             let inverse = 1.0 / (ground2 * whole2);
             let inverse2 = whole2 * inverse;
             let r2 = most(reach2 - cross * cross * inverse2, 0.0);
-            let ahead = edge[2] * (r2 * ground2 * ground2 * inverse).sqrt();
+            let ahead = edge.z * (r2 * ground2 * ground2 * inverse).sqrt();
             // Not a number for a side without length; then the first corner.
             let part = least(most((along - ahead) * inverse2, 0.0), 1.0);
-            let height = from[2] + part * edge[2];
-            let (dx, dy) = (part * edge[0] - to_x, part * edge[1] - to_y);
+            let height = from.z + part * edge.z;
+            let (dx, dy) = (part * edge.x - to_x, part * edge.y - to_y);
             let beside2 = dx * dx + dy * dy;
             let q = reach2 - beside2;
             let r = most(q, error).sqrt();
             let mut lowest = f32::INFINITY;
             for k in 0..3 {
                 let c = get(&batch.corners[k], lane);
-                lowest = least(lowest, (c[0] - x) * dx + (c[1] - y) * dy + c[2] * r);
+                lowest = least(lowest, (c.x - x) * dx + (c.y - y) * dy + c.z * r);
             }
             // The length of (dx, dy, r) times the radius is at most the mean of their squares.
             let far =
@@ -644,23 +590,10 @@ impl BlockSearch {
         }
     }
 
-    /// Turns a vector from the frame of the mesh to the frame of the grid.
-    #[inline(always)]
-    fn turned(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
-        let [[a, b, c], [d, e, f], [g, h, i]] = self.rows;
-        [
-            a * x + b * y + c * z,
-            d * x + e * y + f * z,
-            g * x + h * y + i * z,
-        ]
-    }
-
     /// Moves a point from the frame of the mesh to the frame of the grid.
     #[inline(always)]
-    fn placed(&self, point: [f32; 3]) -> [f32; 3] {
-        let [x, y, z] = self.turned(point);
-        let [a, b, c] = self.center;
-        [x + a, y + b, z + c]
+    fn placed(&self, point: Vec3) -> Vec3 {
+        self.rotation * point + self.center
     }
 
     /// Returns the directions of contact of the triangles of a lane. `up` is the vertical component of the axis, `bottom` the lowest point of the triangles.
@@ -672,15 +605,15 @@ impl BlockSearch {
 
     #[inline(always)]
     fn find(&self, bounds: &Bounds, limit: f32) -> Found {
-        let columns = self.columns.between(bounds.low[0], bounds.high[0]);
-        let rows = self.rows_of_taxels.between(bounds.low[1], bounds.high[1]);
+        let columns = self.columns.between(bounds.low.x, bounds.high.x);
+        let rows = self.rows_of_taxels.between(bounds.low.y, bounds.high.y);
         let (n_columns, n_rows) = (columns[1] - columns[0], rows[1] - rows[0]);
         let is_under = (n_columns > 0.5) & (n_rows > 0.5);
         let is_in_front = self.behind - self.reach - self.slack < bounds.top;
         Found {
             columns,
             rows,
-            is_wanted: is_under & is_in_front & (bounds.low[2] < limit),
+            is_wanted: is_under & is_in_front & (bounds.low.z < limit),
             is_behind: is_under & (bounds.back - self.slack < self.behind),
             is_one: (n_columns < 1.5) & (n_rows < 1.5),
         }
@@ -688,6 +621,11 @@ impl BlockSearch {
 }
 
 #[inline(always)]
-fn get([x, y, z]: &[Lane; 3], lane: usize) -> [f32; 3] {
-    [x[lane], y[lane], z[lane]]
+fn set([x, y, z]: &mut [Lane; 3], lane: usize, vector: Vec3) {
+    (x[lane], y[lane], z[lane]) = (vector.x, vector.y, vector.z);
+}
+
+#[inline(always)]
+fn get([x, y, z]: &[Lane; 3], lane: usize) -> Vec3 {
+    Vec3::new(x[lane], y[lane], z[lane])
 }

@@ -44,11 +44,13 @@ pub(crate) struct Envelope {
     scratch: Option<Box<Scratch>>,
 }
 
-/// Scratch memory of a search; [`Sweep`] describes the fields.
+/// Scratch memory of a search: the triangles of a block, and the fields of [`Sweep`].
 #[derive(Clone, Debug, Default)]
 struct Scratch {
     waiting: [PairList; 2],
     tests: [Tested; TESTS],
+    placed: PlacedBlock,
+    beside: PlacedPairs,
     faces: FacePairs,
     edges: EdgePairs,
 }
@@ -114,7 +116,7 @@ impl Envelope {
                 bound: f64::INFINITY,
                 waiting: &mut scratch.waiting,
                 tests: &mut scratch.tests,
-                beside: PlacedPairs::EMPTY,
+                beside: &mut scratch.beside,
                 is_in_front: false,
                 faces: &mut scratch.faces,
                 edges: &mut scratch.edges,
@@ -123,7 +125,12 @@ impl Envelope {
             };
             let bounds =
                 BlockSearch::new(mesh.blocks(), pose, (reach, placed.behind), placed.lines);
-            sweep_blocks(instructions, &mut sweep, mesh.blocks(), &bounds);
+            sweep_blocks(
+                instructions,
+                &mut sweep,
+                (mesh.blocks(), &mut scratch.placed),
+                &bounds,
+            );
             let may_enter = sweep.behind_substrate;
             self.enter(&MeshAt::new(mesh, pose), placed, may_enter);
         }
@@ -212,7 +219,7 @@ struct Sweep<'a> {
     /// Memory for the tested candidates of a block.
     tests: &'a mut [Tested; TESTS],
     /// Pairs whose taxels may be beside the faces of the triangles, and whose bounds are not yet computed.
-    beside: PlacedPairs,
+    beside: &'a mut PlacedPairs,
     /// Whether certainly no triangle is behind the substrate.
     is_in_front: bool,
     /// Pairs of taxels and triangles that are evaluated next.
@@ -234,18 +241,21 @@ for_instructions! {
     /// Lowers the heights of the envelope to the heights at which the triangles of a mesh stop the taxels, up to the goal of the press.
     fn sweep_blocks(
         sweep: &mut Sweep,
-        blocks: &MeshBlocks,
+        blocks: (&MeshBlocks, &mut PlacedBlock),
         bounds: &BlockSearch,
     ) = sweep_each_block
 }
 
 #[inline(always)]
-fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch) {
+fn sweep_each_block(
+    sweep: &mut Sweep,
+    (blocks, placed): (&MeshBlocks, &mut PlacedBlock),
+    bounds: &BlockSearch,
+) {
     sweep.is_in_front = bounds.is_in_front(blocks);
     const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
     let mut stack = [(f32::NEG_INFINITY, 0_u32); STACK];
     let mut n_waiting = 1;
-    let mut placed = PlacedBlock::EMPTY;
     while n_waiting > 0 {
         n_waiting -= 1;
         let (low, child) = stack[n_waiting];
@@ -257,7 +267,7 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
         let number = (child / 2) as usize;
         if child % 2 == 1 {
             let block = &blocks.blocks[number];
-            bounds.block(block, (limit, MAX_PAIRS), &mut placed);
+            bounds.block(block, (limit, MAX_PAIRS), placed);
             sweep.note_behind(&placed.candidates);
             // The lowest triangle is evaluated first, because it can lower the limit.
             let (mut large, low) = (placed.candidates.lanes, &placed.candidates.low);
@@ -279,9 +289,9 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
             for first in (0..placed.n_few as usize).step_by(TESTS) {
                 let n_tests = TESTS.min(placed.n_few as usize - first);
                 for tested in &mut sweep.tests[..n_tests] {
-                    bounds.test(block, &mut placed, limit, tested);
+                    bounds.test(block, placed, limit, tested);
                 }
-                sweep.pair(bounds, (block.first, &placed), n_tests);
+                sweep.pair(bounds, (block.first, placed), n_tests);
             }
             continue;
         }
@@ -383,7 +393,7 @@ impl Sweep<'_> {
     /// Bounds the pairs whose taxels may be beside the faces of their triangles.
     #[inline(always)]
     fn bound_beside(&mut self, bounds: &BlockSearch) {
-        bounds.bound(&mut self.beside, self.is_in_front);
+        bounds.bound(self.beside, self.is_in_front);
         self.waiting[1].reserve(LANES);
         let limit = self.limit();
         for lane in 0..self.beside.n.min(LANES) {

@@ -16,8 +16,6 @@ const WIDTH: usize = 8;
 pub(super) type Column = [f64; PAIRS];
 type Vectors = [Column; 3];
 
-const UNUSED: Column = [0.0; PAIRS];
-
 /// Bit of [`FacePairs::parts`] for triangles that may be behind the substrates of their taxels.
 pub(super) const MAY_BE_BEHIND: u64 = 1 << 6;
 
@@ -34,16 +32,6 @@ pub(super) struct Pair {
     pub low: f32,
 }
 
-impl Pair {
-    pub const NONE: Self = Self {
-        triangle: 0,
-        taxel: 0,
-        row: 0,
-        column: 0,
-        low: 0.0,
-    };
-}
-
 /// List of pairs to which pairs are added without branches, because the processor cannot predict them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PairList {
@@ -57,7 +45,7 @@ impl PairList {
     #[inline(always)]
     pub fn reserve(&mut self, n: usize) {
         if self.pairs.len() < self.n + n {
-            self.pairs.resize(2 * (self.n + n), Pair::NONE);
+            self.pairs.resize(2 * (self.n + n), Pair::default());
         }
     }
 
@@ -93,7 +81,7 @@ impl Placement {
 }
 
 /// Pairs of taxels and triangles, whose faces are evaluated first.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(align(64))]
 pub(super) struct FacePairs {
     x: Column,
@@ -110,24 +98,6 @@ pub(super) struct FacePairs {
     pub heights: Column,
     pub pairs: [Pair; PAIRS],
     pub n: usize,
-}
-
-impl Default for FacePairs {
-    fn default() -> Self {
-        Self {
-            pairs: [Pair::default(); PAIRS],
-            n: 0,
-            x: UNUSED,
-            y: UNUSED,
-            limit: UNUSED,
-            corners: [[UNUSED; 3]; 3],
-            normal: [UNUSED; 3],
-            spread: UNUSED,
-            side_spread: [UNUSED; 3],
-            parts: [0; PAIRS],
-            heights: UNUSED,
-        }
-    }
 }
 
 impl FacePairs {
@@ -243,7 +213,7 @@ impl FacePairs {
 }
 
 /// Pairs of taxels and edges of triangles.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(align(64))]
 pub(super) struct EdgePairs {
     x: Column,
@@ -254,20 +224,6 @@ pub(super) struct EdgePairs {
     pub heights: Column,
     pub pairs: [Pair; PAIRS],
     pub n: usize,
-}
-
-impl Default for EdgePairs {
-    fn default() -> Self {
-        Self {
-            pairs: [Pair::default(); PAIRS],
-            n: 0,
-            x: UNUSED,
-            y: UNUSED,
-            ends: [[UNUSED; 3]; 2],
-            normals: [[UNUSED; 3]; 2],
-            heights: UNUSED,
-        }
-    }
 }
 
 impl EdgePairs {

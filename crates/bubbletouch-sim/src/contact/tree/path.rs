@@ -8,6 +8,7 @@ use crate::contact::spring_load::sample;
 use crate::contact::{Contact, FrictionState, NormalForce, Press, Record, Until, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::objects::Sphere;
 use crate::world::{EvenGrid, Patch, Taxel, Travelling};
 use glam::DVec3;
 use std::borrow::Cow;
@@ -258,15 +259,11 @@ fn parts([start, end]: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
 
 /// Returns the travels between which the bounding ball of the moving patch meets the bounding balls of objects; `None` if none meet.
 pub(super) fn meeting(press: &Press) -> Option<[f64; 2]> {
-    let tree = press.patch.tree();
-    let around = tree.bounds()?;
-    let center = around.center();
-    let radius = 0.5 * around.size().length() + tree.largest_radius();
+    let ball = press.patch.tree().ball()?;
     let pairs = press.objects.iter().zip(press.poses);
     let meetings = pairs.filter_map(|(object, pose)| {
-        let bounds = object.bounds();
-        let away = pose.transform_point(bounds.center()) - center;
-        let reach = radius + 0.5 * bounds.size().length();
+        let met = Sphere::around(&object.bounds()).placed(pose);
+        let (away, reach) = (met.center - ball.center, ball.radius + met.radius);
         let ahead = away.dot(press.along);
         let half2 = reach * reach - away.cross(press.along).length_squared();
         (half2 > 0.0).then(|| [ahead - half2.sqrt(), ahead + half2.sqrt()])

@@ -12,6 +12,9 @@ use bubbletouch_sim::contact::{Instructions, Press, Until, Workspace, Wrench, sp
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::TriangleMesh;
 use bubbletouch_sim::objects::{MeshModel, Model, Sphere, SphereClusters, SphereUnion};
+use bubbletouch_sim::skin::{
+    self as skins, ReadOptions, Skin, SkinPoses, SkinReading, SkinRelations,
+};
 use bubbletouch_sim::whole_body::{BodyState, WholeBody};
 use bubbletouch_sim::world::{Layout, Patch, Taxel};
 use glam::{DQuat, DVec3};
@@ -150,6 +153,41 @@ fn a_rigid_motion_of_the_world_or_its_mirror_image_changes_nothing() {
         n_compared > 20_000 && n_flanks < n_compared / 500,
         "{share}"
     );
+}
+
+#[test]
+fn a_read_of_a_skin_at_its_poses_is_the_press_under_all_bodies() {
+    let mut reading = SkinReading::default();
+    let mut n_touched = 0;
+    for case in 0..N_CASES {
+        let mut scene = Scene::random("read", case);
+        if case % 3 == 0 {
+            // A single taxel: parts that push it deeply are far from its centre at rest.
+            let (center, axis) = (
+                scene.patch.layout().centers()[0],
+                scene.patch.layout().axes()[0],
+            );
+            let one = Layout::new(vec![center], vec![axis]).unwrap();
+            scene.patch = skin(one, *scene.patch.taxels().at(0));
+        }
+        let poses = SkinPoses {
+            patches: &[Pose::IDENTITY],
+            bodies: &scene.poses.clone(),
+        };
+        // As a read places the bodies.
+        for pose in &mut scene.poses {
+            *pose = Pose::IDENTITY.compose(pose);
+        }
+        let skin = vec![scene.patch.clone()];
+        let skin = Skin::new(skin, scene.objects.clone(), SkinRelations::default()).unwrap();
+        let at_poses = skins::Pressed::AtPoses;
+        skin.read(poses, at_poses, ReadOptions::default(), None, &mut reading)
+            .unwrap();
+        let pressed = pressed(scene.press(Until::Pose));
+        assert_eq!(reading.deflections, pressed.deflections, "case {case}");
+        n_touched += reading.counts[0].n_touched;
+    }
+    assert!(n_touched > 2_000, "{n_touched}");
 }
 
 #[test]
