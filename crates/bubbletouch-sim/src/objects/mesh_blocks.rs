@@ -13,16 +13,24 @@
 use super::ContactFace;
 use crate::geometry::Aabb;
 use crate::mesh::Triangle;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::ops::Range;
 
 /// Number of triangles in a block and of children of a node: sixteen f32 values in a vector of 512 bits.
 pub(crate) const LANES: usize = 16;
 /// Maximum depth of the tree: nodes are divided at medians, and sixteen triangles are in a block.
-pub(crate) const MAX_DEPTH: usize = 8;
+const MAX_DEPTH: usize = 8;
+/// Largest number of nodes and blocks that wait during a search of the tree from the root.
+pub(crate) const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
 
 /// One number for each lane. Structs of lanes are aligned to 64 bytes, so that no lane lies in two lines of the cache.
 pub(crate) type Lane = [f32; LANES];
+
+/// Returns the vector of a lane.
+#[inline(always)]
+pub(crate) fn vector([x, y, z]: &[Lane; 3], lane: usize) -> Vec3 {
+    Vec3::new(x[lane], y[lane], z[lane])
+}
 
 /// Triangles of a mesh in blocks, and the tree of the blocks.
 #[derive(Clone, Debug)]

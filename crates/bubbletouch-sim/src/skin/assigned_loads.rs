@@ -154,7 +154,7 @@ mod tests {
     use crate::contact::Wrench;
     use crate::random::Seed;
     use crate::world::{Grid, Taxel};
-    use glam::DQuat;
+    use glam::{DQuat, DVec3};
     use rand::Rng;
 
     const REACH: f64 = 7e-3;

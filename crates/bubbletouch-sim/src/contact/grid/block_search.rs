@@ -14,7 +14,7 @@ use crate::contact::lanes::{least, most};
 use crate::contact::mesh::directions::Directions;
 use crate::geometry::Pose;
 use crate::objects::mesh_blocks::{
-    ALL_SIDES, Block, BlockNode, INNER_SIDES, LANES, Lane, MAX_DEPTH, MeshBlocks, OUTER_SIDES,
+    ALL_SIDES, Block, BlockNode, INNER_SIDES, LANES, Lane, MeshBlocks, OUTER_SIDES, STACK, vector,
 };
 use glam::{BVec3, DMat3, Mat3, Vec3, Vec3Swizzles};
 use std::ops::Range;
@@ -283,15 +283,15 @@ impl BlockSearch {
     pub fn is_in_front(&self, blocks: &MeshBlocks) -> bool {
         let behind = self.behind + self.reach + 2.0 * self.slack;
         let up = self.rotation.row(2);
-        let mut stack = [0_u32; (LANES - 1) * MAX_DEPTH + 1];
+        let mut stack = [0_u32; STACK];
         let mut n_waiting = usize::from(behind > f32::NEG_INFINITY);
         while n_waiting > 0 {
             n_waiting -= 1;
             let node = &blocks.nodes[(stack[n_waiting] / 2) as usize];
             let mut lanes = 0;
             for lane in 0..LANES {
-                let half = up.abs().dot(get(&node.half, lane));
-                let low = self.center.z + up.dot(get(&node.center, lane)) - half;
+                let half = up.abs().dot(vector(&node.half, lane));
+                let low = self.center.z + up.dot(vector(&node.center, lane)) - half;
                 lanes |= u32::from(low < behind) << lane;
             }
             lanes &= node.used;
@@ -322,9 +322,9 @@ impl BlockSearch {
         let mut candidates = Candidates::NONE;
         let (mut lanes, mut behind) = (0, 0);
         for lane in 0..LANES {
-            let axis = self.rotation * get(&node.axis, lane);
-            let center = self.placed(get(&node.center, lane));
-            let own = get(&node.half, lane);
+            let axis = self.rotation * vector(&node.axis, lane);
+            let center = self.placed(vector(&node.center, lane));
+            let own = vector(&node.half, lane);
             let half = absolute * own;
             let Directions {
                 shift,
@@ -373,11 +373,11 @@ impl BlockSearch {
         let (mut lanes, mut behind, mut n_few) = (0, 0, 0);
         let [a, b, c] = &block.corners;
         for lane in 0..LANES {
-            let normal = self.rotation * get(&block.normal, lane);
+            let normal = self.rotation * vector(&block.normal, lane);
             let corners = [
-                self.placed(get(a, lane)),
-                self.placed(get(b, lane)),
-                self.placed(get(c, lane)),
+                self.placed(vector(a, lane)),
+                self.placed(vector(b, lane)),
+                self.placed(vector(c, lane)),
             ];
             let [a, b, c] = corners;
             let (lowest, highest) = (a.min(b).min(c), a.max(b).max(c));
@@ -542,8 +542,8 @@ impl BlockSearch {
             let (mut from, mut edge) = (Vec3::ZERO, Vec3::ZERO);
             let (mut farthest, mut ground2) = (0.0, 0.0);
             for k in 0..3 {
-                let a = get(&batch.corners[k], lane);
-                let e = get(&batch.corners[(k + 1) % 3], lane) - a;
+                let a = vector(&batch.corners[k], lane);
+                let e = vector(&batch.corners[(k + 1) % 3], lane) - a;
                 let beyond =
                     e.y * (x - batch.moved[0][lane] - a.x) - e.x * (y - batch.moved[1][lane] - a.y);
                 // Squares of distances are compared, because they need no square roots.
@@ -575,7 +575,7 @@ impl BlockSearch {
             let r = most(q, error).sqrt();
             let mut lowest = f32::INFINITY;
             for k in 0..3 {
-                let c = get(&batch.corners[k], lane);
+                let c = vector(&batch.corners[k], lane);
                 lowest = least(lowest, (c.x - x) * dx + (c.y - y) * dy + c.z * r);
             }
             // The length of (dx, dy, r) times the radius is at most the mean of their squares.
@@ -623,9 +623,4 @@ impl BlockSearch {
 #[inline(always)]
 fn set([x, y, z]: &mut [Lane; 3], lane: usize, vector: Vec3) {
     (x[lane], y[lane], z[lane]) = (vector.x, vector.y, vector.z);
-}
-
-#[inline(always)]
-fn get([x, y, z]: &[Lane; 3], lane: usize) -> Vec3 {
-    Vec3::new(x[lane], y[lane], z[lane])
 }

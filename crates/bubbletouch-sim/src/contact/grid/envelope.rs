@@ -24,7 +24,7 @@ use crate::contact::law::triangle::{FACE_SLACK, SweptEdge, SweptFace, corner_hei
 use crate::contact::mesh::skin_mesh::MeshAt;
 use crate::mesh::Triangle;
 use crate::objects::Model;
-use crate::objects::mesh_blocks::{ContactTriangle, LANES, Lane, MAX_DEPTH, MeshBlocks};
+use crate::objects::mesh_blocks::{ContactTriangle, LANES, Lane, MeshBlocks, STACK};
 use glam::{DMat3, DVec2, DVec3};
 use std::ops::Range;
 
@@ -253,7 +253,6 @@ fn sweep_each_block(
     bounds: &BlockSearch,
 ) {
     sweep.is_in_front = bounds.is_in_front(blocks);
-    const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
     let mut stack = [(f32::NEG_INFINITY, 0_u32); STACK];
     let mut n_waiting = 1;
     while n_waiting > 0 {

@@ -13,7 +13,7 @@ use super::taxel_lines::{Ray, TaxelLines, Thickness};
 use crate::contact::instructions::for_instructions;
 use crate::contact::lanes::SelectedLanes;
 use crate::contact::law::triangle;
-use crate::objects::mesh_blocks::{Block, BlockNode, LANES, MAX_DEPTH};
+use crate::objects::mesh_blocks::{Block, BlockNode, LANES, STACK};
 use crate::world::{LEAF, Leaf};
 use glam::DMat3;
 
@@ -55,8 +55,6 @@ impl LeafStops {
 
 /// Nodes and blocks that wait to be examined; scratch memory of searches.
 pub(crate) struct SearchStack([Waiting; STACK]);
-
-const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
 
 /// Node or block that waits to be examined.
 #[derive(Clone, Copy)]

@@ -14,7 +14,7 @@
 use super::directions::Directions;
 use super::taxel_lines::{Line, Thickness};
 use crate::contact::lanes::{least, most};
-use crate::objects::mesh_blocks::{Block, BlockNode, Lane};
+use crate::objects::mesh_blocks::{Block, BlockNode, vector};
 use glam::Vec3;
 
 /// Box around triangles, with a bound of the directions of contact, relative to the centre of the mesh.
@@ -251,10 +251,4 @@ impl Contact {
         }
         beside
     }
-}
-
-/// Returns the vector of a lane.
-#[inline(always)]
-fn vector([x, y, z]: &[Lane; 3], lane: usize) -> Vec3 {
-    Vec3::new(x[lane], y[lane], z[lane])
 }

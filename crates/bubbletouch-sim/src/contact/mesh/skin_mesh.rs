@@ -4,7 +4,7 @@ use crate::contact::law::{stop_in_front, triangle::stopping_height};
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
 use crate::objects::MeshModel;
-use crate::objects::mesh_blocks::{LANES, Lane};
+use crate::objects::mesh_blocks::{LANES, vector};
 use crate::world::{Node, PlacedTaxel};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
@@ -84,20 +84,19 @@ impl<'a> MeshAt<'a> {
     pub fn low_corner(&self, direction: DVec3) -> DVec3 {
         let blocks = self.mesh.blocks();
         let along = (self.rotation.transpose() * direction).as_vec3();
-        let lane = |of: &[Lane; 3], k: usize| Vec3::new(of[0][k], of[1][k], of[2][k]);
         let used = |used: u32| (0..LANES).filter(move |k| used >> k & 1 == 1);
         let lowest = |a: (f32, u32), b: (f32, u32)| if b.0 < a.0 { b } else { a };
         let mut child = 0;
         while child % 2 == 0 {
             let node = &blocks.nodes[(child / 2) as usize];
             let bottoms = used(node.used).map(|k| {
-                let half = lane(&node.half, k).dot(along.abs());
-                (lane(&node.center, k).dot(along) - half, node.children[k])
+                let half = vector(&node.half, k).dot(along.abs());
+                (vector(&node.center, k).dot(along) - half, node.children[k])
             });
             (_, child) = bottoms.fold((f32::INFINITY, 1), lowest);
         }
         let block = &blocks.blocks[(child / 2) as usize];
-        let corners = used(block.used).flat_map(|k| block.corners.map(|corner| lane(&corner, k)));
+        let corners = used(block.used).flat_map(|k| block.corners.map(|corner| vector(&corner, k)));
         let low = |a: Vec3, b: Vec3| if b.dot(along) < a.dot(along) { b } else { a };
         let corner = corners.reduce(low).unwrap_or(Vec3::ZERO);
         self.pose.transform_point(corner.as_dvec3() + blocks.center)
