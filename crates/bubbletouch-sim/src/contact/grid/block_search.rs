@@ -374,12 +374,9 @@ impl BlockSearch {
         let [a, b, c] = &block.corners;
         for lane in 0..LANES {
             let normal = self.rotation * vector(&block.normal, lane);
-            let corners = [
-                self.placed(vector(a, lane)),
-                self.placed(vector(b, lane)),
-                self.placed(vector(c, lane)),
-            ];
-            let [a, b, c] = corners;
+            let a = self.placed(vector(a, lane));
+            let b = self.placed(vector(b, lane));
+            let c = self.placed(vector(c, lane));
             let (lowest, highest) = (a.min(b).min(c), a.max(b).max(c));
             let Directions {
                 shift,
@@ -399,9 +396,9 @@ impl BlockSearch {
                 back: lowest.z,
             };
             let found = self.find(&bounds, limit);
-            for k in 0..3 {
-                set(&mut placed.corners[k], lane, corners[k]);
-            }
+            set(&mut placed.corners[0], lane, a);
+            set(&mut placed.corners[1], lane, b);
+            set(&mut placed.corners[2], lane, c);
             placed.sign[lane] = if normal.z > 0.0 { 1.0 } else { -1.0 };
             let is_certain = shift != 0.0;
             // A ball that touches the triangle at a point is at most as far from the plane of the triangle as from the point. Its centre is therefore not below

@@ -152,7 +152,7 @@ impl TaxelLines {
         let blocks = mesh.model().blocks();
         let mut lines = Lines::default();
         let mut squares = [0.0; LEAF];
-        for k in 0..LEAF {
+        for (k, square) in squares.iter_mut().enumerate() {
             let ray = Ray::new(mesh, leaf, k);
             let (origin, direction) = (ray.origin - blocks.center, ray.direction);
             let behind = leaf.behind[k] as f32;
@@ -163,7 +163,7 @@ impl TaxelLines {
                 behind,
             );
             lines.set(k, &line);
-            squares[k] = line.origin.length_squared();
+            *square = line.origin.length_squared();
         }
         let length = largest(&squares).sqrt() + largest(&lines.reach);
         let slack = (ROUNDING * (blocks.radius + f64::from(length))) as f32;
