@@ -27,7 +27,7 @@ const GRID: Grid = Grid {
 #[test]
 fn presses_from_the_front_in_one_workspace_push_as_far_as_every_part_says() {
     let (mut n_touched, mut n_deep, mut n_by_mesh, mut n_edges) = (0, 0, 0, 0);
-    for case in (0..400).filter(|case| is_flat(*case)) {
+    for case in (0..160).filter(|case| is_flat(*case)) {
         let mut rng = rng("front", case);
         let patch = random_patch(&mut rng, case);
         let mut workspace = Workspace::new();
@@ -80,7 +80,7 @@ fn presses_from_the_front_in_one_workspace_push_as_far_as_every_part_says() {
         }
     }
     let found = format!("{n_touched} {n_deep}, {n_edges} of {n_by_mesh}");
-    assert!(n_touched > 20_000 && n_deep > 5_000, "{found}");
+    assert!(n_touched > 8_000 && n_deep > 2_000, "{found}");
     assert!(n_edges < n_by_mesh / 1000, "{found}");
 }
 
@@ -124,7 +124,7 @@ fn a_press_into_a_row_leaves_the_frame_and_nothing_else_there() {
 #[test]
 fn first_contact_along_any_direction_is_that_of_the_nearest_part() {
     let mut n_met = [0; 2];
-    for case in 0..360 {
+    for case in 0..180 {
         let scene = Scene::random("first contact", case);
         let (layout, taxels) = (scene.patch.layout(), scene.patch.taxels());
         let aside = direction(&mut rng("aside", case));
@@ -155,7 +155,7 @@ fn first_contact_along_any_direction_is_that_of_the_nearest_part() {
             "case {case}: {contact:?} for {deepest:?}"
         );
     }
-    assert!(n_met.iter().all(|&n| n > 60), "{n_met:?}");
+    assert!(n_met.iter().all(|&n| n > 30), "{n_met:?}");
 }
 
 #[test]

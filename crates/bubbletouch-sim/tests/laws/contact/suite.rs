@@ -119,7 +119,7 @@ fn mirrored(scene: &Scene, motion: &Pose) -> Scene {
 #[test]
 fn a_rigid_motion_of_the_world_or_its_mirror_image_changes_nothing() {
     let (mut n_compared, mut n_flanks) = (0, 0);
-    for case in 0..N_CASES {
+    for case in 0..N_CASES / 2 {
         let scene = Scene::random("motion", case);
         let expected = by_every_part(&scene, Behind::Ignored);
         let motion = random_pose(&mut rng("to", case), 0.5);
@@ -150,7 +150,7 @@ fn a_rigid_motion_of_the_world_or_its_mirror_image_changes_nothing() {
     }
     let share = format!("{n_flanks} of {n_compared}");
     assert!(
-        n_compared > 20_000 && n_flanks < n_compared / 500,
+        n_compared > 10_000 && n_flanks < n_compared / 500,
         "{share}"
     );
 }
