@@ -93,7 +93,7 @@ def test_a_given_test_set_is_one_more_split(tmp_path: Path) -> None:
 
 def test_wrong_test_sets_are_named() -> None:
     frames, labels = data()
-    with pytest.raises(ValueError, match="^test: touches of 1 frames of 5 × 12 taxels; touches of 1 frames of 12 × 12 taxels, as frames has$"):
+    with pytest.raises(ValueError, match="^test: touches of 1 frame of 5 × 12 taxels; touches of 1 frame of 12 × 12 taxels, as frames has$"):
         bt.audit(frames, labels, test=(frames[:, :5], labels))
     with pytest.raises(ValueError, match="^test: a test set; labels_test and groups_test, if frames has labels and groups$"):
         bt.audit(frames, labels, test=(frames, None))

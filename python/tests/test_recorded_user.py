@@ -375,7 +375,7 @@ def test_wrong_test_sets_are_refused_by_their_key() -> None:
         ({"labels_test": numbers[::3] * 0}, "key recorded.labels_test: no touch of class 1; touches of each class"),
         ({"labels_test": ["cup"] * 10}, "recorded.labels_test: numbers in one array of labels and texts in the other; .* as in recorded.labels$"),
         ({"labels_test": numbers[:9]}, "recorded.labels_test: 9 values; 10, one a touch of recorded.frames"),
-        ({"frames_test": frames[::3, :5]}, "recorded.frames_test: touches of 1 frames of 1 × 5 taxels; .* 1 × 8 taxels, as recorded.frames has"),
+        ({"frames_test": frames[::3, :5]}, "recorded.frames_test: touches of 1 frame of 1 × 5 taxels; .* 1 × 8 taxels, as recorded.frames has"),
         ({"frames_test": frames[:0]}, r"recorded\.frames_test: no readings, shape \(0, 8\); at least one reading"),
         ({"labels_test": None}, "key recorded.labels_test: no such key beside frames_test"),
     ]:

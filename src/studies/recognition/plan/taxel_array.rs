@@ -18,7 +18,7 @@ const PICTURE_CELLS: f64 = 3.0;
 /// Array of taxels: its layout, the quantity that its taxels read, and its slide along the object. Every layout has the density and size of a square grid.
 #[derive(Clone, Debug)]
 pub struct TaxelArray {
-    /// Keys of `[skin]`, without those that `grid` contains.
+    /// Keys of `[skin]` that act, without those that `grid` contains. Arrays that differ in other keys share their touches.
     skin: Arc<SkinSpec>,
     grid: Grid,
     taxel: Taxel,
@@ -81,10 +81,14 @@ impl TaxelArray {
         }
         let layout = skin.layout.unwrap_or_default();
         let radius = skin.curvature_radius_mm.filter(|_| layout.is_curved());
+        let reads_shear = matches!(sensed, Sensed::Shear(_));
         Ok(Self {
             skin: Arc::new(SkinSpec {
                 size_mm: None,
                 taxels: None,
+                curvature_radius_mm: radius,
+                friction: skin.friction.filter(|_| reads_shear),
+                shear_stiffness_n_per_m: skin.shear_stiffness_n_per_m.filter(|_| reads_shear),
                 ..skin.clone()
             }),
             grid,
