@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::inputs::arrays::{ClassLabels, KeyValue, OneForEach, group_keys, is_member};
 use crate::studies::recognition::frames::{RecordedArray, touch_of};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
+use bubbletouch_sim::text::toml_text::check_nesting;
 use ndarray::{Array2, Axis, concatenate};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -64,6 +65,7 @@ impl AuditFiles {
         let allowed = "a study with a table [recorded]";
         let text = crate::files::read_to_string(path)
             .map_err(|error| Error::unreadable(path, allowed, error))?;
+        check_nesting(&path.display().to_string(), &text)?;
         let refuse = |error: toml::de::Error| {
             Error::input(path.display(), error.message().to_owned(), allowed)
         };

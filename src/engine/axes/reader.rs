@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::toml_value::{number, table_of, value_at};
 use crate::toml_lines::line_of;
-use crate::toml_text::{check_brackets, check_numbers};
+use crate::toml_text::{check_nesting, check_numbers};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
@@ -23,7 +23,7 @@ pub fn read<S: DeserializeOwned + Serialize>(
     text: &str,
     keys: &'static [KeyAbout],
 ) -> Result<(S, StudyAxes)> {
-    check_brackets(place, text)?;
+    check_nesting(place, text)?;
     check_numbers(place, text)?;
     let said = |error| Error::toml(place, text, &error);
     let mut table = DeTable::parse(text).map_err(said)?;

@@ -92,7 +92,7 @@ impl Catalogue {
     /// # Errors
     /// If the text is invalid; errors begin with `place`, the name of the file.
     pub fn parse(set: &str, place: &str, text: &str) -> Result<Self> {
-        toml_text::check_brackets(place, text)?;
+        toml_text::check_nesting(place, text)?;
         check_bounds(place, text)?;
         let file: File = toml::from_str(text).map_err(|e| unreadable(place, text, &e))?;
         if file.object.is_empty() {

@@ -14,12 +14,16 @@ use toml_parser::lexer::TokenKind;
 /// of brackets would overflow a thread's stack.
 const MAX_OPEN: usize = 200;
 
+/// Maximum number of dots in a key of a TOML text. Each dot is a level of nesting that the TOML reader does not count, and dropping thousands of levels would
+/// overflow a thread's stack.
+const MAX_DOTS: usize = 20;
+
 /// Parses a TOML text; an error contains `place` (the file), line and column.
 ///
 /// # Errors
 /// If the text is not valid TOML, has an unknown, missing or mistyped key, or has a number out of bounds.
 pub fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
-    check_brackets(place, text)?;
+    check_nesting(place, text)?;
     check_numbers(place, text)?;
     toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
 }
@@ -72,33 +76,37 @@ pub fn write(study: &impl Serialize) -> String {
 
 /// Parses a text as a TOML table; `None` if it is not valid TOML.
 pub fn table(text: &str) -> Option<toml::Table> {
-    check_brackets("", text).ok()?;
+    check_nesting("", text).ok()?;
     text.parse().ok()
 }
 
 /// Returns an error for invalid TOML text whose parsing would need a deep stack.
 ///
 /// # Errors
-/// If more than 200 brackets are open at once.
-pub fn check_brackets(place: &str, text: &str) -> Result<()> {
+/// If more than 200 brackets are open at once, or a key has more than 20 dots.
+pub fn check_nesting(place: &str, text: &str) -> Result<()> {
     // Square and curly brackets are counted separately; in invalid text one kind may close the other.
     let mut open = [0_usize; 2];
+    let mut n_dots = 0;
     for token in Source::new(text).lex() {
         match token.kind() {
             TokenKind::LeftSquareBracket => open[0] += 1,
             TokenKind::LeftCurlyBracket => open[1] += 1,
             TokenKind::RightSquareBracket => open[0] = open[0].saturating_sub(1),
             TokenKind::RightCurlyBracket => open[1] = open[1].saturating_sub(1),
+            TokenKind::Dot => n_dots += 1,
+            TokenKind::Equals | TokenKind::Comma | TokenKind::Newline => n_dots = 0,
             _ => {}
         }
         let n_open = open[0] + open[1];
-        if n_open > MAX_OPEN {
-            let line = line_of(text, token.span().start());
-            let place = format!("{place}:{line}");
-            let given = format!("{n_open} brackets that are still open");
-            let allowed = format!("at most {MAX_OPEN}");
-            return Err(Error::input(place, given, allowed));
-        }
+        let (given, most) = match n_open > MAX_OPEN {
+            true => (format!("{n_open} brackets that are still open"), MAX_OPEN),
+            false if n_dots > MAX_DOTS => (format!("a key with {n_dots} dots"), MAX_DOTS),
+            false => continue,
+        };
+        let line = line_of(text, token.span().start());
+        let allowed = format!("at most {most}");
+        return Err(Error::input(format!("{place}:{line}"), given, allowed));
     }
     Ok(())
 }
@@ -125,6 +133,17 @@ mod tests {
             assert!(said.starts_with("study.toml:3: 201 brackets"), "{said}");
         }
         assert_eq!(table(&"[".repeat(100_000)), None);
+    }
+
+    #[test]
+    fn keys_of_thousands_of_parts_are_refused_with_their_line() {
+        for start in ["", "[", "a = {b.", "a = [1.5, 2.5]\n"] {
+            let text = format!("# deep\n{start}{}=1", "a.".repeat(20_000));
+            let said = refused(text.leak());
+            let line = 2 + start.matches('\n').count();
+            let expected = format!("study.toml:{line}: a key with 21 dots; at most 20");
+            assert_eq!(said, expected);
+        }
     }
 
     #[test]
