@@ -123,15 +123,13 @@ impl Study for SaturationStudy {
             let of = of.expect("configurations are of these objects");
             let (patch, model) = (self.array.patch(), from_ref(&of.object.model));
             let mut workspace = Workspace::new();
-            let mut saturated = of.touches.clone();
-            saturated.retain(|touch| {
+            let saturated = of.touches.iter().filter(|touch| {
                 let pose = [touch.patch_from_object(&of.rests[touch.rest])];
-                let contact = Press::new(patch, model, &pose, Until::Depth(touch.depth))
-                    .run(&mut workspace)
-                    .unwrap();
+                let press = Press::new(patch, model, &pose, Until::Depth(touch.depth));
+                let contact = press.run(&mut workspace).unwrap();
                 contact.is_some_and(|contact| contact.n_saturated >= configuration.n_taxels)
             });
-            let saturated = saturated.len() as f64 / of.touches.len() as f64;
+            let saturated = saturated.count() as f64 / of.touches.len() as f64;
             Ok(vec![(configuration.clone(), Saturation { saturated })])
         })
     }
