@@ -34,9 +34,9 @@ pub struct KeyAbout {
     pub replaces: Option<&'static str>,
     /// Conditions under which the key acts, from the macro [`acts!`](crate::acts). If it is `None`, the key always acts.
     pub acts: Option<&'static [Acts]>,
-    /// Whether all kinds of studies that press one array use the key. If it is `None`, only studies of recognition do.
+    /// Whether all kinds of studies that press one array use the key. Otherwise, only studies of recognition do.
     pub of_all_kinds: Option<bool>,
-    /// Whether training touches and test touches share the value. If it is `None`, the table `[test]` may contain the key.
+    /// Whether training touches and test touches share the value. Otherwise, the table `[test]` may contain the key.
     pub of_all_touches: Option<bool>,
 }
 

@@ -22,7 +22,7 @@ fn test_table(schema: &Value) -> Value {
         let table = &schema["properties"][name];
         let keys = properties(table).filter(|(key, _)| {
             let about = find(recognition_keys(), &format!("{name}.{key}"));
-            about.is_none_or(|about| about.of_all_touches.is_none())
+            about.is_none_or(|about| about.of_all_touches != Some(true))
         });
         let keys =
             keys.map(|(key, _)| (key.clone(), reference(&format!("{path}/properties/{key}"))));

@@ -23,8 +23,6 @@ pub struct TaxelArray {
     grid: Grid,
     taxel: Taxel,
     layout: ArrayLayout,
-    /// Radius of curvature of the layout, metres; 0 if the layout is flat.
-    radius: f64,
     sensed: Sensed,
     slide: DVec2,
     /// Whether the positions of the taxels are known. If the positions are unknown, the taxels are treated as a single row.
@@ -41,7 +39,7 @@ impl TaxelArray {
     /// If the grid, the taxel or a spring is invalid, or the layout does not fit the radius of curvature.
     pub fn new(skin: &SkinSpec, (grid, taxel): (Grid, Taxel)) -> Result<Self> {
         let layout = skin.layout.unwrap_or_default();
-        let radius = skin.curvature_radius_mm.unwrap_or(0.0) * MM;
+        let radius = radius(skin);
         let patch = match layout {
             ArrayLayout::Grid => Patch::grid(grid, taxel)?,
             _ => {
@@ -80,13 +78,12 @@ impl TaxelArray {
             shear.check()?;
         }
         let layout = skin.layout.unwrap_or_default();
-        let radius = skin.curvature_radius_mm.filter(|_| layout.is_curved());
         let reads_shear = matches!(sensed, Sensed::Shear(_));
         Ok(Self {
             skin: Arc::new(SkinSpec {
                 size_mm: None,
                 taxels: None,
-                curvature_radius_mm: radius,
+                curvature_radius_mm: skin.curvature_radius_mm.filter(|_| layout.is_curved()),
                 friction: skin.friction.filter(|_| reads_shear),
                 shear_stiffness_n_per_m: skin.shear_stiffness_n_per_m.filter(|_| reads_shear),
                 ..skin.clone()
@@ -94,7 +91,6 @@ impl TaxelArray {
             grid,
             taxel,
             layout,
-            radius: radius.unwrap_or(0.0) * MM,
             sensed,
             slide: DVec2::ZERO,
             is_placed: true,
@@ -237,7 +233,8 @@ impl TaxelArray {
     /// Returns the positions of the taxels after projection onto a plane, metres. On a sphere, distance along the surface and direction from the middle are
     /// preserved (azimuthal equidistant projection).
     fn chart_places(&self) -> Vec<DVec2> {
-        let place = |center: &DVec3| self.layout.place_on_plane(*center, self.radius);
+        let radius = radius(&self.skin);
+        let place = |center: &DVec3| self.layout.place_on_plane(*center, radius);
         self.patch.layout().centers().iter().map(place).collect()
     }
 
@@ -417,6 +414,11 @@ impl Serialize for TaxelArray {
         let of_places = (self.is_placed, self.listed.as_deref(), absent);
         (of_skin, self.slide.to_array(), of_places).serialize(serializer)
     }
+}
+
+/// Returns the radius of curvature of a skin's layout, metres; 0 if it has none.
+fn radius(skin: &SkinSpec) -> f64 {
+    skin.curvature_radius_mm.unwrap_or(0.0) * MM
 }
 
 /// Returns the random seed for the sensor errors of an array's skin. The seed is equal in all touches and trials.

@@ -54,7 +54,9 @@ impl Check<'_> {
             let Value::Table(own) = own else { continue };
             for (key, value) in keys {
                 let path = format!("{name}.{key}");
-                if find(recognition_keys(), &path).is_some_and(|key| key.of_all_touches.is_some()) {
+                if find(recognition_keys(), &path)
+                    .is_some_and(|key| key.of_all_touches == Some(true))
+                {
                     let allowed = format!("{path}, which training and test touches share");
                     return Err(self.error(&format!("test.{path}"), value, allowed));
                 }

@@ -4,7 +4,6 @@ use crate::inputs::keys::{AxisPlace, find};
 use crate::inputs::range::Range::{self, Between};
 use crate::inputs::toml_value::{is_at, table_of, value_at};
 use crate::studies::prelude::*;
-use std::collections::BTreeMap;
 
 /// Maximum number of trials of a study, because the splits of all trials are kept in memory.
 pub(super) const MAX_TRIALS: usize = 100_000;
@@ -72,14 +71,15 @@ impl Check<'_> {
         table: &impl Serialize,
         allowed: &str,
     ) -> Result<()> {
-        let tables = BTreeMap::from([(name, table_of(table))]);
-        let tables = table_of(&tables);
+        let table = table_of(table);
         let is_given = |key: &&KeyAbout| {
-            let value = value_at(&tables, key.path);
+            let own = key.path.strip_prefix(name);
+            let own = own.and_then(|own| own.strip_prefix('.'));
+            let value = own.and_then(|own| value_at(&table, own));
             value.is_some_and(|value| !key.is_usual(value))
         };
         let mut others = recognition_keys().iter();
-        let other = others.find(|key| key.of_all_kinds.is_none() && is_given(key));
+        let other = others.find(|key| key.of_all_kinds != Some(true) && is_given(key));
         other.map_or(Ok(()), |key| Err(self.error(key.path, "given", allowed)))
     }
 
