@@ -55,7 +55,10 @@ pub fn answer(context: &Context) -> Result<Claim> {
     findings.extend(shared);
     let (copies, found) = copies(context);
     findings.push(found);
-    let doubtful = doubtful(context);
+    let doubtful = match is_blind(context) {
+        true => Vec::new(),
+        false => doubtful(context),
+    };
     if context.has_classes {
         findings.extend(clusters(context));
         findings.push(labels(context, &doubtful));
@@ -104,20 +107,25 @@ fn arms_sentence(context: &Context, number: usize) -> Option<String> {
 
 /// Returns the first sentence of the page.
 fn accuracy_sentence(context: &Context) -> String {
-    let Some((mut sentence, random)) = arms_sentence(context, 0).zip(context.best(0, false)) else {
+    let Some(mut sentence) = arms_sentence(context, 0) else {
         return "Without labels of two classes, only the readings were checked.".to_owned();
     };
     let split = &context.splits[0];
     if split.has_few_units() {
         sentence += &format!(" There are only {} {}s.", split.n_units, split.name);
     }
-    if random
-        .interval(split)
-        .is_ok_and(|own| own.low <= context.chance())
-    {
+    if is_blind(context) {
         sentence += " No fast classifier recognises more than chance: this audit is blind to leaks of the split.";
     }
     sentence
+}
+
+/// Returns whether no fast classifier recognises more than chance.
+fn is_blind(context: &Context) -> bool {
+    context.best(0, false).is_none_or(|random| {
+        let interval = random.interval(&context.splits[0]);
+        interval.is_ok_and(|own| own.low <= context.chance())
+    })
 }
 
 /// Returns the names of the inputs that were not given.
@@ -365,12 +373,7 @@ fn clusters(context: &Context) -> Option<Finding> {
 
 /// Finds touches whose nearest touches all belong to one other class, to which most classifiers assign them too.
 fn doubtful(context: &Context) -> Vec<Doubtful> {
-    let n = if context.has_classes {
-        context.labels.len()
-    } else {
-        0
-    };
-    let touches = 0..n;
+    let touches = 0..context.labels.len();
     let found = touches.filter_map(|touch| {
         let near = context.near.neighbours[touch].get(..N_DOUBTING)?;
         let class = context.labels[near[0]];
@@ -384,6 +387,10 @@ fn doubtful(context: &Context) -> Vec<Doubtful> {
 }
 
 fn labels(context: &Context, doubtful: &[Doubtful]) -> Finding {
+    if is_blind(context) {
+        let sentence = "No fast classifier recognises more than chance, so none can tell which labels are wrong.";
+        return Finding::new("labels", Verdict::NotChecked, sentence);
+    }
     let (n, n_doubtful) = (context.labels.len(), doubtful.len());
     let share = n_doubtful as f64 / n as f64;
     let sentence = format!(

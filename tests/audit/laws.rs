@@ -32,6 +32,15 @@ fn what_is_not_claimed_becomes_a_fault_and_the_named_split_a_note() {
     assert_eq!(verdict(Some("mean")), Verdict::Fault);
 }
 
+/// Readings without classes: a touch whose nearest touches belong to one other class is chance, and no wrong label.
+#[test]
+fn no_label_is_doubtful_if_no_classifier_recognises_more_than_chance() {
+    let mut rng = rng("blind", 1);
+    let labels = shuffled_labels(&mut rng, 4, 100);
+    let set = Set::new(rng, labels, 1, |_, _, rng| row(64, |_| normal(rng)));
+    assert_eq!(finding(set, "labels").verdict, Verdict::NotChecked);
+}
+
 /// Readings fall under pressure, and the full scale of the converter is above them; a full scale of 0 is reached.
 #[test]
 fn touches_at_the_full_scale_are_counted_on_its_side_of_rest() {
