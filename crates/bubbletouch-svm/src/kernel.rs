@@ -23,20 +23,20 @@ pub enum Gamma {
     Value(f64),
 }
 
-/// Kernel function `K(x, z)` of a support vector machine.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kernel {
+/// Kernel function `K(x, z)` of a support vector machine, whose width parameter γ is a setting or, during training, a number (`Kernel<f64>`).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Kernel<G = Gamma> {
     /// Linear kernel `x·z`.
     Linear,
     /// Gaussian kernel `exp(−γ|x − z|²)`.
     Rbf {
         /// Width parameter γ.
-        gamma: Gamma,
+        gamma: G,
     },
     /// Polynomial kernel `(γ x·z + c₀)^d`.
     Polynomial {
         /// Scale parameter γ.
-        gamma: Gamma,
+        gamma: G,
         /// Constant c₀ ≥ 0 in the polynomial kernel (a negative constant makes the dual problem non-convex).
         coef0: f64,
         /// Degree d of the polynomial, at least 1.
@@ -44,13 +44,16 @@ pub enum Kernel {
     },
 }
 
-impl Kernel {
+/// Kernel function whose γ is a number.
+pub(crate) type KernelFunction = Kernel<f64>;
+
+impl<G: Copy> Kernel<G> {
     /// Returns a copy of the kernel with another γ; a linear kernel is unchanged.
-    pub fn with_gamma(self, gamma: Gamma) -> Self {
+    pub fn with_gamma<H>(self, gamma: H) -> Kernel<H> {
         match self {
-            Self::Linear => Self::Linear,
-            Self::Rbf { .. } => Self::Rbf { gamma },
-            Self::Polynomial { coef0, degree, .. } => Self::Polynomial {
+            Self::Linear => Kernel::Linear,
+            Self::Rbf { .. } => Kernel::Rbf { gamma },
+            Self::Polynomial { coef0, degree, .. } => Kernel::Polynomial {
                 gamma,
                 coef0,
                 degree,
@@ -58,14 +61,16 @@ impl Kernel {
         }
     }
 
-    /// Returns the kernel's γ setting, or `None` for a linear kernel.
-    pub fn gamma(&self) -> Option<Gamma> {
+    /// Returns the kernel's γ, or `None` for a linear kernel.
+    pub fn gamma(&self) -> Option<G> {
         match *self {
             Self::Linear => None,
             Self::Rbf { gamma } | Self::Polynomial { gamma, .. } => Some(gamma),
         }
     }
+}
 
+impl Kernel {
     /// Returns the default γ of the kernel ('scale') for the training features (n_rows × m).
     pub fn gamma_scale(&self, features: ArrayView2<f64>) -> f64 {
         let scale = features.ncols() as f64 * variance(features);
@@ -78,36 +83,22 @@ impl Kernel {
         features: ArrayView2<f64>,
         statistics: &RowStatistics,
     ) -> Result<KernelFunction> {
-        let number = |gamma: Gamma| match gamma {
-            Gamma::Scale => Ok(self.gamma_scale(features)),
-            Gamma::Value(gamma) if gamma > 0.0 && gamma.is_finite() => Ok(gamma),
-            Gamma::Value(gamma) => {
-                let allowed = "'scale' or a finite number above 0 is allowed";
-                Err(Error::input("gamma", gamma, allowed))
+        if let Self::Polynomial { coef0, degree, .. } = *self {
+            if !(coef0 >= 0.0 && coef0.is_finite()) {
+                let allowed = "a finite number of at least 0 is allowed";
+                return Err(Error::input("coef0", coef0, allowed));
             }
-        };
-        let function = match *self {
-            Self::Linear => KernelFunction::Linear,
-            Self::Rbf { gamma } => KernelFunction::Rbf {
-                gamma: number(gamma)?,
-            },
-            Self::Polynomial {
-                gamma,
-                coef0,
-                degree,
-            } => {
-                if !(coef0 >= 0.0 && coef0.is_finite()) {
-                    let allowed = "a finite number of at least 0 is allowed";
-                    return Err(Error::input("coef0", coef0, allowed));
-                }
-                if !(1..=20).contains(&degree) {
-                    return Err(Error::input("degree", degree, "1 to 20 is allowed"));
-                }
-                KernelFunction::Polynomial {
-                    gamma: number(gamma)?,
-                    coef0,
-                    degree,
-                }
+            if !(1..=20).contains(&degree) {
+                return Err(Error::input("degree", degree, "1 to 20 is allowed"));
+            }
+        }
+        let function = match self.gamma() {
+            None => Kernel::Linear,
+            Some(Gamma::Scale) => self.with_gamma(self.gamma_scale(features)),
+            Some(Gamma::Value(gamma)) if gamma > 0.0 && gamma.is_finite() => self.with_gamma(gamma),
+            Some(Gamma::Value(gamma)) => {
+                let allowed = "'scale' or a finite number above 0 is allowed";
+                return Err(Error::input("gamma", gamma, allowed));
             }
         };
         function.check(statistics.largest_norm)?;
@@ -141,14 +132,6 @@ fn squares_about(mean: f64, values: &[f64]) -> f64 {
     squares.iter().sum::<f64>() + last.sum::<f64>()
 }
 
-/// Kernel function whose parameters all have numeric values.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) enum KernelFunction {
-    Linear,
-    Rbf { gamma: f64 },
-    Polynomial { gamma: f64, coef0: f64, degree: u32 },
-}
-
 impl KernelFunction {
     /// Returns an error if kernel values can exceed the range of numbers; `norm` is the largest squared norm of a row. No kernel value exceeds `K(x, x)` of the
     /// row x with the largest norm, and no squared distance exceeds four times this norm.
@@ -171,17 +154,9 @@ impl KernelFunction {
         ))
     }
 
-    /// Returns the kernel parameter γ, or `None` for a kernel without γ.
-    pub fn gamma(&self) -> Option<f64> {
-        match *self {
-            Self::Linear => None,
-            Self::Rbf { gamma } | Self::Polynomial { gamma, .. } => Some(gamma),
-        }
-    }
-
     /// Returns the centre of the rows, which is subtracted from every row. If a constant added to all features changes only the offset ρ, this is the mean of
     /// the rows, otherwise the origin. Products of rows about the mean are small and lose fewer digits.
-    pub fn centre(&self, statistics: &RowStatistics) -> Array1<f64> {
+    pub(crate) fn centre(&self, statistics: &RowStatistics) -> Array1<f64> {
         match self {
             Self::Linear | Self::Rbf { .. } => statistics.mean.clone(),
             Self::Polynomial { .. } => Array1::zeros(statistics.mean.len()),
@@ -190,7 +165,7 @@ impl KernelFunction {
 
     /// Returns an upper bound of `K(x, x)` over all rows x for computation in f32, given their largest squared distance from the centre. Returns `None` if f32
     /// is not accurate enough.
-    pub fn largest_in_single(&self, farthest: f64) -> Option<f64> {
+    pub(crate) fn largest_in_single(&self, farthest: f64) -> Option<f64> {
         match *self {
             Self::Linear => Some(farthest),
             // If exponents are large, K is nearly the identity and coefficients are near 1 for any C.
@@ -205,7 +180,7 @@ impl KernelFunction {
     }
 
     /// Returns the kernel value `K(x, x)` of a row x with itself, given the squared norm of x.
-    pub fn of_norm<T: Scalar>(&self, norm: T) -> T {
+    pub(crate) fn of_norm<T: Scalar>(&self, norm: T) -> T {
         match *self {
             Self::Linear => norm,
             Self::Rbf { .. } => T::one(),
@@ -222,7 +197,7 @@ impl KernelFunction {
     }
 
     /// Converts the inner products of one row with other rows to kernel values, given the squared norms of the rows.
-    pub fn of_products<T: Scalar>(&self, products: &mut [T], norm: T, norms: &[T]) {
+    pub(crate) fn of_products<T: Scalar>(&self, products: &mut [T], norm: T, norms: &[T]) {
         match *self {
             Self::Linear => {}
             Self::Rbf { gamma } => {

@@ -18,8 +18,7 @@ use crate::kernel::KernelFunction;
 use crate::multiclass::Multiclass;
 use crate::screening::first_rows::{PairsNearMargin, few_dimensions};
 use crate::screening::near_margin::NearMargin;
-use crate::smo::Smo;
-use crate::smo::SolverScalar;
+use crate::smo::{Smo, SolverScalar};
 
 /// Minimum number of features for screening, which trains each one-vs-one linear SVM only on rows near its decision boundary.
 const SCREENING_FROM_FEATURES: usize = 128;
@@ -216,14 +215,12 @@ impl<T: SolverScalar> Sorted<T> {
             None => (0..self.order.len()).collect(),
         };
         let is_positive = |row: &usize| self.ranges[positive].contains(row);
-        let labels = rows
-            .iter()
-            .map(|row| if is_positive(row) { 1.0 } else { -1.0 });
-        let labels: Vec<f64> = labels.collect();
-        let limits = labels.iter().zip(&rows);
-        let limits = limits.map(|(label, &row)| label * self.weights[row]);
-        let limits: Vec<f64> = limits.collect();
-        let mut smo = Smo::new(gram, &labels).with_limits(&limits);
+        let limit = |row: &usize| match is_positive(row) {
+            true => self.weights[*row],
+            false => -self.weights[*row],
+        };
+        let limits: Vec<f64> = rows.iter().map(limit).collect();
+        let mut smo = Smo::new(gram, &limits);
         for (&c, problems) in goal.path.iter().zip(problems) {
             let solution = smo.solve(c, goal.tolerance);
             problems.push(self.problem(&rows, (positive, negative), solution));

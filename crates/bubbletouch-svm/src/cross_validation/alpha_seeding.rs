@@ -15,12 +15,12 @@ pub(crate) struct AlphaSeeding {
 }
 
 impl AlphaSeeding {
-    /// Creates the transfer from one fold to the next; each slice contains the labels of all rows in one fold, 0 for held-out rows.
-    pub fn new((before, labels): (&[f64], &[f64]), positive: &Range<usize>) -> Self {
+    /// Creates the transfer from one fold to the next; each slice contains the limits of the coefficients in one fold, 0 for held-out rows.
+    pub fn new((before, limits): (&[f64], &[f64]), positive: &Range<usize>) -> Self {
         let mut sides = [(); 2].map(|()| (Vec::new(), Vec::new()));
-        for (at, (before, label)) in before.iter().zip(labels).enumerate() {
+        for (at, (before, limit)) in before.iter().zip(limits).enumerate() {
             let (lost, gained) = &mut sides[usize::from(positive.contains(&at))];
-            match (*before != 0.0, *label != 0.0) {
+            match (*before != 0.0, *limit != 0.0) {
                 (true, false) => lost.push(at),
                 (false, true) => gained.push(at),
                 _ => (),

@@ -8,13 +8,14 @@ use std::ops::Range;
 
 use super::alpha_seeding::AlphaSeeding;
 use crate::gram::matrix::Gram;
-use crate::smo::{Smo, SolverScalar, are_within};
+use crate::smo::variables::{are_within, signs};
+use crate::smo::{Smo, SolverScalar};
 use crate::training::Goal;
 
 /// Solutions of a binary problem on the training rows of one fold, for all values of C.
 pub(crate) struct FoldPath {
-    /// Label of each row of the problem: 1 (positive), −1 (negative), or 0 if the row is held out by the fold.
-    labels: Vec<f64>,
+    /// Limit of the coefficient of each row of the problem; 0 if the row is held out by the fold.
+    limits: Vec<f64>,
     /// Solutions in ascending order of C. Larger values of C than the last have the last solution.
     pub solutions: Vec<FoldSolution>,
 }
@@ -35,33 +36,29 @@ pub(crate) struct FoldSolution {
 
 impl FoldPath {
     /// Solves the problem of a pair of classes on all cross-validation folds; passes each solved fold to a callback. The argument `folds` contains the
-    /// labels of each fold, one per row of the Gram matrix, and `limits` the limits of the coefficients. Rows in the range `positive` have the label 1.
+    /// limits of the coefficients in each fold, one per row of the Gram matrix. Rows in the range `positive` have the label 1.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Gram<T>,
-        (folds, limits, positive): (Vec<Vec<f64>>, Vec<Vec<f64>>, &Range<usize>),
+        (folds, positive): (Vec<Vec<f64>>, &Range<usize>),
         goal: Goal,
         mut told: impl FnMut(&Self),
     ) {
-        let n = gram.len();
-        let label = |at: usize| if positive.contains(&at) { 1.0 } else { -1.0 };
-        let all: Vec<f64> = (0..n).map(label).collect();
-        let sums = sums_of_folds(gram, &all, &folds);
+        let sums = sums_of_folds(gram, &folds, positive);
         let mut last: Option<Self> = None;
-        for ((labels, limits), sums) in folds.into_iter().zip(limits).zip(sums) {
-            let smo = Smo::new(gram, &labels).with_limits(&limits);
-            let smo = smo.at_bounds(goal.path[0], &sums);
+        for (limits, sums) in folds.into_iter().zip(sums) {
+            let smo = Smo::new(gram, &limits).at_bounds(goal.path[0], &sums);
             let seeding = |last: Self| {
-                let seeding = AlphaSeeding::new((&last.labels, &labels), positive);
+                let seeding = AlphaSeeding::new((&last.limits, &limits), positive);
                 (last, seeding)
             };
             let last_and_exchange = last.take().map(seeding);
             let seed = |gram: &mut Gram<'_, T>, number: usize| {
                 let (last, seeding) = last_and_exchange.as_ref()?;
-                let moved = last.moved(number, (&labels, seeding), gram);
+                let moved = last.moved(number, (&limits, seeding), gram);
                 moved.filter(|(beta, _)| are_within(beta, &limits, goal.path[number]))
             };
             let solutions = along(smo, goal, seed);
-            told(last.insert(Self { labels, solutions }));
+            told(last.insert(Self { limits, solutions }));
         }
     }
 
@@ -70,14 +67,13 @@ impl FoldPath {
     /// from zero, as in training.
     pub fn of_class<T: SolverScalar>(
         gram: &mut Gram<T>,
-        (folds, limits): (Vec<Vec<f64>>, Vec<Vec<f64>>),
+        folds: Vec<Vec<f64>>,
         goal: Goal,
         mut told: impl FnMut(&Self),
     ) {
-        for (labels, limits) in folds.into_iter().zip(limits) {
-            let smo = Smo::new(gram, &labels).with_limits(&limits);
-            let solutions = along(smo, goal, |_, _| None);
-            told(&Self { labels, solutions });
+        for limits in folds {
+            let solutions = along(Smo::new(gram, &limits), goal, |_, _| None);
+            told(&Self { limits, solutions });
         }
     }
 
@@ -85,14 +81,15 @@ impl FoldPath {
     fn moved<T: SolverScalar>(
         &self,
         number: usize,
-        (labels, seeding): (&[f64], &AlphaSeeding),
+        (limits, seeding): (&[f64], &AlphaSeeding),
         gram: &mut Gram<T>,
     ) -> Option<(Vec<f64>, Vec<f64>)> {
         let last = self.solutions.len() - 1;
         let FoldSolution { beta, f, .. } = &self.solutions[number.min(last)];
         let moved = seeding.transfer(beta, gram)?;
         let mut moved_f = gram.times(&difference(&moved, beta));
-        let both = labels.iter().zip(&self.labels);
+        let (labels, before) = (signs(limits), signs(&self.limits));
+        let both = labels.iter().zip(&before);
         for ((moved, f), (label, before)) in moved_f.iter_mut().zip(f).zip(both) {
             *moved = f + ((label - before) - *moved);
         }
@@ -128,15 +125,18 @@ fn along<T: SolverScalar>(
     solutions
 }
 
-/// Returns the product of the Gram matrix with the labels of each fold; held-out rows have the label 0.
+/// Returns the product of the Gram matrix with the labels of each fold, given the limits of the coefficients; held-out rows have the label 0.
 fn sums_of_folds<T: SolverScalar>(
     gram: &mut Gram<T>,
-    all: &[f64],
     folds: &[Vec<f64>],
+    positive: &Range<usize>,
 ) -> Vec<Vec<f64>> {
-    let held_out: Vec<Vec<f64>> = folds.iter().map(|labels| difference(all, labels)).collect();
+    let label = |at: usize| if positive.contains(&at) { 1.0 } else { -1.0 };
+    let all: Vec<f64> = (0..gram.len()).map(label).collect();
+    let held_out = |limits: &Vec<f64>| difference(&all, &signs(limits));
+    let held_out: Vec<Vec<f64>> = folds.iter().map(held_out).collect();
     // Rows held out by exactly one fold (the usual case) are already contained in the sums of held-out rows.
-    let rest = held_out.iter().fold(all.to_vec(), |a, b| difference(&a, b));
+    let rest = held_out.iter().fold(all.clone(), |a, b| difference(&a, b));
     let of_held_out: Vec<Vec<f64>> = held_out.iter().map(|rows| gram.times(rows)).collect();
     let mut of_all = gram.times(&rest);
     for sums in &of_held_out {
@@ -196,9 +196,8 @@ mod tests {
                 assert_eq!(path.solutions.len() < goal.path.len(), gamma > 1.0);
                 fold += 1;
             };
-            let pairs = (folds.clone(), folds.clone(), &POSITIVE);
-            FoldPath::of_pair(&mut whole, pairs, goal, &mut check);
-            FoldPath::of_class(&mut whole, (folds.clone(), folds.clone()), goal, &mut check);
+            FoldPath::of_pair(&mut whole, (folds.clone(), &POSITIVE), goal, &mut check);
+            FoldPath::of_class(&mut whole, folds.clone(), goal, &mut check);
             assert_eq!(fold, 6);
         }
     }
@@ -241,7 +240,7 @@ mod tests {
             let kept = |fold: usize, at: usize| f64::from(u8::from(at % 3 != held_out[fold]));
             let labels = |fold: usize| (0..N).map(|at| all[at] * kept(fold, at)).collect();
             let folds: Vec<Vec<f64>> = (0..3).map(labels).collect();
-            let found = sums_of_folds(&mut whole, &all, &folds);
+            let found = sums_of_folds(&mut whole, &folds, &POSITIVE);
             for (found, labels) in found.iter().zip(&folds) {
                 for (found, expected) in found.iter().zip(whole.times(labels)) {
                     assert!((found - expected).abs() < 1e-12, "{found} {expected}");

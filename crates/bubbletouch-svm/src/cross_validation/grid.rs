@@ -113,7 +113,7 @@ impl<T: SolverScalar> Grid<'_, T> {
                 takes_part(fold, problem.0) && problem.1.is_none_or(|class| takes_part(fold, class))
             });
             let (folds, scorers): (Vec<&Fold>, Vec<_>) = both.unzip();
-            let (labels, limits) = self.labels_and_limits(problem, &folds);
+            let limits = self.limits(problem, &folds);
             let mut scorers = scorers.into_iter();
             let score = |path: &FoldPath| {
                 let scorer = scorers.next().expect("each fold has one");
@@ -122,13 +122,13 @@ impl<T: SolverScalar> Grid<'_, T> {
                     .for_each(|solution| scorer.take(number, solution));
             };
             if let Some(gram) = &mut whole {
-                FoldPath::of_class(gram, (labels, limits), goal, score);
+                FoldPath::of_class(gram, limits, goal, score);
             } else if let (first, Some(second)) = problem {
                 let classes = [first, second].map(|class| &self.sorted.ranges[class]);
                 let blocks = [Block::new(values, [0, 0]); 3];
                 let mut gram = gram_of_pair(classes, blocks, &mut above, memory);
                 let positive = 0..classes[0].len();
-                FoldPath::of_pair(&mut gram, (labels, limits, &positive), goal, score);
+                FoldPath::of_pair(&mut gram, (limits, &positive), goal, score);
                 memory = gram.into_memory();
             }
         }
@@ -152,12 +152,12 @@ impl<T: SolverScalar> Grid<'_, T> {
         problems
     }
 
-    /// Returns the labels of a binary problem's rows for each fold, and the limits of their coefficients. Held-out rows have the label and the limit 0.
-    fn labels_and_limits(
+    /// Returns the limits of the coefficients of a binary problem's rows for each fold: the label of a row times the weight of its class, or 0 if it is held out.
+    fn limits(
         &self,
         (positive, negative): (usize, Option<usize>),
         folds: &[&Fold],
-    ) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    ) -> Vec<Vec<f64>> {
         let ranges = &self.sorted.ranges;
         let classes = match negative {
             Some(negative) => vec![positive, negative],
@@ -168,13 +168,10 @@ impl<T: SolverScalar> Grid<'_, T> {
                 let sign = if class == positive { 1.0 } else { -1.0 };
                 let limit = sign * fold.weights[class];
                 let rows = fold.is_training[ranges[class].clone()].iter();
-                rows.map(move |&is_training| match is_training {
-                    true => (sign, limit),
-                    false => (0.0, 0.0),
-                })
+                rows.map(move |&is_training| if is_training { limit } else { 0.0 })
             });
-            rows.unzip()
+            rows.collect()
         };
-        folds.iter().map(of_fold).unzip()
+        folds.iter().map(of_fold).collect()
     }
 }

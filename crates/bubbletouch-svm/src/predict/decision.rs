@@ -3,8 +3,7 @@
 use std::borrow::Cow;
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 
 use super::condorcet_winner::{Pairs, condorcet_winners_by_hyperplanes};
 use crate::binary_problem::BinaryProblem;
@@ -16,7 +15,6 @@ use crate::linalg::scalar::Scalar;
 use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::Voting;
-use crate::saved::damaged;
 
 /// Number of rows for which decision values are computed together. With a smaller value, packing the support vectors dominates the time. With a larger
 /// value, the kernel values take more memory; with this value, they take 10 MB for 5,000 support vectors.
@@ -24,7 +22,7 @@ const BLOCK_ROWS: usize = 512;
 
 /// Decision functions `Σ y_i a_i K(x_i, x) − ρ` of all binary problems.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "T: Scalar", remote = "Self")]
+#[serde(bound = "T: Scalar")]
 pub(crate) struct DecisionFunctions<T> {
     /// Centre that is subtracted from support vectors and from all rows to be classified (m values).
     #[serde(with = "crate::saved")]
@@ -55,26 +53,6 @@ struct Support<T> {
     /// Decision functions of single pairs of classes, for one-vs-one.
     #[serde(skip)]
     pairs: Option<Pairs<T>>,
-}
-
-impl<T: Scalar> Serialize for DecisionFunctions<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        // The function that serde derives, with all fields.
-        Self::serialize(self, serializer)
-    }
-}
-
-impl<'de, T: Scalar> Deserialize<'de> for DecisionFunctions<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let mut functions = Self::deserialize(deserializer)?;
-        if !functions.has_consistent_sizes() {
-            return Err(D::Error::custom(damaged("decision functions")));
-        }
-        if let Sums::Support(support) = &mut functions.sums {
-            support.pairs = pairs_of(&support.weights, &functions.rho);
-        }
-        Ok(functions)
-    }
 }
 
 /// Returns the decision functions of single pairs of classes; `None` unless each problem is a pair.
@@ -133,26 +111,24 @@ impl<T: Scalar> DecisionFunctions<T> {
         Self { centre, rho, sums }
     }
 
-    /// Returns whether the sizes of all parts are consistent.
-    fn has_consistent_sizes(&self) -> bool {
-        let shape = (self.rho.len(), self.centre.len());
-        match &self.sums {
+    /// Returns whether the parts of read functions have the sizes of this number of problems, classes and features. Computes the parts that are not saved.
+    pub fn complete(&mut self, [n_problems, n_classes, n_features]: [usize; 3]) -> bool {
+        let shape = (n_problems, n_features);
+        let fit_sums = match &self.sums {
             Sums::Hyperplanes(normals) => normals.dim() == shape,
             Sums::Support(support) => {
                 let n = support.vectors.len();
-                support.vectors.fits(shape.1)
-                    && support.weights.iter().all(|class| class.fits(n, shape.0))
+                let mut weights = support.weights.iter();
+                support.vectors.fits(n_features)
+                    && weights.len() == n_classes
+                    && weights.all(|class| class.fits(n, n_problems))
             }
-        }
-    }
-
-    /// Returns whether there are this number of decision functions, classes and features.
-    pub fn fit(&self, [n_problems, n_classes, n_features]: [usize; 3]) -> bool {
-        let fits_classes = match &self.sums {
-            Sums::Hyperplanes(_) => true,
-            Sums::Support(support) => support.weights.len() == n_classes,
         };
-        fits_classes && (self.rho.len(), self.centre.len()) == (n_problems, n_features)
+        let are_whole = fit_sums && (self.rho.len(), self.centre.len()) == shape;
+        if let (Sums::Support(support), true) = (&mut self.sums, are_whole) {
+            support.pairs = pairs_of(&support.weights, &self.rho);
+        }
+        are_whole
     }
 
     /// Returns the decision values of all binary problems for each row of features, n_rows × n_problems.

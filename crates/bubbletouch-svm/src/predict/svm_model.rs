@@ -47,15 +47,15 @@ impl<L: Serialize> Serialize for SvmModel<L> {
 
 impl<'de, L: Label + Deserialize<'de>> Deserialize<'de> for SvmModel<L> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let model = Self::deserialize(deserializer)?;
-        model.check().map_err(D::Error::custom)?;
+        let mut model = Self::deserialize(deserializer)?;
+        model.complete().map_err(D::Error::custom)?;
         Ok(model)
     }
 }
 
 impl<L: Label> SvmModel<L> {
-    /// Checks the version, and whether the sizes of all parts are consistent.
-    fn check(&self) -> Result<()> {
+    /// Checks the version and the sizes of all parts of a read model, and computes the parts that are not saved.
+    fn complete(&mut self) -> Result<()> {
         check_version(self.version)?;
         let n_classes = self.voting.n_classes;
         let n_problems = self.voting.multiclass.problems(n_classes).len();
@@ -64,9 +64,9 @@ impl<L: Label> SvmModel<L> {
             && n_classes >= 2
             && self.classes.is_sorted_by(|a, b| a < b)
             && self.problems.len() == n_problems
-            && match &self.decision {
-                Decision::Single(functions) => functions.fit(sizes),
-                Decision::Double(functions) => functions.fit(sizes),
+            && match &mut self.decision {
+                Decision::Single(functions) => functions.complete(sizes),
+                Decision::Double(functions) => functions.complete(sizes),
             };
         match is_whole {
             true => Ok(()),

@@ -2,15 +2,14 @@
 
 use ndarray::Array2;
 
-use super::pair_search::{PairGoal, reach_by_equations};
 use crate::dual::DualSolution;
 use crate::gram::matrix::{Gram, GramMemory, gather};
 use crate::linalg::row_products::{Rows, multiply};
 use crate::linalg::transposed::write_columns;
 use crate::screening::margin_rows::{Ranked, RankedRow, SIGNS, Sides, find_below, smallest};
-use crate::smo::SolverScalar;
 use crate::smo::reached::Reached;
 use crate::smo::variables::extremes;
+use crate::smo::{Smo, SolverGoal, SolverScalar};
 
 /// Minimum number of rows that each round adds to the reduced problem of a pair while rows violate the optimality conditions.
 const MIN_JOINING: usize = 24;
@@ -172,7 +171,7 @@ impl<T: SolverScalar> MarginPair<T> {
 
     /// Solves the problem of the pair on its active rows, starting from the last solution. The argument `within` contains the inner products within each class;
     /// the Gram matrix reuses `memory`.
-    pub fn solve(&mut self, within: &[Within<T>], memory: &mut GramMemory<T>, goal: PairGoal) {
+    pub fn solve(&mut self, within: &[Within<T>], memory: &mut GramMemory<T>, goal: SolverGoal) {
         let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
         let [first, second] = &self.rows;
         let within = self.classes.map(|class| &within[class]);
@@ -193,11 +192,11 @@ impl<T: SolverScalar> MarginPair<T> {
         };
         let diagonal = diagonal(0).chain(diagonal(1));
         let mut gram = Gram::new(diagonal, write, std::mem::take(memory));
-        let (labels, limits) = (self.of_sides(SIGNS), self.limits());
-        let given = ((&labels[..], &limits[..]), (beta, f), self.c);
-        let (variables, reached) = reach_by_equations(&mut gram, given, goal);
+        let limits = self.limits();
+        let mut smo = Smo::from_start(&mut gram, &limits, (beta, f), self.c);
+        let reached = smo.reach_by_equations(goal);
+        (self.beta, self.f) = smo.into_variables();
         *memory = gram.into_memory();
-        (self.beta, self.f) = variables;
         self.c = goal.c;
         self.n_iterations += reached.n_iterations;
         self.is_solved = reached.is_solved;
@@ -205,14 +204,10 @@ impl<T: SolverScalar> MarginPair<T> {
 
     /// Returns the limits of the coefficients of the active rows.
     fn limits(&self) -> Vec<f64> {
-        self.of_sides([0, 1].map(|side| SIGNS[side] * self.weights[side]))
-    }
-
-    /// Returns a value for each active row, given the value of the rows of each class.
-    fn of_sides(&self, values: [f64; 2]) -> Vec<f64> {
-        let mut all = vec![values[0]; self.rows[0].len()];
-        all.resize(all.len() + self.rows[1].len(), values[1]);
-        all
+        let [first, second] = [0, 1].map(|side| SIGNS[side] * self.weights[side]);
+        let mut limits = vec![first; self.rows[0].len()];
+        limits.resize(limits.len() + self.rows[1].len(), second);
+        limits
     }
 
     /// Returns the active rows as triples: class (0 or 1), row number within the class, and coefficient.
@@ -229,7 +224,7 @@ impl<T: SolverScalar> MarginPair<T> {
     pub fn joining(
         &self,
         products: [&[T]; 2],
-        goal: PairGoal,
+        goal: SolverGoal,
         scratch: &mut PairWorkspace<T>,
     ) -> Option<Sides> {
         let (highest, lowest) = extremes(&self.beta, &self.limits(), &self.f, goal.c);
@@ -283,10 +278,9 @@ impl<T: SolverScalar> MarginPair<T> {
             is_solved: self.is_solved,
             n_iterations: std::mem::take(&mut self.n_iterations),
         };
-        let variables = (&self.beta[..], &self.of_sides(SIGNS)[..], &self.f[..]);
         DualSolution {
             coefficients,
-            ..reached.solution(variables, (&self.limits(), self.c))
+            ..reached.solution(&self.beta, &self.limits(), &self.f, self.c)
         }
     }
 }

@@ -5,4 +5,3 @@ pub(crate) mod first_rows;
 pub(crate) mod margin_pair;
 pub(crate) mod margin_rows;
 pub(crate) mod near_margin;
-pub(crate) mod pair_search;

@@ -9,7 +9,6 @@
 
 use std::ops::Range;
 
-use super::pair_search::PairGoal;
 use crate::dual::DualSolution;
 use crate::gram::matrix::{Gram, GramMemory};
 use crate::gram::sorted::Sorted;
@@ -18,7 +17,7 @@ use crate::linalg::row_products::multiply;
 use crate::screening::block_sizes::{CLASSES_AT_ONCE, FEW_DIMENSIONS, OTHERS_AT_ONCE};
 use crate::screening::margin_pair::{MarginPair, PairWorkspace, Within};
 use crate::screening::margin_rows::{Sides, nearest};
-use crate::smo::SolverScalar;
+use crate::smo::{SolverGoal, SolverScalar};
 
 /// Number of rounds in which rows are added to the reduced problems in the low-dimensional subspace.
 const FEW_ROUNDS: usize = 2;
@@ -132,10 +131,10 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
     /// Solves the problems of all pairs for the penalty `c`, until no row violates the optimality conditions by more than `tolerance`. Returns the solution and
     /// the hyperplane normal of each pair. The coefficients belong to all rows of the first class, then of the second.
     pub fn solve(&mut self, c: f64, tolerance: f64) -> Vec<(DualSolution, Vec<T>)> {
-        let goal = PairGoal {
+        let goal = SolverGoal {
             c,
             tolerance,
-            most_iterations: None,
+            max_steps: u64::MAX,
         };
         self.solve_rounds(goal, usize::MAX, |pair, (normal, _), _| {
             (pair.solution(), normal.to_vec())
@@ -144,10 +143,10 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
 
     /// Returns the rows of each pair of classes that are near the decision boundary for the penalty `c`, approximately.
     pub fn near_margin(mut self, c: f64) -> Vec<Sides> {
-        let goal = PairGoal {
+        let goal = SolverGoal {
             c,
             tolerance: ROUGH_TOLERANCE,
-            most_iterations: Some(ROUGH_ITERATIONS),
+            max_steps: ROUGH_ITERATIONS,
         };
         self.solve_rounds(goal, FEW_ROUNDS, |_, (_, products), scratch| {
             nearest(products, ROWS_NEAR_MARGIN, &mut scratch.ranked)
@@ -158,7 +157,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
     /// pair, computed after its last round.
     fn solve_rounds<R>(
         &mut self,
-        goal: PairGoal,
+        goal: SolverGoal,
         most_rounds: usize,
         mut settled: impl FnMut(&mut MarginPair<T>, Found<T>, &mut PairWorkspace<'c, T>) -> R,
     ) -> Vec<R> {
@@ -193,7 +192,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
     }
 
     /// Solves pairs of classes on their active rows, and computes the inner products of their hyperplane normals with all rows.
-    fn solve_round(&mut self, pairs: &[usize], goal: PairGoal) {
+    fn solve_round(&mut self, pairs: &[usize], goal: SolverGoal) {
         let n_features = self.classes.sorted.centre.len();
         let mut round = std::mem::take(&mut self.round);
         round.normals.clear();

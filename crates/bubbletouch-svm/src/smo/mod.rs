@@ -25,7 +25,6 @@ mod solver_scalar;
 mod start;
 pub(crate) mod variables;
 
-pub(crate) use active_set::{ActiveSetGoal, solve_by_active_set};
+pub(crate) use active_set::SolverGoal;
 pub(crate) use problem::Smo;
 pub(crate) use solver_scalar::SolverScalar;
-pub(crate) use variables::are_within;

@@ -2,7 +2,7 @@
 
 use super::reached::violation;
 use super::solver_scalar::SolverScalar;
-use super::variables::{linear_and_quadratic, rho};
+use super::variables::{linear_and_quadratic, rho, signs};
 use crate::gram::matrix::Gram;
 
 /// Default maximum number of iterations, as in LIBSVM; for many rows, 100 times the number of rows. With a larger value, hard problems take hours; with a
@@ -12,10 +12,11 @@ const MAX_ITERATIONS: u64 = 10_000_000;
 /// Binary problem, given by a Gram matrix and labels, with its solution for the last penalty C.
 pub(crate) struct Smo<'a, 'k, T> {
     pub(super) gram: &'a mut Gram<'k, T>,
-    /// Label of each row: 1, −1, or 0 for a row that is excluded from the problem.
-    pub(super) y: &'a [f64],
-    /// Limit of each coefficient β: its label times its weight in training. β is between 0 and C times its limit.
+    /// Limit of each coefficient β: its label times its weight in training, or 0 for a row that is excluded from the problem. β is between 0 and C times its
+    /// limit.
     pub(super) limits: &'a [f64],
+    /// Label of each row: 1, −1, or 0 for an excluded row.
+    pub(super) y: Vec<f64>,
     pub(super) beta: Vec<f64>,
     /// Gradient `y − Kβ` of the dual objective, where y are the labels and K is the Gram matrix.
     pub(super) f: Vec<f64>,
@@ -23,48 +24,35 @@ pub(crate) struct Smo<'a, 'k, T> {
     pub(super) c: f64,
     /// Whether the gradient f was recomputed in f64 from the coefficients β; otherwise it was updated step by step.
     pub(super) is_summed: bool,
-    /// Maximum number of iterations of the solver.
+    /// Maximum number of iterations of the solver; a problem that reaches it is reported as unsolved.
     pub(super) max_iterations: u64,
 }
 
 impl<'a, 'k, T: SolverScalar> Smo<'a, 'k, T> {
-    /// Creates an unsolved binary problem.
-    pub fn new(gram: &'a mut Gram<'k, T>, y: &'a [f64]) -> Self {
+    /// Creates an unsolved binary problem, given the limits of its coefficients.
+    pub fn new(gram: &'a mut Gram<'k, T>, limits: &'a [f64]) -> Self {
         Self {
             is_summed: true,
-            ..Self::from_start(gram, y, (vec![0.0; y.len()], y.to_vec()), 0.0)
-        }
-    }
-
-    /// Sets the limits of the coefficients: the label of each row times its weight in training. By default, all weights are 1.
-    pub fn with_limits(self, limits: &'a [f64]) -> Self {
-        Self { limits, ..self }
-    }
-
-    /// Limits the solver to `max_iterations`; a problem that reaches the limit is reported as unsolved.
-    pub fn with_max_iterations(self, max_iterations: u64) -> Self {
-        Self {
-            max_iterations,
-            ..self
+            ..Self::from_start(gram, limits, (vec![0.0; limits.len()], signs(limits)), 0.0)
         }
     }
 
     /// Creates a problem that starts from coefficients β and their approximate gradient f. The penalty for which β was computed is `c`, or 0 if there is none.
     pub fn from_start(
         gram: &'a mut Gram<'k, T>,
-        y: &'a [f64],
+        limits: &'a [f64],
         (beta, f): (Vec<f64>, Vec<f64>),
         c: f64,
     ) -> Self {
         Self {
             gram,
-            y,
-            limits: y,
+            limits,
+            y: signs(limits),
             beta,
             f,
             c,
             is_summed: false,
-            max_iterations: MAX_ITERATIONS.max(100 * y.len() as u64),
+            max_iterations: MAX_ITERATIONS.max(100 * limits.len() as u64),
         }
     }
 
@@ -92,7 +80,7 @@ impl<'a, 'k, T: SolverScalar> Smo<'a, 'k, T> {
     /// Recomputes the gradient f from the coefficients β in f64.
     pub(super) fn refresh(&mut self) {
         let products = self.gram.times(&self.beta);
-        for ((f, product), y) in self.f.iter_mut().zip(products).zip(self.y) {
+        for ((f, product), y) in self.f.iter_mut().zip(products).zip(&self.y) {
             *f = y - product;
         }
         self.is_summed = true;
@@ -109,7 +97,7 @@ impl<'a, 'k, T: SolverScalar> Smo<'a, 'k, T> {
 
     /// Returns the dual objective `Σ y β − ½ β K β`, with labels y, coefficients β and Gram matrix K.
     pub(super) fn objective(&self) -> f64 {
-        let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
+        let (linear, quadratic) = linear_and_quadratic(&self.beta, &self.y, &self.f);
         linear - 0.5 * quadratic
     }
 

@@ -1,6 +1,6 @@
 //! Result of a solver run.
 
-use super::variables::{extremes, linear_and_quadratic, rho};
+use super::variables::{extremes, linear_and_quadratic, rho, signs};
 use crate::dataset::all_finite;
 use crate::dual::DualSolution;
 
@@ -12,15 +12,9 @@ pub(crate) struct Reached {
 }
 
 impl Reached {
-    /// Creates the dual solution without its coefficients, given the coefficients β, the labels, the gradient f, and the limits of
-    /// the coefficients for the penalty `c`.
-    pub fn solution(
-        self,
-        variables: (&[f64], &[f64], &[f64]),
-        (limits, c): (&[f64], f64),
-    ) -> DualSolution {
-        let (beta, y, f) = variables;
-        let (linear, quadratic) = linear_and_quadratic(beta, y, f);
+    /// Creates the dual solution without its coefficients, given the coefficients β, their limits for the penalty `c`, and the gradient f.
+    pub fn solution(self, beta: &[f64], limits: &[f64], f: &[f64], c: f64) -> DualSolution {
+        let (linear, quadratic) = linear_and_quadratic(beta, &signs(limits), f);
         DualSolution {
             coefficients: Vec::new(),
             rho: rho(beta, limits, f, c),

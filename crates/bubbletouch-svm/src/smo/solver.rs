@@ -1,6 +1,6 @@
 //! Solver of a binary problem: pairwise steps, checked in f64, and active-set steps if convergence is slow.
 
-use super::active_set::{ActiveSetGoal, solve_by_active_set};
+use super::active_set::{SolverGoal, solve_by_active_set};
 use super::iterations::{SHRINK_PERIOD, Search, Stop};
 use super::problem::Smo;
 use super::reached::Reached;
@@ -15,6 +15,8 @@ use crate::gram::matrix::Gram;
 const MIN_PAIR_STEPS: u64 = 10_000;
 /// Minimum number of pairwise steps per row before active-set steps.
 const PAIR_STEPS_PER_ROW: u64 = 20;
+/// Violation of the optimality conditions below which problems of few rows change from pairwise steps to active-set steps.
+const EQUATIONS_FROM: f64 = 0.03;
 /// Maximum number of solver restarts; a restart is needed if a check in f64 finds a violation that the matrix in f32 hides. With a larger value, time is spent
 /// on rounding errors; with a smaller value, solutions may miss their tolerance.
 const MAX_REFRESHES: usize = 30;
@@ -23,11 +25,38 @@ impl<'k, T: SolverScalar> Smo<'_, 'k, T> {
     /// Solves the binary problem for a given C, starting from the last solution. The violation of the optimality conditions is at most `tolerance`.
     pub fn solve(&mut self, c: f64, tolerance: f64) -> DualSolution {
         let reached = self.reach(c, tolerance, |_| None);
-        let variables = (&self.beta[..], self.y, &self.f[..]);
         DualSolution {
             coefficients: self.beta.clone(),
-            ..reached.solution(variables, (self.limits, c))
+            ..reached.solution(&self.beta, self.limits, &self.f, c)
         }
+    }
+
+    /// Solves the problem from the last solution: pairwise steps to a rough tolerance, followed by active-set steps. If the active-set steps do not reach the
+    /// tolerance, pairwise steps continue.
+    pub fn reach_by_equations(&mut self, goal: SolverGoal) -> Reached {
+        self.max_iterations = self.max_iterations.min(goal.max_steps);
+        if goal.tolerance >= EQUATIONS_FROM {
+            return self.reach(goal.c, goal.tolerance, |_| None);
+        }
+        let first = self.reach(goal.c, EQUATIONS_FROM, |_| None);
+        let n_steps = self.solve_equations(goal.c, goal.tolerance);
+        self.is_summed = false;
+        let last = self.reach(goal.c, goal.tolerance, |_| None);
+        Reached {
+            n_iterations: first.n_iterations + n_steps + last.n_iterations,
+            ..last
+        }
+    }
+
+    /// Improves the solution by at most one active-set step per row. Returns the number of steps.
+    fn solve_equations(&mut self, c: f64, tolerance: f64) -> u64 {
+        let goal = SolverGoal {
+            c,
+            tolerance,
+            max_steps: self.limits.len() as u64,
+        };
+        let variables = (&mut self.beta[..], &mut self.f[..]);
+        solve_by_active_set(self.gram, self.limits, variables, goal)
     }
 
     /// Solves the problem from the last solution or, if its objective is higher, from another start (coefficients β and gradient f). Returns whether the solver
@@ -61,7 +90,7 @@ impl<'k, T: SolverScalar> Smo<'_, 'k, T> {
     /// Runs the solver until it reaches the tolerance or the maximum number of iterations; returns whether it reached the tolerance.
     fn search(&mut self, c: f64, search: &mut Search) -> bool {
         let max_iterations = search.max_iterations;
-        let pair_steps = MIN_PAIR_STEPS.max(PAIR_STEPS_PER_ROW * self.y.len() as u64);
+        let pair_steps = MIN_PAIR_STEPS.max(PAIR_STEPS_PER_ROW * self.limits.len() as u64);
         let (mut n_refreshes, mut is_first) = (0, true);
         while n_refreshes < MAX_REFRESHES {
             let before = self.beta.clone();
@@ -81,13 +110,7 @@ impl<'k, T: SolverScalar> Smo<'_, 'k, T> {
             }
             if search.n_iterations >= search.max_iterations {
                 // Pairwise steps converge slowly here.
-                let goal = ActiveSetGoal {
-                    c,
-                    tolerance: search.tolerance,
-                    max_steps: self.y.len() as u64,
-                };
-                let variables = (&mut self.beta[..], &mut self.f[..]);
-                search.n_iterations += solve_by_active_set(self.gram, self.limits, variables, goal);
+                search.n_iterations += self.solve_equations(c, search.tolerance);
             } else {
                 n_refreshes += 1;
             }

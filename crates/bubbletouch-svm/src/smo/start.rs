@@ -11,11 +11,11 @@ impl<T: SolverScalar> Smo<'_, '_, T> {
     /// if rows have weights, all multipliers start at 0. `sums` contains the
     /// product of the Gram matrix with the labels.
     pub fn at_bounds(mut self, c: f64, sums: &[f64]) -> Self {
-        let y = self.y;
+        let y = &self.y;
         let curvature: f64 = y.iter().zip(sums).map(|(y, sum)| y * sum).sum();
         // The comparison is also false if kernel values are not finite.
         let still_rises = c * curvature <= y.iter().map(|y| y * y).sum::<f64>();
-        if !still_rises || self.limits != y {
+        if !still_rises || self.limits != *y {
             return self;
         }
         let balance: f64 = y.iter().sum();
@@ -35,7 +35,7 @@ impl<T: SolverScalar> Smo<'_, '_, T> {
 
     /// Multiplies the coefficients β by the factor that gives the best objective within the bounds for another C.
     pub(super) fn stretch(&mut self, c: f64) {
-        let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
+        let (linear, quadratic) = linear_and_quadratic(&self.beta, &self.y, &self.f);
         if self.c > 0.0 && self.c != c && quadratic > 0.0 {
             let most = c / self.c;
             let factor = (linear / quadratic).clamp(0.0, most);
@@ -48,7 +48,7 @@ impl<T: SolverScalar> Smo<'_, '_, T> {
                     (factor * *beta).clamp(lowest, highest)
                 };
             }
-            for (f, y) in self.f.iter_mut().zip(self.y) {
+            for (f, y) in self.f.iter_mut().zip(&self.y) {
                 *f = y - factor * (y - *f);
             }
         }

@@ -38,6 +38,15 @@ pub(crate) fn bounds(limit: f64, c: f64) -> (f64, f64) {
     (c * limit.min(0.0), c * limit.max(0.0))
 }
 
+/// Returns the label of each row, given the limits of the coefficients: 1, −1, or 0 for an excluded row.
+pub(crate) fn signs(limits: &[f64]) -> Vec<f64> {
+    let sign = |limit: &f64| match *limit == 0.0 {
+        true => 0.0,
+        false => limit.signum(),
+    };
+    limits.iter().map(sign).collect()
+}
+
 /// Returns whether every coefficient is within its bounds for the penalty `c`.
 pub(crate) fn are_within(beta: &[f64], limits: &[f64], c: f64) -> bool {
     beta.iter().zip(limits).all(|(beta, limit)| {

@@ -23,14 +23,14 @@ const SHARE_OF_FARTHEST: f64 = 0.5;
 /// Maximum number of repeated solutions of the equations, which linearly dependent rows can require.
 const MAX_REPEATS: u64 = 8;
 
-/// Stopping criteria of the active-set method.
+/// Penalty and stopping criteria of one solver run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ActiveSetGoal {
+pub(crate) struct SolverGoal {
     /// Penalty C of the soft-margin problem.
     pub c: f64,
     /// Maximum violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,
-    /// Maximum number of active-set steps of the solver. Each step ends at the optimum of the free variables, or at a bound that removes one variable.
+    /// Maximum number of steps. An active-set step ends at the optimum of the free variables, or at a bound that removes one variable.
     pub max_steps: u64,
 }
 
@@ -39,7 +39,7 @@ pub(crate) fn solve_by_active_set<T: Scalar>(
     gram: &mut Gram<T>,
     limits: &[f64],
     (beta, f): (&mut [f64], &mut [f64]),
-    goal: ActiveSetGoal,
+    goal: SolverGoal,
 ) -> u64 {
     let Some(mut active_set) = ActiveSet::new(gram, limits, (beta, f), goal.c) else {
         return 0;
@@ -242,8 +242,8 @@ mod tests {
         labels.iter().zip(product).map(|(y, p)| y - p).collect()
     }
 
-    fn goal(c: f64, tolerance: f64) -> ActiveSetGoal {
-        ActiveSetGoal {
+    fn goal(c: f64, tolerance: f64) -> SolverGoal {
+        SolverGoal {
             c,
             tolerance,
             max_steps: 5000,
@@ -320,7 +320,7 @@ mod tests {
         let start: Vec<f64> = labels.iter().map(|y| 0.1 * y).collect();
         for max_steps in [0, 1, 7] {
             let (mut beta, mut f) = (start.clone(), f_of(&kernel, &start, &labels));
-            let goal = ActiveSetGoal {
+            let goal = SolverGoal {
                 max_steps,
                 ..goal(1.0, 1e-9)
             };
