@@ -200,9 +200,7 @@ pub use serde_json;
 pub use bubbletouch_sim::statistics::quantile;
 #[cfg(test)]
 use bubbletouch_sim::statistics::standard_errors;
-pub(crate) use bubbletouch_sim::text::{
-    encoding, note, numbers_csv, spelling, toml_lines, toml_numbers,
-};
+pub(crate) use bubbletouch_sim::text::{encoding, note, numbers_csv, spelling, toml_lines};
 pub use bubbletouch_sim::{
     Error, Result, calibration, contact, dynamics, error, files, geometry, mesh, objects, packing,
     random, sensing, signal, skin, whole_body, world,

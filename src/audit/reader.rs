@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::inputs::arrays::{ClassLabels, KeyValue, OneForEach, group_keys, is_member};
 use crate::studies::recognition::frames::{RecordedArray, touch_of};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
-use bubbletouch_sim::text::toml_text::check_nesting;
+use crate::toml_text;
 use ndarray::{Array2, Axis, concatenate};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -65,13 +65,9 @@ impl AuditFiles {
         let allowed = "a study with a table [recorded]";
         let text = crate::files::read_to_string(path)
             .map_err(|error| Error::unreadable(path, allowed, error))?;
-        check_nesting(&path.display().to_string(), &text)?;
-        let refuse = |error: toml::de::Error| {
-            Error::input(path.display(), error.message().to_owned(), allowed)
-        };
-        let read = || toml::from_str::<RecordedToml>(&text);
-        let spec = crate::files::with_folder(self.data.clone(), read).map_err(refuse)?;
-        let mut spec = spec.recorded;
+        let place = path.display().to_string();
+        let read = || toml_text::read::<RecordedToml>(&place, &text);
+        let mut spec = crate::files::with_folder(self.data.clone(), read)?.recorded;
         spec.change_files(|_, file| *file = self.data.join(&*file));
         // Checks compare the readings of taxels, so each sensor has an audit of its own.
         let mut sensors = spec.used_sensors();

@@ -98,10 +98,26 @@ fn kind(role: Option<ShapeRole>) -> &'static str {
 
 /// Reads a mesh file of a link, moves it by `mesh_from_file`, and multiplies the coordinates by `scale`. If the scale mirrors the mesh, its triangles are
 /// turned, so that they still face outwards.
+///
+/// # Errors
+/// If the mesh cannot be read, or its size is not plausible after scaling.
 fn read_link_mesh(path: &Path, mesh_from_file: &Pose, scale: DVec3) -> Result<TriangleMesh> {
-    let mesh = read_surface(path, None, &SizeLimits::ANY)?;
+    // The scale of a file in millimetres is 0.001, so the size is known after scaling.
+    let mesh = read_surface(path, None, &SizeLimits::UNLIMITED)?;
     let place = path.display().to_string();
-    mesh.moved(mesh_from_file).scaled(&place, scale)
+    let mesh = mesh.moved(mesh_from_file).scaled(&place, scale)?;
+    let SizeLimits {
+        smallest, largest, ..
+    } = SizeLimits::ANY;
+    let length = mesh.bounds().size().max_element();
+    if (smallest..=largest).contains(&length) {
+        return Ok(mesh);
+    }
+    let given = format!("{length} m wide with the scale {scale}");
+    let allowed = format!(
+        "{smallest} m to {largest} m; the robot's file gives a mesh in millimetres the scale 0.001 0.001 0.001"
+    );
+    Err(Error::input(place, given, allowed))
 }
 
 /// Returns the facets of a primitive shape (such as a box, cylinder or ball) in the frame of the shape.

@@ -16,7 +16,7 @@ use crate::inputs::range::not_negative;
 use crate::inputs::units::MM;
 use crate::objects::Model;
 use crate::random::Seed;
-use crate::toml_numbers::with_line;
+use crate::toml_lines::with_line;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -18,7 +18,7 @@ use crate::report::study_folder::{ChartFormat, Found, files_with};
 use crate::studies::source::Source;
 use crate::studies::study::{AnyStudy, Facts, Outcome, Study, run_items};
 use crate::table::{File, Table};
-use crate::toml_numbers::with_line;
+use crate::toml_lines::with_line;
 use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

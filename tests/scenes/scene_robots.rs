@@ -133,6 +133,33 @@ fn skin_is_draped_over_the_shapes_of_a_named_link_which_carries_it() {
 }
 
 #[test]
+fn a_mesh_in_millimetres_is_as_large_as_its_scale_says() {
+    let draped = |mesh: &str, scale: &str| {
+        let mesh_element = format!("<mesh filename='cube.obj' scale='{scale}'/>");
+        let link = format!(
+            "<link name='a'><collision><geometry>{mesh_element}</geometry></collision></link>"
+        );
+        let case = Case::with("r.urdf", &format!("<robot name='r'>{link}</robot>"));
+        case.file("cube.obj", mesh);
+        let text = "title = \"A cube\"\n[[robots]]\nname = \"r\"\nfile = \"r.urdf\"\n[[patches]]\nname = \"skin\"\nstroke_mm = 2.0\n\
+                    robot = \"r\"\nlayout = { draped = { pitch_mm = 4.0, region = { link = \"a\" } } }\n";
+        plan_in(case.folder(), text).map(|plan| plan.patches[0].skin.layout().clone())
+    };
+    let vertices = |line: &str| match line.starts_with('v') {
+        true => line.replace('1', "20") + "\n",
+        false => line.to_owned() + "\n",
+    };
+    let millimetres: String = CUBE.lines().map(vertices).collect();
+    let expected = draped(CUBE, "0.02 0.02 0.02").unwrap();
+    assert_eq!(draped(&millimetres, "0.001 0.001 0.001").unwrap(), expected);
+    let error = draped(&millimetres, "1 1 1").unwrap_err().to_string();
+    says(
+        &error,
+        &["cube.obj: 40 m wide with the scale [1, 1, 1]; 0.0001 m to 10 m"],
+    );
+}
+
+#[test]
 fn skin_is_draped_over_the_shapes_of_the_patchs_own_link() {
     let own = |link: &str, draped: &str| {
         hand(draped, &format!("robot = \"left\"\nlink = \"{link}\"")).map(|plan| {

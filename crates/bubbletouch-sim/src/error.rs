@@ -1,6 +1,5 @@
 //! Errors with messages for the user: invalid input, and failures of the system.
 
-use crate::text::toml_text::list_for_number;
 use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -106,36 +105,6 @@ impl Error {
             _ => return Self::io(path, "read", source),
         };
         Self::input(path.display(), given, allowed)
-    }
-
-    /// Creates an input error from a TOML error, with file, line and column, or with the key if its value is a list in place of a number.
-    pub fn toml(place: &str, text: &str, error: &toml::de::Error) -> Self {
-        if let Some(error) = list_for_number(place, text, error) {
-            return error;
-        }
-        let position = error.span().map_or(String::new(), |span| {
-            let before = &text[..span.start.min(text.len())];
-            let line = before.matches('\n').count() + 1;
-            let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-            format!(":{line}:{column}")
-        });
-        // Replaces names of Rust types by plain words.
-        let message = error
-            .message()
-            .replace('\n', " ")
-            .replace("expected usize", "expected a whole number")
-            .replace("expected u64", "expected a whole number")
-            .replace("expected u32", "expected a whole number")
-            .replace("expected f64", "expected a number")
-            .replace(
-                "u64 value was too large",
-                "too large, expected a number below 2⁶³",
-            );
-        let (given, allowed) = match message.split_once(", expected ") {
-            Some((given, allowed)) => (given.to_owned(), format!("expected {allowed}")),
-            None => (message, "TOML as in experiments/ and objects/".to_owned()),
-        };
-        Self::input(format!("{place}{position}"), given, allowed)
     }
 
     /// Returns the command's exit code for this error: 2 for invalid input, 1 for other failures.

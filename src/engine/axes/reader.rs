@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::toml_value::{number, table_of, value_at};
 use crate::toml_lines::line_of;
-use crate::toml_text::{check_nesting, check_numbers};
+use crate::toml_text::{TomlText, refused};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
@@ -23,10 +23,7 @@ pub fn read<S: DeserializeOwned + Serialize>(
     text: &str,
     keys: &'static [KeyAbout],
 ) -> Result<(S, StudyAxes)> {
-    check_nesting(place, text)?;
-    check_numbers(place, text)?;
-    let said = |error| Error::toml(place, text, &error);
-    let mut table = DeTable::parse(text).map_err(said)?;
+    let mut table = TomlText::parse(place, text)?.table;
     let mut found = Vec::new();
     if let Some((name, given)) = table.get_mut().remove_entry("axes") {
         let line = line_of(text, name.span().start);
@@ -96,7 +93,7 @@ pub fn read<S: DeserializeOwned + Serialize>(
     }
     let study = S::deserialize(toml::Deserializer::from(table));
     let study = study.map_err(|error| {
-        unexpected_list(place, text, &error, keys).unwrap_or_else(|| said(error))
+        unexpected_list(place, text, &error, keys).unwrap_or_else(|| refused(place, text, &error))
     })?;
     let own = table_of(&study);
     for axis in axes.axes.iter_mut().filter(|axis| axis.is_of_table) {
@@ -209,7 +206,7 @@ fn take_combine(
     };
     let (_, _, value) = found.remove(index);
     let value = toml::de::ValueDeserializer::from(value);
-    CombineSpec::deserialize(value).map_err(|error| Error::toml(place, text, &error))
+    CombineSpec::deserialize(value).map_err(|error| refused(place, text, &error))
 }
 
 /// Returns the values of a TOML list, or an empty list for any other value.
@@ -219,7 +216,7 @@ fn list_of(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml
     };
     let values = values.iter().map(|value| {
         let value = toml::de::ValueDeserializer::from(value.clone());
-        toml::Value::deserialize(value).map_err(|error| Error::toml(place, text, &error))
+        toml::Value::deserialize(value).map_err(|error| refused(place, text, &error))
     });
     values.collect()
 }

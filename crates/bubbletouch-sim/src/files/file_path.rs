@@ -68,11 +68,15 @@ impl FilePath {
         Self { written, resolved }
     }
 
-    /// Returns the absolute path, with symbolic links resolved if the file exists.
+    /// Returns the absolute path, with symbolic links to folders resolved if the path exists. A link to a file keeps its name and its folder, because the ending
+    /// of the name determines the format, and other files are relative to the folder.
     fn absolute(&self) -> PathBuf {
-        let absolute = || std::path::absolute(&self.resolved).ok();
-        let found = self.resolved.canonicalize().ok().or_else(absolute);
-        found.unwrap_or_else(|| self.resolved.clone())
+        let path = std::path::absolute(&self.resolved).unwrap_or_else(|_| self.resolved.clone());
+        let canonical = match (path.is_file(), path.parent(), path.file_name()) {
+            (true, Some(folder), Some(name)) => folder.canonicalize().map(|it| it.join(name)),
+            _ => path.canonicalize(),
+        };
+        canonical.unwrap_or(path)
     }
 }
 
@@ -231,6 +235,28 @@ mod tests {
         // Outside `with_folder`, the folder is unknown.
         let spec: Spec = toml::from_str(text).unwrap();
         assert_eq!(&*spec.mesh, Path::new("a/b.obj"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_a_file_keeps_its_name_and_its_folder() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().canonicalize().unwrap();
+        for name in ["real", "links"] {
+            std::fs::create_dir(root.join(name)).unwrap();
+        }
+        std::fs::write(root.join("real/1f3a"), "").unwrap();
+        symlink("../real/1f3a", root.join("links/b.obj")).unwrap();
+        symlink("links", root.join("meshes")).unwrap();
+        for (written, expected) in [
+            ("meshes/../links/b.obj", "links/b.obj"),
+            ("meshes/b.obj", "links/b.obj"),
+            ("meshes", "links"),
+        ] {
+            let absolute = FilePath::from(root.join(written)).absolute();
+            assert_eq!(absolute, root.join(expected));
+        }
     }
 
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,11 +7,13 @@
 //! | `csv_file` | tables that are written row by row ([`CsvFile`]) |
 //! | `owned` | files of an output folder that the program wrote ([`OwnedFiles`]) |
 //! | `file_path` | paths relative to the file that contains them ([`FilePath`]) |
+//! | `spellings` | names of files in robots and meshes, which other programs write in several ways |
 
 mod csv_file;
 mod file_path;
 mod inputs;
 mod owned;
+mod spellings;
 mod whole_file;
 
 pub use csv_file::CsvFile;
@@ -22,4 +24,5 @@ pub use inputs::{
     check_content, check_output, input_within, open, protect_inputs, read, read_to_string,
 };
 pub use owned::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN, check_single_output, has_table};
+pub(crate) use spellings::spellings;
 pub use whole_file::{WholeFile, write_bytes, write_whole};

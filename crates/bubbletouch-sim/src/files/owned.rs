@@ -51,11 +51,7 @@ impl OwnedFiles {
             text => text.map_err(|e| Error::unreadable(&path, "a manifest of this program", e))?,
         };
         let allowed = "another folder: this one is not of this program";
-        let manifest: Option<Map<String, Value>> = serde_json::from_slice(&text).ok();
-        let is_ours = |manifest: &Map<String, Value>| {
-            let program = manifest.get("program").and_then(Value::as_str);
-            program.is_some_and(|program| program.starts_with("bubbletouch"))
-        };
+        let manifest: Option<Value> = serde_json::from_slice(&text).ok();
         let Some(manifest) = manifest.filter(is_ours) else {
             let given = "is no manifest of bubbletouch";
             return Err(Error::input(path.display(), given, allowed));
@@ -77,7 +73,7 @@ impl OwnedFiles {
         if writer == RUN {
             let of_all = ["study.toml", "report.html"];
             owned.names.extend(of_all.map(str::to_owned));
-            owned.lists_tables_only = !manifest.contains_key("files_sha256");
+            owned.lists_tables_only = manifest.get("files_sha256").is_none();
         }
         owned.has_manifest = true;
         Ok(owned)
@@ -133,11 +129,16 @@ impl OwnedFiles {
     }
 }
 
+/// Returns whether this program wrote a manifest.
+fn is_ours(manifest: &Value) -> bool {
+    let program = manifest["program"].as_str();
+    program.is_some_and(|program| program.starts_with("bubbletouch"))
+}
+
 /// Returns whether a result folder contains a table of its last run. The manifest of a run lists all tables of the run. In a folder without such a manifest,
 /// each file counts.
 pub fn has_table(folder: &Path, name: &str) -> bool {
-    let manifest = fs::read(folder.join(MANIFEST_FILE)).unwrap_or_default();
-    let manifest: Value = serde_json::from_slice(&manifest).unwrap_or_default();
+    let manifest = manifest_in(folder);
     let lists: Vec<&Value> = LISTS[..2]
         .iter()
         .filter_map(|list| manifest.get(list))
@@ -160,17 +161,22 @@ pub fn check_single_output(path: &Path) -> Result<()> {
     let (Some(folder), Some(name)) = (folder, name) else {
         return Ok(());
     };
-    let manifest = fs::read(folder.join(MANIFEST_FILE)).unwrap_or_default();
-    let manifest: Value = serde_json::from_slice(&manifest).unwrap_or_default();
-    let program = manifest["program"].as_str();
-    let is_ours = program.is_some_and(|program| program.starts_with("bubbletouch"));
+    let manifest = manifest_in(folder);
     let is_listed = LISTS.iter().any(|list| manifest[*list].get(name).is_some());
-    if is_ours && (is_listed || [MANIFEST_FILE, "study.toml", "report.html"].contains(&name)) {
+    if is_ours(&manifest)
+        && (is_listed || [MANIFEST_FILE, "study.toml", "report.html"].contains(&name))
+    {
         let given = "is part of a folder that another command of bubbletouch wrote";
         let allowed = "another file; nothing was written";
         return Err(Error::input(path.display(), given, allowed));
     }
     Ok(())
+}
+
+/// Returns the manifest of a folder; null if there is none, or if it is invalid.
+fn manifest_in(folder: &Path) -> Value {
+    let manifest = fs::read(folder.join(MANIFEST_FILE)).unwrap_or_default();
+    serde_json::from_slice(&manifest).unwrap_or_default()
 }
 
 fn foreign(path: &Path) -> Error {

@@ -12,6 +12,7 @@
 use super::triangle_mesh::check_vertices;
 use super::{LengthUnit, TriangleMesh};
 use crate::error::{Error, Result};
+use crate::text::in_range::{not_negative, positive};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -112,19 +113,11 @@ impl TriangleMesh {
 /// Returns an error unless a capsule has a positive radius and a length of zero or more, metres.
 pub(crate) fn check_capsule(place: &str, radius: f64, length: f64) -> Result<()> {
     check_length(place, "radius", radius)?;
-    let allowed = "a finite number of metres, zero or more";
-    match length.is_finite() && length >= 0.0 {
-        true => Ok(()),
-        false => Err(Error::input(format!("{place}: length"), length, allowed)),
-    }
+    not_negative(&format!("{place}: length"), length, "m").map(drop)
 }
 
 fn check_length(place: &str, name: &str, length: f64) -> Result<()> {
-    let allowed = "a positive finite number of metres";
-    match length.is_finite() && length > 0.0 {
-        true => Ok(()),
-        false => Err(Error::input(format!("{place}: {name}"), length, allowed)),
-    }
+    positive(&format!("{place}: {name}"), length, "m").map(drop)
 }
 
 /// Returns the number of corners on a circle with this radius whose chords are at most the tolerance (metres) inside the circle.

@@ -32,6 +32,13 @@ impl SizeLimits {
         option: UNIT_OPTION,
     };
 
+    /// No limits, for meshes whose size is known only after they are scaled.
+    pub const UNLIMITED: Self = Self {
+        smallest: 0.0,
+        largest: f64::INFINITY,
+        option: UNIT_OPTION,
+    };
+
     /// Returns the size limits for arrays given by (longest side, taxel radius), metres. An object smaller than the smallest taxel radius has no detectable
     /// shape. An object longer than ten sides of the largest array, and than one metre, is a plane.
     pub fn of_arrays(arrays: impl IntoIterator<Item = (f64, f64)>) -> Self {
@@ -81,6 +88,9 @@ impl SizeLimits {
 
 /// Formats a length with three digits, such as `17 m` or `17 mm`.
 fn in_words(metres: f64) -> String {
+    if metres >= 1e6 {
+        return format!("{metres:.2e} m");
+    }
     let is_long = metres >= 1.0;
     let (value, unit) = if is_long {
         (metres, "m")
@@ -117,6 +127,7 @@ mod tests {
         assert!(said(array, 1.7).contains("in cm it would be 17 mm"));
         assert!(said(array, 0.02e-3).contains("0.02 mm wide"));
         assert!(said(array, 5e4).contains("give unit = \"m\""));
+        assert!(said(array, 1e200).starts_with("die.obj: 1.00e200 m wide"));
     }
 
     #[test]

@@ -110,12 +110,15 @@ pub(super) fn extent(points: &[DVec3]) -> DVec3 {
     size.max(DVec3::ZERO)
 }
 
-/// Returns an error if a face has an index that is not below the number of vertices `n`, at least one.
+/// Returns an error if a face has an index that is not below the number of vertices `n`.
 pub(super) fn check_indices(place: &str, faces: &[impl AsRef<[u32]>], n: usize) -> Result<()> {
     for (face, number) in faces.iter().map(AsRef::as_ref).zip(1..) {
         if face.iter().any(|&corner| corner as usize >= n) {
             let given = format!("vertex indices {face:?}");
-            let allowed = format!("0 to {}, the indices of the vertices", n - 1);
+            let allowed = match n {
+                0 => "a part with vertices".to_owned(),
+                n => format!("0 to {}, the indices of the vertices", n - 1),
+            };
             return Err(Error::input(
                 format!("{place}: face {number}"),
                 given,

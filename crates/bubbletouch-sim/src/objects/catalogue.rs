@@ -24,12 +24,10 @@ use super::{Hand, Object, Solid, pack};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::text::toml_lines::line_of;
-use crate::text::toml_numbers::check_bounds;
 use crate::text::toml_text;
 use glam::DQuat;
 use serde::Deserialize;
 use std::collections::BTreeSet;
-use std::ops::Range;
 use toml::Spanned;
 
 /// Built-in catalogue files: the name of each object set, and the text of its file.
@@ -92,9 +90,7 @@ impl Catalogue {
     /// # Errors
     /// If the text is invalid; errors begin with `place`, the name of the file.
     pub fn parse(set: &str, place: &str, text: &str) -> Result<Self> {
-        toml_text::check_nesting(place, text)?;
-        check_bounds(place, text)?;
-        let file: File = toml::from_str(text).map_err(|e| unreadable(place, text, &e))?;
+        let file: File = toml_text::read(place, text)?;
         if file.object.is_empty() {
             return Err(Error::input(place, "no objects", "at least one [[object]]"));
         }
@@ -200,10 +196,11 @@ impl WrittenObject {
     }
 
     fn entry(self, set: &str, place: &str, text: &str) -> Result<Entry> {
-        let here = self.place(place, text);
+        // Counting lines takes time for each object.
+        let here = || self.place(place, text);
         let name = self.name.get_ref();
         if name.trim().is_empty() {
-            return Err(Error::input(here, "an empty name", "a name"));
+            return Err(Error::input(here(), "an empty name", "a name"));
         }
         let parts = |written: &[WrittenPart], kind: &str| {
             parts(written, |number, at| {
@@ -217,7 +214,7 @@ impl WrittenObject {
             true => solid,
             false => solid.and_then(|solid| solid.less(cuts)),
         };
-        let solid = solid.map_err(|error| error.under(format!("{here}: ")))?;
+        let solid = solid.map_err(|error| error.under(format!("{}: ", here())))?;
         Ok(Entry {
             set: set.to_string(),
             name: name.clone(),
@@ -225,32 +222,6 @@ impl WrittenObject {
             solid: solid.resting(),
         })
     }
-}
-
-/// Converts an error of the TOML reader to an error that contains the line and the object.
-fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
-    let mut place = place.to_string();
-    if let Some(Range { start, .. }) = error.span() {
-        place += &format!(", line {}", line_of(text, start));
-        if let Some(name) = object_around(text, start) {
-            place += &format!(", object {name}");
-        }
-    }
-    let given = error.message().replace('\n', ", ");
-    let allowed = "[[object]] tables with name, source and parts in mm and degrees";
-    Error::input(place, given, allowed)
-}
-
-/// Returns the name, in quotes, of the `[[object]]` that contains the given byte of the text.
-fn object_around(text: &str, byte: usize) -> Option<&str> {
-    let mut starts = text.match_indices("[[object]]").map(|(at, _)| at);
-    let start = starts.clone().take_while(|&at| at <= byte).last()?;
-    let end = starts.find(|&at| at > byte).unwrap_or(text.len());
-    let body = &text[start..end];
-    let mut lines = body.lines();
-    let value =
-        lines.find_map(|line| line.trim().strip_prefix("name")?.trim().strip_prefix('='))?;
-    Some(value.trim())
 }
 
 /// Returns whether two names are similar: one contains the other, or their first three letters are equal.

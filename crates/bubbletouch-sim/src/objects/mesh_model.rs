@@ -4,10 +4,11 @@
 //! of radius ρ + R would touch the triangles. Therefore the contact of rounded shapes is exact. A capsule is a rounded line segment.
 
 use super::mesh_blocks::MeshBlocks;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::Aabb;
 use crate::mesh::primitives::check_capsule;
 use crate::mesh::{Bvh, LengthUnit, MeshFeatures, Triangle, TriangleMesh, Welded};
+use crate::text::in_range::not_negative;
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::{Arc, OnceLock};
 
@@ -73,10 +74,7 @@ impl MeshModel {
     /// # Errors
     /// If the rounding is negative or not finite.
     pub fn rounded(mesh: TriangleMesh, rounding: f64) -> Result<Self> {
-        if !rounding.is_finite() || rounding < 0.0 {
-            let allowed = "a finite number of metres, zero or more";
-            return Err(Error::input("rounding", rounding, allowed));
-        }
+        let rounding = not_negative("rounding", rounding, "m")?;
         Ok(Self::prepared(mesh, rounding))
     }
 

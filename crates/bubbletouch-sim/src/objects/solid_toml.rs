@@ -5,6 +5,7 @@ use super::{Part, Shape, Solid};
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy};
 use crate::text::spelling::{known, nearest_names};
+use crate::text::toml_text;
 use glam::DVec3;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -32,6 +33,18 @@ const SHAPES: [(&str, &[&str]); 11] = [
     ("prism", &["outline_mm", "thickness_mm"]),
     ("hexagonal_prism", &["across_flats_mm", "height_mm"]),
     ("strand", &["points_mm", "diameters_mm"]),
+];
+
+/// Any number of entries of a list.
+const ANY: usize = 0;
+
+/// Keys of lengths whose value is no number: the numbers of entries of their nested lists, and words for messages.
+const LISTS: [(&str, &[usize], &str); 5] = [
+    ("size_mm", &[3], "three numbers"),
+    ("profile_mm", &[ANY, 2], "a list of pairs of numbers"),
+    ("outline_mm", &[ANY, 2], "a list of pairs of numbers"),
+    ("points_mm", &[ANY, 3], "a list of points of three numbers"),
+    ("diameters_mm", &[ANY], "a list of numbers"),
 ];
 
 /// Keys of every part: its shape, the position of the shape's origin in the object's frame, and its rotation. The rotation is applied before the position: about
@@ -64,9 +77,7 @@ impl Solid {
         struct Written {
             part: Vec<WrittenPart>,
         }
-        let allowed = "parts with a shape, and lengths in mm and degrees";
-        let written: Written = toml::from_str(text)
-            .map_err(|error| Error::input(place, error.message().replace('\n', ", "), allowed))?;
+        let written: Written = toml_text::read(place, text)?;
         let parts = parts(&written.part, |number, _| format!("{place}, part {number}"));
         let solid = Self::new(parts?);
         solid.map_err(|error| error.under(format!("{place}: ")))
@@ -123,6 +134,14 @@ impl WrittenPart {
             let allowed = "a value for each length of the shape";
             return Err(Error::input(key, "missing", allowed));
         }
+        let given = keys.iter().filter_map(|key| self.0.get_key_value(*key));
+        for (key, value) in given {
+            let list = LISTS.iter().find(|(list, ..)| list == key);
+            let (lengths, allowed) = list.map_or((&[][..], "a number"), |it| (it.1, it.2));
+            if !has_form(value.get_ref(), lengths) {
+                return Err(Error::input(key, value.get_ref(), allowed));
+            }
+        }
         let [position, rotation] = [COMMON[1], COMMON[2]].map(|key| match self.0.get(key) {
             Some(value) => {
                 let vector = <[f64; 3]>::deserialize(value.get_ref().clone())
@@ -148,25 +167,8 @@ impl WrittenPart {
             (name.to_owned(), scaled(value.get_ref(), unit))
         };
         let table: Table = self.0.iter().map(field).collect();
-        let shape = Shape::deserialize(Value::Table(table.clone()));
-        let refused = |error: toml::de::Error| {
-            let is_text = |(key, value): &(&String, &Spanned<Value>)| {
-                key.ends_with("_mm") && !is_numbers(value.get_ref())
-            };
-            // The key at which a number belongs, or else a key with a text.
-            let is_number = |(key, _): &(&String, &Spanned<Value>)| {
-                let mut table = table.clone();
-                let name = key.strip_suffix("_mm").unwrap_or(key);
-                table.insert(name.to_owned(), 1.0.into());
-                Shape::deserialize(Value::Table(table)).is_ok()
-            };
-            let mut keys = self.0.iter();
-            let key = keys.find(is_number).or(self.0.iter().find(is_text));
-            let key = key.map_or("shape", |(key, _)| key);
-            let given = error.message().replace('\n', ", ");
-            Error::input(key, given, "numbers and lists of numbers in mm")
-        };
-        let mut shape = shape.map_err(refused)?;
+        let shape = Shape::deserialize(Value::Table(table));
+        let mut shape = shape.map_err(|error| Error::input("shape", error.message(), "a shape"))?;
         if let Shape::Lathe { profile } = &mut shape {
             profile.iter_mut().for_each(|corner| corner.x *= 0.5);
         }
@@ -195,10 +197,14 @@ fn scaled(value: &Value, unit: f64) -> Value {
     }
 }
 
-/// Returns whether a value is a number, or lists of numbers.
-fn is_numbers(value: &Value) -> bool {
-    match value {
-        Value::Array(list) => list.iter().all(is_numbers),
-        other => other.is_float() || other.is_integer(),
+/// Returns whether a value is a number or, if there are `lengths`, nested lists of numbers with these numbers of entries.
+fn has_form(value: &Value, lengths: &[usize]) -> bool {
+    match (value, lengths) {
+        (Value::Integer(_) | Value::Float(_), []) => true,
+        (Value::Array(list), [length, inner @ ..]) => {
+            (*length == ANY || *length == list.len())
+                && list.iter().all(|entry| has_form(entry, inner))
+        }
+        _ => false,
     }
 }

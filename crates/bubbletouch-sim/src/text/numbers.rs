@@ -1,4 +1,9 @@
-//! Formatting of numbers for display.
+//! Reading of single numbers, and formatting of numbers for display.
+
+/// Returns the finite number that a word contains; `None` for another word.
+pub(crate) fn finite_number(word: &str) -> Option<f64> {
+    word.parse().ok().filter(|number: &f64| number.is_finite())
+}
 
 /// Formats a number for readers with four significant digits and without trailing zeros, such as `2.05 million` or `3 × 10⁻⁵`.
 pub fn short_number(number: f64) -> String {

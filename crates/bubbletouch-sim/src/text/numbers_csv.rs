@@ -1,5 +1,6 @@
 //! Reading of numbers from CSV files, and the errors of invalid rows.
 
+use super::numbers::finite_number;
 use crate::error::{Error, Result};
 use std::io::Read;
 
@@ -44,14 +45,14 @@ pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Res
 /// # Errors
 /// If the field is not a finite number.
 pub fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f64> {
-    match field.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(Error::input(
+    let given = || {
+        Error::input(
             format!("{place}, column {column}"),
             format!("`{field}`"),
             allowed,
-        )),
-    }
+        )
+    };
+    finite_number(field).ok_or_else(given)
 }
 
 /// Table of numbers with named columns.

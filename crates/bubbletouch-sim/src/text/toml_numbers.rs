@@ -1,4 +1,5 @@
-//! Bounds of the numbers in a TOML file, for any key. All numbers are finite, and none is far beyond the range of its unit in robotics.
+//! Bounds of the numbers in a TOML file, for any key. All numbers are finite, and none is far beyond the range of its unit in robotics. Whole numbers are
+//! integers that a TOML table can store.
 //!
 //! The end of a key names its unit (`stroke_mm`). A number without a unit is bounded by `MAX_PLAIN`. The check runs when a file is read,
 //! before its keys are known; checks of single keys are narrower.
@@ -37,187 +38,121 @@ const MAX_PLAIN: f64 = 1e100;
 
 /// Bound of the values of a key: the largest allowed magnitude, and its unit.
 #[derive(Clone, Copy)]
-struct Bound(f64, &'static str);
+pub(super) struct Bound(f64, &'static str);
 
-/// Returns an error unless all numbers of a TOML text are within the bounds of their units.
+impl Bound {
+    /// Bound of numbers without a unit.
+    pub const PLAIN: Self = Self(MAX_PLAIN, "");
+}
+
+/// Returns an error unless all numbers of the table of a TOML text are within the bounds of their units.
 ///
 /// # Errors
-/// If a number is not finite or beyond the bound of its unit. The error names `place` (the file), the line and the key.
-pub fn check_bounds(place: &str, text: &str) -> Result<()> {
-    let Ok(table) = DeTable::parse(text) else {
-        // The TOML reader reports the syntax error later.
-        return Ok(());
+/// If a number is not finite, beyond the bound of its unit, or an integer of more than 64 bits. The error names `place` (the file), the line and the key.
+pub(super) fn check_numbers(place: &str, text: &str, table: &DeTable) -> Result<()> {
+    each_value("", Bound::PLAIN, table, &mut |path, bound, value| {
+        let Some((given, allowed)) = fault(bound, value.get_ref()) else {
+            return Ok(());
+        };
+        let line = line_of(text, value.span().start);
+        let place = format!("{place}:{line}, key {path}");
+        Err(Error::input(place, given, allowed))
+    })
+}
+
+/// Returns the number in a message and the allowed numbers, if a value is a number beyond its bound.
+fn fault(Bound(largest, unit): Bound, value: &DeValue) -> Option<(String, String)> {
+    let allowed = || {
+        let shown = match largest < 1e7 {
+            true => largest.to_string(),
+            false => format!("{largest:e}"),
+        };
+        format!("at most {shown}{unit} in magnitude")
     };
-    let checked = Text { place, text };
-    checked.table("", Bound(MAX_PLAIN, ""), table.get_ref())
-}
-
-/// TOML text, with its name in error messages.
-struct Text<'a> {
-    place: &'a str,
-    text: &'a str,
-}
-
-impl Text<'_> {
-    fn table(&self, path: &str, outer: Bound, table: &DeTable) -> Result<()> {
-        for (name, value) in table {
-            let name = name.get_ref();
-            let known = BOUNDS.iter().find(|(end, ..)| name.ends_with(end));
-            // In `{ grid = [0, 50, 6] }` the outer key has the unit.
-            let bound = known.map_or(outer, |&(_, largest, unit)| Bound(largest, unit));
-            let path = match path {
-                "" => name.to_string(),
-                _ => format!("{path}.{name}"),
+    match value {
+        DeValue::Float(number) => {
+            let number: f64 = number.as_str().parse().ok()?;
+            if !number.is_finite() {
+                return Some((number.to_string(), "a finite number".to_owned()));
+            }
+            (number.abs() > largest).then(|| (format!("{number:e}"), allowed()))
+        }
+        DeValue::Integer(number) => {
+            let Ok(integer) = i64::from_str_radix(number.as_str(), number.radix()) else {
+                let given = format!("{number}, which is too large");
+                return Some((given, "expected a number below 2⁶³".to_owned()));
             };
-            self.value(&path, bound, value)?;
-        }
-        Ok(())
-    }
-
-    fn value(&self, path: &str, bound: Bound, value: &Spanned<DeValue>) -> Result<()> {
-        let Bound(largest, unit) = bound;
-        let refuse = |given: &str, allowed: String| {
-            let line = line_of(self.text, value.span().start);
-            let place = format!("{}:{line}, key {path}", self.place);
-            Err(Error::input(place, given, allowed))
-        };
-        match value.get_ref() {
-            DeValue::Table(table) => self.table(path, bound, table),
-            DeValue::Array(values) => {
-                let mut values = values.iter().enumerate();
-                values.try_for_each(|(number, value)| match value.get_ref().as_table() {
-                    // Formats the table as the checks of single keys do: by its name, or by its number from 1.
-                    Some(table) => {
-                        let name = table.get("name").and_then(|name| name.get_ref().as_str());
-                        let path = match name {
-                            Some(name) => format!("{path}.{name}"),
-                            None => format!("{path}[{}]", number + 1),
-                        };
-                        self.table(&path, bound, table)
-                    }
-                    None => self.value(path, bound, value),
-                })
-            }
-            DeValue::Float(number) => match number.as_str().parse::<f64>() {
-                Ok(number) if !number.is_finite() => {
-                    refuse(&number.to_string(), "a finite number".to_owned())
-                }
-                Ok(number) if number.abs() > largest => {
-                    let allowed = format!("at most {}{unit} in magnitude", shown(largest));
-                    refuse(&format!("{number:e}"), allowed)
-                }
-                _ => Ok(()),
-            },
             // Integers without a unit are counts and seeds, whose own checks have bounds.
-            DeValue::Integer(number) if largest < MAX_PLAIN => {
-                let number = i64::from_str_radix(number.as_str(), number.radix());
-                match number {
-                    Ok(number) if number.unsigned_abs() as f64 > largest => {
-                        let allowed = format!("at most {}{unit} in magnitude", shown(largest));
-                        refuse(&number.to_string(), allowed)
-                    }
-                    _ => Ok(()),
-                }
-            }
-            _ => Ok(()),
+            let is_large = largest < MAX_PLAIN && integer.unsigned_abs() as f64 > largest;
+            is_large.then(|| (integer.to_string(), allowed()))
         }
+        _ => None,
     }
 }
 
-fn shown(number: f64) -> String {
-    match number < 1e7 {
-        true => number.to_string(),
-        false => format!("{number:e}"),
-    }
+/// Calls `visit` with the path and the bound of each value of a table and its subtables, other than tables; a list precedes its entries. `path` is the path of
+/// the table, and `outer` the bound of a key without a unit.
+///
+/// # Errors
+/// Returns the first error of `visit`.
+pub(super) fn each_value<E>(
+    path: &str,
+    outer: Bound,
+    table: &DeTable,
+    visit: &mut impl FnMut(&str, Bound, &Spanned<DeValue>) -> std::result::Result<(), E>,
+) -> std::result::Result<(), E> {
+    table.iter().try_for_each(|(name, value)| {
+        let name = name.get_ref();
+        let known = BOUNDS.iter().find(|(end, ..)| name.ends_with(end));
+        // In `{ grid = [0, 50, 6] }` the outer key has the unit.
+        let bound = known.map_or(outer, |&(_, largest, unit)| Bound(largest, unit));
+        let path = match path {
+            "" => name.to_string(),
+            _ => format!("{path}.{name}"),
+        };
+        each_entry(&path, bound, value, visit)
+    })
 }
 
-/// Adds the line of the key, as in `file:12, key skin.stroke_mm`, to an error that contains a key of this text without a line.
-pub fn with_line(place: &str, text: &str, error: Error) -> Error {
-    let Error::Input {
-        place: named,
-        given,
-        allowed,
-    } = &error
-    else {
-        return error;
-    };
-    if named.starts_with("key ") {
-        let whole = Error::input(format!("{place}, {named}"), given, allowed);
-        return with_line(place, text, whole);
+fn each_entry<E>(
+    path: &str,
+    bound: Bound,
+    value: &Spanned<DeValue>,
+    visit: &mut impl FnMut(&str, Bound, &Spanned<DeValue>) -> std::result::Result<(), E>,
+) -> std::result::Result<(), E> {
+    if let DeValue::Table(table) = value.get_ref() {
+        return each_value(path, bound, table, visit);
     }
-    let key = named.strip_prefix(place).and_then(|rest| {
-        let rest = rest.strip_prefix(", key ")?;
-        rest.split([',', ':', ' ']).next()
-    });
-    let Some(line) = key.and_then(|key| line_of_key(text, key)) else {
-        return error;
-    };
-    let rest = &named[place.len()..];
-    Error::input(format!("{place}:{line}{rest}"), given, allowed)
-}
-
-/// Returns the line number of a key, or of the innermost existing table on its path. Returns `None` if the first part of the path does not exist. A part of
-/// a path is a name, a name with a number from 1 (`parts[2]`), or the name of a table in an array (`objects.ball`).
-fn line_of_key(text: &str, path: &str) -> Option<usize> {
-    let table = DeTable::parse(text).ok()?;
-    let mut inside = table.get_ref();
-    let mut parts = path.split('.').peekable();
-    let mut start = None;
-    while let Some(part) = parts.next() {
-        let (name, number) = match part.split_once('[') {
-            Some((name, number)) => (name, number.trim_end_matches(']').parse::<usize>().ok()),
-            None => (part, None),
+    visit(path, bound, value)?;
+    let entries = value.get_ref().as_array().into_iter().flatten();
+    entries.zip(1..).try_for_each(|(entry, number)| {
+        let Some(table) = entry.get_ref().as_table() else {
+            return each_entry(path, bound, entry, visit);
         };
-        let Some((key, value)) = inside.get_key_value(name) else {
-            break;
+        // Formats the table as the checks of single keys do: by its name, or by its number from 1.
+        let path = match table.get("name").and_then(|name| name.get_ref().as_str()) {
+            Some(name) => format!("{path}.{name}"),
+            None => format!("{path}[{number}]"),
         };
-        start = Some(key.span().start);
-        inside = match value.get_ref() {
-            DeValue::Table(table) => table,
-            DeValue::Array(tables) => {
-                let has_name = |value: &&Spanned<DeValue>, name: &str| {
-                    let named = value
-                        .get_ref()
-                        .get("name")
-                        .and_then(|v| v.get_ref().as_str());
-                    named == Some(name)
-                };
-                let found = match (number, parts.peek()) {
-                    (Some(number), _) => tables.get(number.checked_sub(1)?),
-                    (None, Some(name)) => tables.iter().find(|value| has_name(value, name)),
-                    (None, None) => None,
-                };
-                let Some(found) = found else { break };
-                if number.is_none() {
-                    parts.next();
-                }
-                start = Some(found.span().start);
-                let Some(table) = found.get_ref().as_table() else {
-                    break;
-                };
-                table
-            }
-            _ => break,
-        };
-    }
-    start.map(|start| line_of(text, start))
+        each_value(&path, bound, table, visit)
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::text::toml_text::TomlText;
 
     const TEXT: &str = "seed = 9000000000000000000\n[skin]\nstroke_mm = 5\n\n[[objects]]\nname = \"ball\"\nfree = { mass_kg = 1.0 }\n[[objects]]\nname = \"box\"\nat = { position_mm = [\n0.0, 1.0, 2.0] }\n";
 
     fn said(text: &str) -> String {
-        let error = check_bounds("s.toml", text).unwrap_err();
+        let error = TomlText::parse("s.toml", text).err().unwrap();
         assert_eq!(error.exit_code(), 2);
         error.to_string()
     }
 
     #[test]
     fn every_number_is_finite_and_within_what_its_unit_measures() {
-        assert!(check_bounds("s.toml", TEXT).is_ok());
+        assert!(TomlText::parse("s.toml", TEXT).is_ok());
         for (old, new, wanted) in [
             (
                 "= 5",
@@ -262,21 +197,6 @@ mod tests {
         ] {
             let said = said(&TEXT.replace(old, new));
             assert!(said.contains(wanted), "{said}\nis not\n{wanted}");
-        }
-    }
-
-    #[test]
-    fn an_error_about_a_key_gets_the_line_of_the_key() {
-        for (key, wanted) in [
-            ("skin.stroke_mm", "s.toml:3, key skin.stroke_mm"),
-            ("skin.pitch_mm", "s.toml:2, key skin.pitch_mm"),
-            ("objects.box.at.position_mm", "s.toml:10, key objects.box"),
-            ("objects[1].free.mass_kg", "s.toml:7, key objects[1]"),
-            ("touches", "s.toml, key touches"),
-        ] {
-            let error = Error::input(format!("s.toml, key {key}"), 1, 2);
-            let said = with_line("s.toml", TEXT, error).to_string();
-            assert!(said.starts_with(wanted), "{said}\nis not\n{wanted}");
         }
     }
 }

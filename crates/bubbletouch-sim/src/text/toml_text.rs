@@ -1,12 +1,13 @@
 //! Reading and writing of TOML files, with errors that state the location.
 
 use super::toml_lines::line_of;
-use super::toml_numbers::check_bounds;
+use super::toml_numbers::{Bound, check_numbers, each_value};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::ops::Range;
-use toml::de::{DeTable, DeValue};
+use toml::Spanned;
+use toml::de::DeTable;
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
@@ -18,55 +19,93 @@ const MAX_OPEN: usize = 200;
 /// overflow a thread's stack.
 const MAX_DOTS: usize = 20;
 
+/// TOML text that has been parsed once: a table in which each value carries its position in the text.
+pub struct TomlText<'t> {
+    place: &'t str,
+    text: &'t str,
+    /// Table of the file; spans are byte ranges of the text.
+    pub table: Spanned<DeTable<'t>>,
+}
+
+impl<'t> TomlText<'t> {
+    /// Parses a TOML text, whose file is `place`.
+    ///
+    /// # Errors
+    /// If the text is not valid TOML, is nested too deeply, or has a number out of the bounds of its unit; the error contains file and line.
+    pub fn parse(place: &'t str, text: &'t str) -> Result<Self> {
+        check_nesting(place, text)?;
+        let table = DeTable::parse(text).map_err(|error| refused(place, text, &error))?;
+        check_numbers(place, text, table.get_ref())?;
+        Ok(Self { place, text, table })
+    }
+
+    /// Converts the table to a type.
+    ///
+    /// # Errors
+    /// If a key is unknown, missing or of another type; the error contains file, line and column.
+    pub fn read<T: DeserializeOwned>(self) -> Result<T> {
+        let read = T::deserialize(toml::Deserializer::from(self.table));
+        read.map_err(|error| refused(self.place, self.text, &error))
+    }
+}
+
 /// Parses a TOML text; an error contains `place` (the file), line and column.
 ///
 /// # Errors
 /// If the text is not valid TOML, has an unknown, missing or mistyped key, or has a number out of bounds.
 pub fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
-    check_nesting(place, text)?;
-    check_numbers(place, text)?;
-    toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+    TomlText::parse(place, text)?.read()
 }
 
-/// Returns an error unless a TOML table can store all integers of a text, and all numbers are within the bounds of their units.
-///
-/// # Errors
-/// If the text is not valid TOML, or a number in it is out of bounds.
-pub fn check_numbers(place: &str, text: &str) -> Result<()> {
-    let read = text.parse::<toml::Table>();
-    read.map_err(|error| Error::toml(place, text, &error))?;
-    check_bounds(place, text)
-}
-
-/// Returns the error of a list that is the value of a key with one number, with file, line and key; `None` for other errors.
-pub(crate) fn list_for_number(place: &str, text: &str, error: &toml::de::Error) -> Option<Error> {
-    let expected = error.message().trim();
-    let number = match expected.strip_prefix("invalid type: sequence, expected ")? {
-        "f64" => "number",
-        "usize" | "u64" | "u32" => "whole number",
-        _ => return None,
+/// Creates an input error from an error of the TOML reader. The error contains file, line and column, or the key if its value is a list in place of a number.
+pub fn refused(place: &str, text: &str, error: &toml::de::Error) -> Error {
+    // Names of Rust types become plain words.
+    const WORDS: [(&str, &str); 5] = [
+        ("\n", " "),
+        ("expected usize", "expected a whole number"),
+        ("expected u64", "expected a whole number"),
+        ("expected u32", "expected a whole number"),
+        ("expected f64", "expected a number"),
+    ];
+    let replaced = |message: String, (old, new): &(&str, &str)| message.replace(old, new);
+    let message = WORDS
+        .iter()
+        .fold(error.message().trim().to_owned(), replaced);
+    let (given, allowed) = match message.split_once(", expected ") {
+        Some((given, allowed)) => (given.to_owned(), format!("expected {allowed}")),
+        None => (message, "TOML as in experiments/ and objects/".to_owned()),
     };
-    let span = error.span()?;
-    let key = key_at("", DeTable::parse(text).ok()?.get_ref(), &span)?;
-    let place = format!("{place}:{}, key {key}", line_of(text, span.start));
-    let allowed = format!("one {number}: no list of this key in this kind of file");
-    Some(Error::input(place, "a list", allowed))
+    let Some(span) = error.span() else {
+        return Error::input(place, given, allowed);
+    };
+    let line = line_of(text, span.start);
+    if let ("invalid type: sequence", "expected a number" | "expected a whole number") =
+        (given.as_str(), allowed.as_str())
+        && let Some(key) = key_at(text, &span)
+    {
+        let number = allowed.trim_start_matches("expected a ");
+        let place = format!("{place}:{line}, key {key}");
+        let allowed = format!("one {number}: no list of this key in this kind of file");
+        return Error::input(place, "a list", allowed);
+    }
+    let before = &text[..span.start.min(text.len())];
+    let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+    Error::input(format!("{place}:{line}:{column}"), given, allowed)
 }
 
-/// Returns the path of the key whose value has a byte range of the text. An entry of a list has its number, counted from 1: `part[1].diameter_mm`.
-fn key_at(prefix: &str, table: &DeTable, span: &Range<usize>) -> Option<String> {
-    table.iter().find_map(|(name, value)| {
-        let path = format!("{prefix}{}", name.get_ref());
-        match value.get_ref() {
-            _ if value.span() == *span => Some(path),
-            DeValue::Table(inner) => key_at(&format!("{path}."), inner, span),
-            DeValue::Array(values) => (1..).zip(values).find_map(|(number, value)| {
-                let inner = value.get_ref().as_table()?;
-                key_at(&format!("{path}[{number}]."), inner, span)
-            }),
-            _ => None,
-        }
-    })
+/// Returns the path of the key whose value has a byte range of the text.
+fn key_at(text: &str, span: &Range<usize>) -> Option<String> {
+    let table = DeTable::parse(text).ok()?;
+    each_value(
+        "",
+        Bound::PLAIN,
+        table.get_ref(),
+        &mut |path, _, value| match value.span() == *span {
+            true => Err(path.to_owned()),
+            false => Ok(()),
+        },
+    )
+    .err()
 }
 
 /// Writes a study with all default values as TOML.
@@ -84,7 +123,7 @@ pub fn table(text: &str) -> Option<toml::Table> {
 ///
 /// # Errors
 /// If more than 200 brackets are open at once, or a key has more than 20 dots.
-pub fn check_nesting(place: &str, text: &str) -> Result<()> {
+fn check_nesting(place: &str, text: &str) -> Result<()> {
     // Square and curly brackets are counted separately; in invalid text one kind may close the other.
     let mut open = [0_usize; 2];
     let mut n_dots = 0;

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, check_poses};
+use crate::text::in_range::not_negative;
 use glam::{DQuat, DVec3};
 
 /// Phase of a motion with constant velocity.
@@ -35,11 +36,7 @@ impl VelocityPlan {
         check_poses("body", 1, &[start])?;
         for (index, phase) in phases.iter().enumerate() {
             let place = format!("velocity plan, phase {}", index + 1);
-            if !(phase.duration.is_finite() && phase.duration >= 0.0) {
-                let given = format!("duration {} s", phase.duration);
-                let allowed = "zero or a positive number";
-                return Err(Error::input(place, given, allowed));
-            }
+            not_negative(&format!("{place}: duration"), phase.duration, "s")?;
             if !(phase.linear.is_finite() && phase.angular.is_finite()) {
                 let given = format!("velocity {} m/s, {} rad/s", phase.linear, phase.angular);
                 return Err(Error::input(place, given, "finite numbers"));
@@ -114,7 +111,7 @@ mod tests {
             angular: DVec3::ZERO,
         };
         let error = VelocityPlan::new(Pose::IDENTITY, vec![phase]).unwrap_err();
-        let said = "velocity plan, phase 1: duration -1 s; zero or a positive number";
+        let said = "velocity plan, phase 1: duration: -1 s; zero or a positive number";
         assert_eq!(error.to_string(), said);
     }
 }

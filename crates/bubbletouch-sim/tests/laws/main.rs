@@ -1,6 +1,7 @@
 //! Laws of the simulation, each checked against a slow or an independent computation.
 
 mod fixtures {
+    pub mod cases;
     pub mod counting;
     pub mod double_double;
     pub mod every_part;
@@ -19,6 +20,6 @@ mod world;
 
 use bubbletouch_sim::statistics::standard_errors;
 use fixtures::{
-    counting, double_double, every_part, mesh_shapes, overlapping, reference_data, scans, scenes,
-    shapes, time_loop,
+    cases, counting, double_double, every_part, mesh_shapes, overlapping, reference_data, scans,
+    scenes, shapes, time_loop,
 };

@@ -1,9 +1,7 @@
 //! Meshes from glTF 2.0 files (`.glb`, `.gltf`). Positions, triangles and the tree of nodes are read; materials, normals, texture and animations are ignored.
 
 use super::gltf_file::GltfFile;
-use super::joined_parts::{
-    JoinedParts, check_depth, triangles_of_fan, triangles_of_list, triangles_of_strip,
-};
+use super::joined_parts::{JoinedParts, triangles_of_fan, triangles_of_list, triangles_of_strip};
 use super::text_lines::all_bytes;
 use crate::error::{Error, Result};
 use crate::mesh::MeshFile;
@@ -55,7 +53,7 @@ impl Reading<'_> {
             .file
             .item("node", &self.file.description.nodes, index)?;
         let place = format!("{}, node {index}", self.place);
-        check_depth(&place, depth)?;
+        self.parts.enter_node(&place, depth)?;
         let Some(own) = node.transform() else {
             let given = "a transform that is not affine";
             let allowed = "a matrix with the last row 0, 0, 0, 1, or a rotation of length one";

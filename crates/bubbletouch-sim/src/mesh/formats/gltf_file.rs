@@ -2,10 +2,12 @@
 
 use super::base64;
 use super::joined_parts::affine;
+use super::text_lines::BYTE_ORDER_MARK;
 use crate::error::{Error, Result};
+use crate::files::spellings;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// First bytes of a binary file.
 const MAGIC: &[u8] = b"glTF";
@@ -125,7 +127,8 @@ impl<'p> GltfFile<'p> {
     pub fn new(place: &'p str, bytes: &[u8]) -> Result<Self> {
         let (json, binary) = match bytes.starts_with(MAGIC) {
             true => chunks(place, bytes)?,
-            false => (bytes, None),
+            // Some programs write a byte order mark.
+            false => (bytes.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(bytes), None),
         };
         if bytes.is_empty() {
             return Err(Error::input(place, "an empty file", "glTF 2.0"));
@@ -249,7 +252,8 @@ impl<'p> GltfFile<'p> {
             .count
             .checked_sub(1)
             .and_then(|before| before.checked_mul(stride))
-            .and_then(|before| before.checked_add(accessor.byte_offset + size * n));
+            .and_then(|before| before.checked_add(size * n))
+            .and_then(|length| length.checked_add(accessor.byte_offset));
         let bytes = bytes
             .zip(end)
             .and_then(|(bytes, end)| bytes.get(accessor.byte_offset..end));
@@ -343,8 +347,13 @@ fn content_of(place: &str, place_of_buffer: &str, address: &str) -> Result<Vec<u
         });
     }
     let folder = Path::new(place).parent().unwrap_or(Path::new(""));
-    let path = folder.join(address.replace("%20", " "));
-    crate::files::read(&path).map_err(|error| {
+    let paths = spellings(address).into_iter().map(|name| folder.join(name));
+    let paths: Vec<PathBuf> = paths.collect();
+    let path = paths
+        .iter()
+        .find(|path| path.is_file())
+        .unwrap_or(&paths[0]);
+    crate::files::read(path).map_err(|error| {
         let given = format!("{}, which cannot be read ({error})", path.display());
         Error::input(place_of_buffer, given, "a file beside the glTF file")
     })

@@ -2,12 +2,16 @@
 
 use crate::error::{Error, Result};
 use crate::mesh::MeshFile;
+use crate::mesh::triangle_mesh::check_indices;
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
 /// Largest number of polygons of a file. With a larger value, a small file whose nodes refer to each other repeatedly can fill the memory.
 const MAX_POLYGONS: usize = 50_000_000;
 /// Largest depth of the tree of nodes. A deeper tree indicates nodes that contain each other.
 const MAX_DEPTH: usize = 100;
+/// Largest number of nodes, of which each counts as often as other nodes refer to it. With a larger value, a small file whose nodes refer to each other
+/// repeatedly takes hours; with a smaller value, large scenes are refused.
+const MAX_NODES: usize = 1_000_000;
 /// Index that marks positions that no polygon uses.
 const UNUSED: u32 = u32::MAX;
 
@@ -16,9 +20,24 @@ const UNUSED: u32 = u32::MAX;
 pub(super) struct JoinedParts {
     vertices: Vec<DVec3>,
     polygons: Vec<Vec<u32>>,
+    n_nodes: usize,
 }
 
 impl JoinedParts {
+    /// Counts a node of the tree of nodes, with its depth in the tree.
+    ///
+    /// # Errors
+    /// If the node is so deep in the tree that nodes contain each other, or if there are too many nodes.
+    pub fn enter_node(&mut self, place: &str, depth: usize) -> Result<()> {
+        self.n_nodes += 1;
+        let given = match self.n_nodes > MAX_NODES {
+            true => format!("more than {MAX_NODES} nodes, counted as often as others contain them"),
+            false if depth > MAX_DEPTH => format!("nodes inside each other, {MAX_DEPTH} deep"),
+            false => return Ok(()),
+        };
+        Err(Error::input(place, given, "a tree of nodes"))
+    }
+
     /// Adds polygons, which contain indices of `positions`, under a transform. If the transform mirrors, the polygons are turned. Positions that no polygon uses
     /// are omitted.
     ///
@@ -35,21 +54,7 @@ impl JoinedParts {
             let allowed = format!("at most {MAX_POLYGONS}");
             return Err(Error::input(place, "too many polygons", allowed));
         }
-        for (polygon, number) in polygons.iter().zip(1..) {
-            let n = positions.len();
-            if let Some(corner) = polygon.iter().find(|&&corner| corner as usize >= n) {
-                let allowed = match n {
-                    0 => "a part with vertices".to_owned(),
-                    n => format!("0 to {}, the indices of the vertices", n - 1),
-                };
-                let place = format!("{place}: face {number}");
-                return Err(Error::input(
-                    place,
-                    format!("vertex index {corner}"),
-                    allowed,
-                ));
-            }
-        }
+        check_indices(place, &polygons, positions.len())?;
         let first = self.vertices.len() as u32;
         let used = used_positions(positions, &mut polygons).into_iter();
         self.vertices
@@ -98,15 +103,6 @@ pub(super) fn affine(matrix: &DMat4) -> Option<DAffine3> {
     let is_affine = matrix.row(3) == DVec4::W;
     let linear = DMat3::from_mat4(*matrix);
     is_affine.then(|| DAffine3::from_mat3_translation(linear, matrix.w_axis.truncate()))
-}
-
-/// Returns an error if a node is so deep in the tree of nodes that nodes contain each other.
-pub(super) fn check_depth(place: &str, depth: usize) -> Result<()> {
-    if depth <= MAX_DEPTH {
-        return Ok(());
-    }
-    let given = format!("nodes inside each other, {MAX_DEPTH} deep");
-    Err(Error::input(place, given, "a tree of nodes"))
 }
 
 /// Returns the triangles of a list with three corners each.

@@ -3,7 +3,7 @@
 //! A file must have an element `vertex` with scalar properties x, y, z (metres). The element `face` is read if its list has the name `vertex_indices` or
 //! `vertex_index`. Other elements and properties are skipped.
 
-use super::text_lines::BYTE_ORDER_MARK;
+use super::text_lines::{BYTE_ORDER_MARK, all_bytes};
 use crate::error::{Error, Result};
 use crate::mesh::MeshFile;
 use glam::DVec3;
@@ -17,9 +17,9 @@ use std::io::{BufRead, ErrorKind};
 ///
 /// # Errors
 /// If the file has another format, is truncated, has no vertices, or contains a coordinate that is not finite or an invalid vertex index.
-pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
-    check_magic(place, &mut source)?;
-    let mut reader = Reader::new(source);
+pub fn read_ply(place: &str, source: impl BufRead) -> Result<MeshFile> {
+    let content = ascii_header(place, all_bytes(place, source)?)?;
+    let mut reader = Reader::new(&content[..]);
     let header = Parser::<Item>::new()
         .read_header(&mut reader)
         .map_err(|e| malformed(place, &e))?;
@@ -56,25 +56,26 @@ fn polygons(place: &str, faces: &[Item]) -> Result<Vec<Vec<u32>>> {
     faces.iter().enumerate().map(polygon).collect()
 }
 
-fn check_magic(place: &str, source: &mut impl BufRead) -> Result<()> {
-    let read = |e| Error::io(place, "read", e);
-    if source
-        .fill_buf()
-        .map_err(read)?
-        .starts_with(&BYTE_ORDER_MARK)
-    {
-        source.consume(BYTE_ORDER_MARK.len());
+/// Returns the content of a file without a byte order mark, and with `?` in place of the bytes of its header that are not ASCII. Comments of a header may be in
+/// any encoding.
+fn ascii_header(place: &str, mut content: Vec<u8>) -> Result<Vec<u8>> {
+    if content.starts_with(&BYTE_ORDER_MARK) {
+        content.drain(..BYTE_ORDER_MARK.len());
     }
-    let start = source.fill_buf().map_err(read)?;
-    if start.starts_with(b"ply") {
-        return Ok(());
+    if !content.starts_with(b"ply") {
+        let given = match content.is_empty() {
+            true => "an empty file",
+            false => "not a PLY file",
+        };
+        return Err(Error::input(place, given, "a file that begins with `ply`"));
     }
-    let given = if start.is_empty() {
-        "an empty file"
-    } else {
-        "not a PLY file"
-    };
-    Err(Error::input(place, given, "a file that begins with `ply`"))
+    const END: &[u8] = b"end_header";
+    let end = content.windows(END.len()).position(|bytes| bytes == END);
+    let header = &mut content[..end.unwrap_or(0)];
+    for byte in header.iter_mut().filter(|byte| !byte.is_ascii()) {
+        *byte = b'?';
+    }
+    Ok(content)
 }
 
 /// Returns an error for unsupported elements before the reader reads data or allocates memory.

@@ -1,6 +1,7 @@
 //! Numbered lines of text files in any encoding, with any line ends, without the byte order mark.
 
 use crate::error::{Error, Result};
+use crate::text::numbers::finite_number;
 use std::io::BufRead;
 
 /// Byte order mark of UTF-8.
@@ -73,8 +74,7 @@ pub(super) fn coordinates<'a>(
             let given = format!("{n_read} coordinates");
             return Err(Error::input(place, given, "x, y and z"));
         };
-        let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-        let Some(number) = number else {
+        let Some(number) = finite_number(word) else {
             let given = format!("coordinate `{word}`");
             return Err(Error::input(place, given, "a finite number"));
         };

@@ -1,9 +1,9 @@
 //! Links: rigid bodies, with the shapes that skin can cover.
 
 use super::origin::origin_of;
-use super::xml::{Element, LENGTHS, NOT_ZERO};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::text::xml::{Element, LENGTHS, NOT_ZERO};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

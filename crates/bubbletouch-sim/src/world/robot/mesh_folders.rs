@@ -1,6 +1,7 @@
 //! Search for the mesh files that a robot's file names.
 
 use crate::error::{Error, Result};
+use crate::files::spellings;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -75,41 +76,6 @@ impl MeshFolders {
             })
             .collect()
     }
-}
-
-/// Returns the spellings of a file name that are searched: as written, with `/` in place of Windows' `\`, and with decoded escapes such as `%20`.
-pub(super) fn spellings(path: &str) -> Vec<String> {
-    let mut all = vec![path.to_owned()];
-    if path.contains('\\') {
-        all.push(path.replace('\\', "/"));
-    }
-    if let Some(decoded) = percent_decoded(path) {
-        all.push(decoded);
-    }
-    all
-}
-
-/// Returns a path with decoded bytes such as `%20`; `None` if it contains none, or if the result is not UTF-8.
-fn percent_decoded(path: &str) -> Option<String> {
-    let mut parts = path.split('%');
-    let mut bytes = parts.next()?.as_bytes().to_vec();
-    for part in parts {
-        let code = part
-            .get(..2)
-            .filter(|code| code.bytes().all(|byte| byte.is_ascii_hexdigit()));
-        match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
-            Some(byte) => {
-                bytes.push(byte);
-                bytes.extend_from_slice(&part.as_bytes()[2..]);
-            }
-            None => {
-                bytes.push(b'%');
-                bytes.extend_from_slice(part.as_bytes());
-            }
-        }
-    }
-    let decoded = String::from_utf8(bytes).ok();
-    decoded.filter(|decoded| decoded != path)
 }
 
 /// Returns the name of the package and the path inside the package, if the name of a mesh file is the address of a package.

@@ -35,7 +35,6 @@ mod tactile;
 mod text;
 mod tree;
 mod urdf;
-mod xml;
 
 pub use coordinate::{Coordinate, Dimension};
 pub use joint::{Joint, JointKind, Limits, Mimic};

@@ -1,8 +1,8 @@
 //! Poses in URDF files: `<origin xyz rpy quat_xyzw>`, and the attributes `xyz` and `rpy` of other elements.
 
-use super::xml::Element;
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
+use crate::text::xml::Element;
 use glam::{DQuat, DVec3};
 
 /// Returns the pose in the child element `<origin>`; the identity if there is none.

@@ -1,18 +1,29 @@
 //! Text of a robot's file. A model in MJCF has the text of each included file in place of its `<include>`.
 
-use super::mesh_folders::spellings;
-use super::text::{document, repaired};
-use super::xml::{Element, Lines};
+use super::text::repaired;
 use crate::error::Result;
+use crate::files::spellings;
 use crate::text::encoding::decoded;
+use crate::text::xml::{Element, Format, Lines, document};
 use roxmltree::Document;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+/// Unified robot description format.
+pub(super) const URDF: Format = Format {
+    name: "URDF",
+    root: "robot",
+};
+/// MuJoCo's format.
+pub(super) const MJCF: Format = Format {
+    name: "MJCF",
+    root: "mujoco",
+};
+
 /// Text of a robot's file, with the file and the line of each part.
 pub(super) struct Source {
-    format: &'static str,
+    format: Format,
     place: String,
     text: String,
     /// Files and lines of the text.
@@ -21,8 +32,8 @@ pub(super) struct Source {
 }
 
 impl Source {
-    /// Prepares the text of a file, whose path is `place`; `format` is the name of its format.
-    pub fn one_file(format: &'static str, place: &str, text: &str) -> Self {
+    /// Prepares the text of a file, whose path is `place`.
+    pub fn one_file(format: Format, place: &str, text: &str) -> Self {
         let mut source = Self::empty(format, place);
         let text = repaired(place, text, &source.lines);
         let file = source.lines.add_place(place);
@@ -35,13 +46,13 @@ impl Source {
     /// # Errors
     /// If a file is not well-formed XML, cannot be read, or is included twice.
     pub fn mjcf(place: &str, text: &str) -> Result<Self> {
-        let mut source = Self::empty("MJCF", place);
+        let mut source = Self::empty(MJCF, place);
         source.included.insert(PathBuf::from(place));
         source.add(place, text, Part::Whole)?;
         Ok(source)
     }
 
-    fn empty(format: &'static str, place: &str) -> Self {
+    fn empty(format: Format, place: &str) -> Self {
         Self {
             format,
             place: place.to_owned(),

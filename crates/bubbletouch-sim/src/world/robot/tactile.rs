@@ -1,9 +1,9 @@
 //! Tactile sensors of a URDF file: `<sensor>` with `<tactile>`, in the syntax of urdf_tactile (github.com/ubi-agni/tactile_toolbox).
 
 use super::origin::{origin_of, pose_of};
-use super::xml::{Element, POSITIVE};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::text::xml::{Element, POSITIVE};
 use glam::DVec3;
 use std::collections::HashMap;
 

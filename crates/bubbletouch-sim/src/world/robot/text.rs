@@ -3,9 +3,8 @@
 //! Many public files are not well-formed XML, although other tools accept them. Examples are comments or spaces before `<?xml`, `--` inside
 //! a comment, undeclared namespace prefixes, a second end tag of the root, and NUL bytes at the end.
 
-use super::xml::Lines;
-use crate::error::Error as InputError;
-use roxmltree::{Document, Error, ParsingOptions};
+use crate::text::xml::{Lines, parsed};
+use roxmltree::Error;
 
 /// Largest number of undeclared namespace prefixes in one file; robot files have far fewer.
 const MAX_PREFIXES: usize = 100;
@@ -56,44 +55,6 @@ fn without_second_end(mut text: String, place: &str, lines: &Lines) -> String {
         }
     }
     text
-}
-
-/// Parses the XML text; document type declarations are ignored.
-fn parsed(text: &str) -> Result<Document<'_>, Error> {
-    let options = ParsingOptions {
-        allow_dtd: true,
-        ..ParsingOptions::default()
-    };
-    Document::parse_with_options(text, options)
-}
-
-/// Parses the repaired text of the file `place`. `format` is the name of the file format.
-///
-/// # Errors
-/// If the text is not well-formed XML; the error contains the line.
-pub(super) fn document<'t>(
-    format: &str,
-    place: &str,
-    text: &'t str,
-) -> Result<Document<'t>, InputError> {
-    parsed(text).map_err(|error| {
-        if text.trim().is_empty() {
-            let root = if format == "MJCF" { "mujoco" } else { "robot" };
-            return InputError::input(place, "an empty file", format!("{format}: a <{root}>"));
-        }
-        let said = error.to_string();
-        // The XML reader appends its own position; here the position precedes the message.
-        let given = said
-            .rsplit_once(" at ")
-            .map_or(said.as_str(), |(given, _)| given);
-        // The XML reader has no position for the end of the text.
-        let line = match error {
-            Error::UnexpectedEndOfStream | Error::UnclosedRootNode => text.lines().count() as u32,
-            _ => error.pos().row,
-        };
-        let place = format!("{place}, line {line}");
-        InputError::input(place, given, format!("{format}: well-formed XML"))
-    })
 }
 
 /// Returns a predicate for pairs of a byte position and the text `<?xml` found there. The predicate is true for an XML declaration that is not at the

@@ -6,14 +6,14 @@
 use super::link::read_link;
 use super::mimic::{Drive, drives};
 use super::origin::{check_origin, origin_ignoring_slips};
-use super::source::Source;
+use super::source::{Source, URDF};
 use super::tactile::{TactileSensor, read_tactile_sensors};
 use super::tree::Tree;
-use super::xml::{Element, NOT_NEGATIVE, unit_direction};
 use super::{Joint, JointKind, Limits, Link, Mimic, Robot};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::text::spelling::nearest_names;
+use crate::text::xml::{Element, NOT_NEGATIVE, unit_direction};
 use glam::DVec3;
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
@@ -29,7 +29,7 @@ const ALONE: &str = "the joint mimics none";
 /// Reads a robot, and all tactile sensors by name, from the text of a URDF file; errors begin with `place`, the file's name. An unreadable sensor is an error in
 /// the list, and the robot does not have it.
 pub(super) fn read_urdf(place: &str, text: &str) -> Result<(Robot, Vec<NamedSensor>)> {
-    let source = Source::one_file("URDF", place, text);
+    let source = Source::one_file(URDF, place, text);
     let document = source.document()?;
     let root = Element::root(&document, &source.lines);
     // Missing parts may be parts that xacro would have created.

@@ -8,6 +8,8 @@ use rand::Rng;
 use rayon::prelude::*;
 use std::sync::Mutex;
 
+use crate::cases::each_change;
+
 const MM: f64 = 1e-3;
 
 #[test]
@@ -253,35 +255,30 @@ fn a_wrong_catalogue_names_file_line_and_object() {
     );
     let no_parts = good[..good.find("[[object.part]]").unwrap()].to_owned() + "part = []\n";
     refuse(&no_parts, "own.toml, line 2, object `mug`: solid: no parts");
-    // A text of the file, what replaces it, and the beginning of the error; `;` stands for the end of a line.
-    let changes = r#"= 80 | =  | own.toml, line 6, object "mug": 
+    // A text of the file, what replaces it, and the beginning of the error.
+    let changes = r#"= 80 | =  | own.toml:6:
         height_mm | hieght_mm | own.toml, line 7, object `mug`, part 1 (cylinder): hieght_mm: given for a cylinder; perhaps `height_mm`
-        80 | "wide" | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm: invalid type: string
-        80 | [1, 2] | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm: invalid type: sequence
+        80 | "wide" | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm: "wide"; a number
+        80 | [1, 2] | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm: [1, 2]; a number
         "cylinder" | "cilinder" | own.toml, line 5, object `mug`, part 1 (cilinder): shape: `cilinder`; perhaps `cylinder`
         "cylinder" | 3 | own.toml, line 5, object `mug`, part 1: shape: missing
-        source = "us"; |  | own.toml, line 1, object "mug": missing field `source`
+        "cylinder"\ndiameter_mm = 80\nheight_mm = 90 | "box"\nsize_mm = [1, 2] | own.toml, line 6, object `mug`, part 1 (box): size_mm: [1, 2]; three numbers
+        "cylinder"\ndiameter_mm = 80\nheight_mm = 90 | "lathe"\nprofile_mm = [[1, 2], [3]] | own.toml, line 6, object `mug`, part 1 (lathe): profile_mm: [[1, 2], [3]]; a list of pairs of numbers
+        source = "us"\n |  | own.toml:1:1: missing field `source`
         80 | -80 | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = -80; a finite length of at least 1e-6
         80 | nan | own.toml:6, key object.mug.part[1].diameter_mm: NaN; a finite number
         height_mm = 90 | height_mm = -2 | own.toml, line 7, object `mug`, part 1 (cylinder): height_mm = -2; a finite length of at least 1e-6
         80 | 0 | own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = 0; a finite length of at least 1e-6
-        height_mm = 90; |  | own.toml, line 5, object `mug`, part 1 (cylinder): height_mm: missing
+        height_mm = 90\n |  | own.toml, line 5, object `mug`, part 1 (cylinder): height_mm: missing
         "mug" | " " | own.toml, line 2, object ` `: an empty name
-        90; | 90;length_mm = 3; | own.toml, line 8, object `mug`, part 1 (cylinder): length_mm: given for a cylinder
-        90; | 90;position_mm = [0, 0, inf]; | own.toml:8, key object.mug.part[1].position_mm: inf; a finite number
-        90; | 90;position_mm = [0, 0]; | own.toml, line 8, object `mug`, part 1 (cylinder): position_mm: [0, 0]; three finite numbers
-        90; | 90;[[object.subtract]];shape = "ball";diameter_mm = -42.67; | own.toml, line 10, object `mug`, subtract 1 (ball): diameter_mm = -42.67; a finite length of at least 1e-6
-        90; | 90;[[object.subtract]];shape = "ball";diameter_mm = 900; | own.toml, line 2, object `mug`: subtract: shapes that take away all parts
-        "cylinder";diameter_mm = 80 | "tube";inner_diameter_mm = 9;outer_diameter_mm = 8 | own.toml, line 6, object `mug`, part 1 (tube): inner_diameter_mm = 9; less than the outer diameter of 8
-        "cylinder";diameter_mm = 80;height_mm = 90 | "prism";outline_mm = [[0, 0], [9, 9], [9, 0], [0, 9]];thickness_mm = 2 | own.toml, line 6, object `mug`, part 1 (prism): outline_mm: side 1 crosses side 3"#;
-    for change in changes.lines() {
-        let [old, new, expected] = change.trim_start().split(" | ").collect::<Vec<_>>()[..] else {
-            panic!("{change}");
-        };
-        let [old, new] = [old, new].map(|text| text.replace(';', "\n"));
-        assert!(good.contains(&old), "{old}");
-        refuse(&good.replace(&old, &new), expected);
-    }
+        90\n | 90\nlength_mm = 3\n | own.toml, line 8, object `mug`, part 1 (cylinder): length_mm: given for a cylinder
+        90\n | 90\nposition_mm = [0, 0, inf]\n | own.toml:8, key object.mug.part[1].position_mm: inf; a finite number
+        90\n | 90\nposition_mm = [0, 0]\n | own.toml, line 8, object `mug`, part 1 (cylinder): position_mm: [0, 0]; three finite numbers
+        90\n | 90\n[[object.subtract]]\nshape = "ball"\ndiameter_mm = -42.67\n | own.toml, line 10, object `mug`, subtract 1 (ball): diameter_mm = -42.67; a finite length of at least 1e-6
+        90\n | 90\n[[object.subtract]]\nshape = "ball"\ndiameter_mm = 900\n | own.toml, line 2, object `mug`: subtract: shapes that take away all parts
+        "cylinder"\ndiameter_mm = 80 | "tube"\ninner_diameter_mm = 9\nouter_diameter_mm = 8 | own.toml, line 6, object `mug`, part 1 (tube): inner_diameter_mm = 9; less than the outer diameter of 8
+        "cylinder"\ndiameter_mm = 80\nheight_mm = 90 | "prism"\noutline_mm = [[0, 0], [9, 9], [9, 0], [0, 9]]\nthickness_mm = 2 | own.toml, line 6, object `mug`, part 1 (prism): outline_mm: side 1 crosses side 3"#;
+    each_change(good, changes, refuse);
 }
 
 #[test]

@@ -7,6 +7,8 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::BufReader;
 
+use crate::cases::{cases, each_change};
+
 const HEADER: &str = "ply
 format FORMAT 1.0
 comment a pyramid with a square base
@@ -99,6 +101,12 @@ fn the_three_encodings_of_a_ply_give_the_same_mesh() {
     assert_eq!(read_ply("p", &big[..]).unwrap(), mesh);
     let windows = ascii().replace('\n', "\r\n");
     assert_eq!(read_ply("p", windows.as_bytes()).unwrap(), mesh);
+    for whole in [ascii().into_bytes(), little_endian()] {
+        let comment = whole.windows(9).position(|word| word == b"a pyramid");
+        let mut latin = whole;
+        latin[comment.unwrap()] = 0xE4;
+        assert_eq!(read_ply("p", &latin[..]).unwrap(), mesh);
+    }
 }
 
 #[test]
@@ -145,12 +153,7 @@ fn a_ply_that_cannot_be_used_says_why() {
         9 3 0 1 4 | 9 2 0 1 | face 2: 2 corners
         int vertex_indices | float vertex_indices | faces without a list
         element vertex 5 | element vertex 99999999999 | not readable as PLY";
-    for change in changes.lines() {
-        let [old, new, expected] = change.trim().split(" | ").collect::<Vec<_>>()[..] else {
-            panic!("{change}");
-        };
-        refuse(&text.replace(old, new), expected);
-    }
+    each_change(&text, changes, refuse);
 }
 
 #[test]
@@ -191,7 +194,7 @@ fn spheres_that_cannot_be_used_say_why() {
     };
     refuse(b"x,y,z,r\n0,0,0,\xb5\n");
     // Rows of the file, and the beginning of the error.
-    let cases = "| s.csv: no spheres
+    let rows = " | s.csv: no spheres
         x,y,z,r | s.csv: no spheres
         x,y,r 1,2,3 | s.csv, line 1: header `x,y,r` without a column z
         1,2,3 | s.csv, line 1: 3 columns; 4
@@ -203,13 +206,9 @@ fn spheres_that_cannot_be_used_say_why() {
         0,0,0,0 | s.csv, line 1, column r: 0; a positive
         0,0,0,ten | s.csv, line 1, column r: `ten`
         0,0,,1 | s.csv, line 1, column z: ``";
-    for case in cases.lines() {
-        let (rows, expected) = case.split_once("| ").unwrap();
-        let error = refuse(rows.trim().replace(' ', "\n").as_bytes());
-        assert!(
-            error.starts_with(expected),
-            "expected `{expected}` in: {error}"
-        );
+    for [rows, expected] in cases(rows) {
+        let error = refuse(rows.replace(' ', "\n").as_bytes());
+        assert!(error.starts_with(&expected), "{expected}: {error}");
     }
 }
 

@@ -8,6 +8,7 @@ use glam::DVec3;
 use std::fmt::Write;
 use std::path::Path;
 
+use crate::cases::cases;
 use crate::mesh_shapes::{corners, cuboid, icosphere, joined, with_triangles};
 
 fn obj(mesh: &TriangleMesh) -> String {
@@ -96,7 +97,7 @@ fn files_that_are_no_meshes_say_why() {
     let cube = cuboid(DVec3::ONE);
     let text = ascii_stl(&cube);
     let changed = |old: &str, new: &str| stl_error(text.replacen(old, new, 1).as_bytes());
-    let mut cases = vec![
+    let stl_cases = [
         (stl_error(b""), "m.stl: an empty file"),
         (stl_error(b"ply\n"), "m.stl: not an STL file"),
         (
@@ -121,7 +122,7 @@ fn files_that_are_no_meshes_say_why() {
         ),
     ];
     // Lines of OBJ files, and the beginnings of their errors.
-    let obj_cases = "| m.obj: no faces
+    let obj_cases = " | m.obj: no faces
         v 0 0 0, v 1 0 0, v 0 1 0 | m.obj: no faces
         v 0 0 0, v 1 0 0, v 0 1 0, f 1 2 4 | m.obj, line 4: vertex index 4; 1 to 3
         v 0 0 0, v 1 0 0, v 0 1 0, f 1 2 0 | m.obj, line 4: vertex index `0`
@@ -131,12 +132,12 @@ fn files_that_are_no_meshes_say_why() {
         v 0 0 zero, f 1 1 1 | m.obj, line 1: coordinate `zero`
         v 0 0 nan, v 1 0 0, v 0 1 0, f 1 2 3 | m.obj, line 1: coordinate `nan`; a finite number
         v 0 0 0, v 2 0 0, v 0.1 0.1 0, v 0 2 0, f 4 1 2 3 | m.obj: face 1: 4 corners that are not convex";
-    for case in obj_cases.lines() {
-        let (lines, expected) = case.split_once("| ").unwrap();
-        cases.push((obj_error(&lines.trim().replace(", ", "\n")), expected));
-    }
-    for (error, expected) in cases {
-        assert!(error.starts_with(expected), "{error} | {expected}");
+    let obj_cases = cases(obj_cases).into_iter();
+    let obj_cases =
+        obj_cases.map(|[lines, expected]| (obj_error(&lines.replace(", ", "\n")), expected));
+    let stl_cases = stl_cases.map(|(error, expected)| (error, expected.to_owned()));
+    for (error, expected) in stl_cases.into_iter().chain(obj_cases) {
+        assert!(error.starts_with(&expected), "{error} | {expected}");
         assert!(!error.contains('\n'), "one line: {error}");
     }
 }

@@ -92,7 +92,7 @@ fn a_mirrored_mesh_is_the_mirror_image_and_faces_outwards() {
 
 #[test]
 fn sizes_of_no_shape_are_refused() {
-    let allowed = "a positive finite number of metres";
+    let allowed = "m; a finite positive number";
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let radii = DVec3::new(1.0, bad, 1.0);
         for (mesh, place) in [

@@ -1,6 +1,5 @@
 //! Placement, robots and whole bodies.
 
-mod cases;
 mod placement_rest;
 mod placement_touches;
 mod robot_mjcf;

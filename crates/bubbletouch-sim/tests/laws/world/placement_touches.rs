@@ -1,6 +1,6 @@
 //! Laws of touch placement.
 
-use super::cases::cases;
+use crate::cases::cases;
 use crate::standard_errors::{assert_expected, mean_and_std, of_mean, of_share};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::random::Seed;

@@ -1,7 +1,7 @@
 //! MJCF files: poses of bodies and sites, default classes, included and attached files, shapes, and wrong files. `python/tests/test_robot.py` compares the
 //! poses of random models with MuJoCo's.
 
-use super::cases::cases;
+use crate::cases::cases;
 use bubbletouch_sim::Result;
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::world::{Interpolation, JointKind, JointTrajectory};

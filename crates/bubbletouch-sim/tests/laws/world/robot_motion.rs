@@ -1,6 +1,6 @@
 //! Laws of trajectories of robots and bodies: smooth between waypoints, and within limits at all times.
 
-use super::cases::{cases, replaced};
+use crate::cases::{cases, replaced};
 use crate::counting::allocations;
 use bubbletouch_sim::Result;
 use bubbletouch_sim::geometry::{Pose, rotation_from_rpy};

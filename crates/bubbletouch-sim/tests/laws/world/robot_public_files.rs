@@ -1,6 +1,6 @@
 //! Public URDF files that a strict reader rejects. Each file is read, omitted parts have a note, and the poses of links equal the poses in the file.
 
-use super::cases::cases;
+use crate::cases::cases;
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{MeshFormat, SizeLimits};
 use bubbletouch_sim::world::{JointKind, LinkGeometry, MeshFolders, Robot};

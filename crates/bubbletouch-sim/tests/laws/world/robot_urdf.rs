@@ -1,6 +1,6 @@
 //! Robots from URDF: poses of links, and error messages of invalid files.
 
-use super::cases::{cases, replaced};
+use crate::cases::{cases, replaced};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::world::{Dimension, JointKind, LinkGeometry, Robot, ShapeRole};

@@ -3,7 +3,7 @@
 use super::compiler::Compiler;
 use super::limits::CLASS_DEPTH;
 use crate::error::Result;
-use crate::world::robot::xml::Element;
+use crate::text::xml::Element;
 use glam::DVec3;
 
 /// Default classes of a model. The first class is the root; each other class inherits the attributes of its parent that it does not define.

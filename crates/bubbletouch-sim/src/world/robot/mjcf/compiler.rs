@@ -1,7 +1,7 @@
 //! Settings of the elements `<compiler>`.
 
 use crate::error::Result;
-use crate::world::robot::xml::Element;
+use crate::text::xml::Element;
 use std::f64::consts::PI;
 
 /// Settings that determine how angles, limits and file names of a model are read.

@@ -3,8 +3,8 @@
 use super::bodies::Bodies;
 use super::placed::Placed;
 use crate::error::Result;
+use crate::text::xml::Element;
 use crate::world::robot::Mimic;
-use crate::world::robot::xml::Element;
 use std::collections::HashMap;
 
 /// Consequence of a constraint that a mimicking joint cannot represent, in the words of a note.

@@ -6,7 +6,7 @@ use super::orientation::{from_z_to, pose_of, quaternion_of};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::text::spelling::nearest_names;
-use crate::world::robot::xml::{Element, NOT_ZERO};
+use crate::text::xml::{Element, NOT_ZERO};
 use crate::world::robot::{LinkGeometry, LinkShape, ShapeRole};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -145,9 +145,7 @@ fn geometry(item: &Item, half_length: Option<f64>, meshes: &Meshes) -> Result<Li
             };
             let Some(mesh) = meshes.get(name) else {
                 let names = meshes.keys().map(String::as_str);
-                let given = format!("`mesh` \"{name}\", which is no mesh asset");
-                let allowed = nearest_names(name, names);
-                return Err(own.refuse(given, allowed));
+                return Err(item.layer(&["mesh"]).unknown("mesh", "mesh asset", names));
             };
             mesh.clone().ok_or_else(|| {
                 let given = format!("mesh `{name}` with vertices in the model");

@@ -3,7 +3,7 @@
 use super::classes::Item;
 use crate::error::Result;
 use crate::geometry::{Pose, rpy_from_rotation};
-use crate::world::robot::xml::unit_direction;
+use crate::text::xml::unit_direction;
 use crate::world::robot::{Joint, JointKind, Limits};
 use glam::DVec3;
 

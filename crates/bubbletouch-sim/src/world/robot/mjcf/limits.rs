@@ -1,7 +1,7 @@
 //! Limits of counts in a model. With larger values, a small file can fill the memory, take minutes, or overflow the stack.
 
 use crate::error::Result;
-use crate::world::robot::xml::Element;
+use crate::text::xml::Element;
 
 /// Largest number of things of a kind, and the words for these things.
 pub(super) struct Limit(usize, &'static str);

@@ -4,11 +4,10 @@ use super::classes::{Classes, Item};
 use super::compiler::Compiler;
 use super::geom::{Meshes, read_meshes};
 use crate::error::Result;
+use crate::files::spellings;
 use crate::text::encoding::decoded;
-use crate::text::spelling::nearest_names;
-use crate::world::robot::mesh_folders::spellings;
-use crate::world::robot::source::Source;
-use crate::world::robot::xml::Element;
+use crate::text::xml::Element;
+use crate::world::robot::source::{MJCF, Source};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -66,8 +65,7 @@ impl<'a> Model<'a> {
         let parts = || self.root.whole_document().filter(|part| part.tag() == tag);
         let Some(part) = parts().find(|part| part.attribute("name") == Some(name)) else {
             let known = parts().filter_map(|part| part.attribute("name"));
-            let given = format!("`{tag}` \"{name}\", which is no {tag} of the model");
-            return Err(element.refuse(given, nearest_names(name, known)));
+            return Err(element.unknown(tag, &format!("{tag} of the model"), known));
         };
         for around in part.around() {
             if let Some(class) = self.classes.class_of(around, "childclass")? {
@@ -103,7 +101,7 @@ fn read_others(root: Element, path: &Path) -> Result<BTreeMap<String, PathBuf>> 
 fn model_name(path: &Path) -> Option<String> {
     let place = path.display().to_string();
     let (text, _) = decoded(&place, &crate::files::read(path).ok()?);
-    let source = Source::one_file("MJCF", &place, &text);
+    let source = Source::one_file(MJCF, &place, &text);
     let document = source.document().ok()?;
     let name = document.root_element().attribute("model")?;
     Some(name.to_owned())

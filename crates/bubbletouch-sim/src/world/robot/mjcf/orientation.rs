@@ -4,7 +4,7 @@ use super::classes::Item;
 use super::compiler::Compiler;
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::world::robot::xml::unit_direction;
+use crate::text::xml::unit_direction;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Attributes that contain an orientation.

@@ -7,7 +7,7 @@ use super::model::Model;
 use super::orientation::{from_euler, pose_of};
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::world::robot::xml::Element;
+use crate::text::xml::Element;
 use glam::DVec3;
 
 /// Names of the copies of elements: text before and after the name in the file.

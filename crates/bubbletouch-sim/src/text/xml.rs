@@ -1,16 +1,16 @@
-//! XML elements with their line numbers: typed access to their parts, and error messages.
+//! XML documents and their elements with line numbers: typed access to the parts of an element, and error messages.
 
 use crate::error::{Error, Result};
+use crate::text::numbers::finite_number;
 use crate::text::spelling::{nearest_names, slip_of};
 use glam::DVec3;
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Node, ParsingOptions};
 use std::cell::RefCell;
 use std::ops::Range;
-use std::str::FromStr;
 
 /// Line starts of a text that is composed of one or more files, and notes collected while the text is read.
 #[derive(Default)]
-pub(super) struct Lines {
+pub(crate) struct Lines {
     /// Names of the files, for messages.
     places: Vec<String>,
     /// Lines and parts of lines, ordered by their position in the text.
@@ -71,28 +71,73 @@ impl Lines {
     }
 }
 
+/// Format of an XML file.
+#[derive(Clone, Copy)]
+pub(crate) struct Format {
+    /// Name of the format, for messages.
+    pub name: &'static str,
+    /// Name of the root element.
+    pub root: &'static str,
+}
+
+/// Parses the XML text; document type declarations are ignored.
+pub(crate) fn parsed(text: &str) -> std::result::Result<Document<'_>, roxmltree::Error> {
+    let options = ParsingOptions {
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    Document::parse_with_options(text, options)
+}
+
+/// Parses the XML text of the file `place`.
+///
+/// # Errors
+/// If the text is not well-formed XML; the error contains the line.
+pub(crate) fn document<'t>(format: Format, place: &str, text: &'t str) -> Result<Document<'t>> {
+    let Format { name, root } = format;
+    parsed(text).map_err(|error| {
+        if text.trim().is_empty() {
+            return Error::input(place, "an empty file", format!("{name}: a <{root}>"));
+        }
+        let said = error.to_string();
+        // The XML reader appends its own position; here the position precedes the message.
+        let given = said
+            .rsplit_once(" at ")
+            .map_or(said.as_str(), |(given, _)| given);
+        // The XML reader has no position for the end of the text.
+        let line = match error {
+            roxmltree::Error::UnexpectedEndOfStream | roxmltree::Error::UnclosedRootNode => {
+                text.lines().count() as u32
+            }
+            _ => error.pos().row,
+        };
+        let place = format!("{place}, line {line}");
+        Error::input(place, given, format!("{name}: well-formed XML"))
+    })
+}
+
 /// Element of an XML file.
 #[derive(Clone, Copy)]
-pub(super) struct Element<'a> {
+pub(crate) struct Element<'a> {
     pub node: Node<'a, 'a>,
     pub lines: &'a Lines,
 }
 
 /// Range of the numbers of an attribute: the test of a number, and the words of a message.
-pub(super) struct Allowed(fn(f64) -> bool, &'static str);
+pub(crate) struct Allowed(fn(f64) -> bool, &'static str);
 
 /// Lengths of shapes.
-pub(super) const LENGTHS: Allowed = Allowed(
+pub(crate) const LENGTHS: Allowed = Allowed(
     |number| number >= 0.0,
     "lengths in metres, zero or positive",
 );
 /// Lengths of shapes with a volume.
-pub(super) const POSITIVE: Allowed = Allowed(|number| number > 0.0, "positive lengths in metres");
+pub(crate) const POSITIVE: Allowed = Allowed(|number| number > 0.0, "positive lengths in metres");
 /// Largest velocities and forces.
-pub(super) const NOT_NEGATIVE: Allowed =
+pub(crate) const NOT_NEGATIVE: Allowed =
     Allowed(|number| number >= 0.0, "zero or a positive number");
 /// Scales of meshes.
-pub(super) const NOT_ZERO: Allowed =
+pub(crate) const NOT_ZERO: Allowed =
     Allowed(|number| number != 0.0, "three numbers other than zero");
 
 impl<'a> Element<'a> {
@@ -161,11 +206,14 @@ impl<'a> Element<'a> {
         })
     }
 
-    /// Returns the child elements. Elements in another namespace than the root's namespace belong to other tools and are left out.
+    /// Returns the child elements. Elements in another namespace than the root's namespace belong to other tools and are left out; elements without a namespace
+    /// are not.
     pub fn elements(self) -> impl Iterator<Item = Self> {
         let namespace = |node: &Node<'a, 'a>| node.tag_name().namespace();
         let own = namespace(&self.node.document().root_element());
-        let is_own = move |node: &Node<'a, 'a>| node.is_element() && namespace(node) == own;
+        let is_own = move |node: &Node<'a, 'a>| {
+            node.is_element() && namespace(node).is_none_or(|space| Some(space) == own)
+        };
         let children = self.node.children().filter(is_own);
         children.map(move |node| Self { node, ..self })
     }
@@ -191,11 +239,16 @@ impl<'a> Element<'a> {
             .ok_or_else(|| self.refuse(format!("{} without <{tag}>", self.called()), "exactly one"))
     }
 
+    /// Returns this element and all elements in it, in the order of the file.
+    pub fn descendants(self) -> impl Iterator<Item = Self> {
+        let all = self.node.descendants().filter(Node::is_element);
+        all.map(move |node| Self { node, ..self })
+    }
+
     /// Returns all elements of the document, in the order of the file.
     pub fn whole_document(self) -> impl Iterator<Item = Self> {
-        let all = self.node.document().root_element().descendants();
-        all.filter(Node::is_element)
-            .map(move |node| Self { node, ..self })
+        let node = self.node.document().root_element();
+        Self { node, ..self }.descendants()
     }
 
     /// Returns the elements around this element, from the inside out.
@@ -365,7 +418,7 @@ fn slip<'k>(word: &str, known: &'k str) -> Option<&'k str> {
 }
 
 /// Returns the unit vector along a direction of any length; `None` if the length is zero.
-pub(super) fn unit_direction(direction: DVec3) -> Option<DVec3> {
+pub(crate) fn unit_direction(direction: DVec3) -> Option<DVec3> {
     // Scaled first, so that no square overflows or underflows.
     (direction / direction.abs().max_element()).try_normalize()
 }
@@ -374,12 +427,8 @@ pub(super) fn unit_direction(direction: DVec3) -> Option<DVec3> {
 fn finite_numbers(text: &str) -> Option<Vec<f64>> {
     // Some exporters write "1, 2, 3".
     let words = text.split(|c: char| c == ',' || c.is_whitespace());
-    words.filter(|word| !word.is_empty()).map(finite).collect()
-}
-
-fn finite(word: &str) -> Option<f64> {
-    let number = f64::from_str(word).ok()?;
-    number.is_finite().then_some(number)
+    let words = words.filter(|word| !word.is_empty());
+    words.map(finite_number).collect()
 }
 
 /// Returns the beginning of a long text, for messages.
