@@ -1,10 +1,12 @@
-"""Compares the speed of presses into NumPy arrays with the kernel alone: one thread, all threads, and one pose.
+"""Measures presses into NumPy arrays: one thread, all threads, and one pose, beside the kernel alone.
 
-The speed of the kernel is measured in the same process, alternating with the calls. The kernel does not write its results into an array.
+The kernel is timed by the program bubbletouch-reference (cargo build --release -p bubbletouch-python --bin bubbletouch-reference). The kernel does not write its
+results into an array.
 """
 
 from __future__ import annotations
 
+import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -12,9 +14,9 @@ from pathlib import Path
 
 import bubbletouch as bt
 import numpy as np
-from bubbletouch import _core
 
 ROUNDS = 5
+REFERENCE = Path(__file__).resolve().parents[2] / "target" / "release" / "bubbletouch-reference"
 
 
 def best(call: Callable[[], object], repeat: int = 1) -> float:
@@ -35,7 +37,6 @@ def batches(name: str, patch: bt.Patch, thing: bt.SphereUnion | bt.Mesh) -> None
     offset, yaw = random.uniform(-0.01, 0.01, (n, 2)), random.uniform(0, 6.28, n)
     poses = bt.touch_poses(thing, offset=offset, yaw=yaw)
     out = np.zeros((n, *patch.shape))
-    kernel = max(_core._kernel_pace(patch, thing, poses, 3e-3, 0.5) for _ in range(ROUNDS))
     paces = {}
     for threads in (1, None):
         call = lambda: patch.press(thing, poses, depth=3e-3, out=out, threads=threads)  # noqa: B023, E731
@@ -43,8 +44,7 @@ def batches(name: str, patch: bt.Patch, thing: bt.SphereUnion | bt.Mesh) -> None
     new = out.size / best(lambda: patch.press(thing, poses, depth=3e-3, threads=1))
     one, many = paces[1], paces[None]
     print(
-        f"{name:24} {len(thing):6} parts  kernel {kernel:.2e}/s  one thread {one:.2e}/s ({one / kernel:4.0%})"
-        f"  all {many:.2e}/s ({many / one:.2f} x)  new array {new:.2e}/s ({new / kernel:4.0%})"
+        f"{name:24} {len(thing):6} parts  one thread {one:.2e}/s  all {many:.2e}/s ({many / one:.2f} x)  new array {new:.2e}/s ({new / one:4.0%})"
     )
 
 
@@ -53,7 +53,7 @@ def one_pose(side: int) -> None:
     patch, ball = bt.Patch.grid(side, side, 2e-3, 5e-3), bt.SphereUnion([[0, 0, 0]], 0.02)
     pose, out = np.array([0, 0, 0.03, 1, 0, 0, 0]), np.zeros((side, side))
     n = 20_000
-    kernel = min(side**2 / _core._kernel_pace(patch, ball, pose, 1e-3, 0.2) for _ in range(ROUNDS))
+    kernel = float(subprocess.run([REFERENCE, "pace", str(side)], check=True, capture_output=True, text=True).stdout)
     kept = best(lambda: patch.press(ball, pose, depth=1e-3, out=out), n)
     new = best(lambda: patch.press(ball, pose, depth=1e-3), n)
     print(

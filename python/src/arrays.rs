@@ -7,8 +7,8 @@ use bubbletouch::geometry::Aabb;
 use glam::DVec3;
 use ndarray::Array2;
 use numpy::{
-    IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
-    PyUntypedArrayMethods,
+    Element, IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
+    PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -43,6 +43,13 @@ impl Numbers<'_> {
         self.0.as_slice().expect("the array is in C order")
     }
 
+    /// Returns a copy of the numbers, given an array of two axes.
+    pub fn matrix(&self) -> Array2<f64> {
+        let shape = (self.shape()[0], self.shape()[1]);
+        let matrix = Array2::from_shape_vec(shape, self.values().to_vec());
+        matrix.expect("as many numbers as the shape")
+    }
+
     /// Checks that all numbers are finite.
     ///
     /// # Errors
@@ -61,7 +68,7 @@ impl Numbers<'_> {
 /// If the input is not an array of real numbers, or if somebody writes to it; the message begins with `place`.
 pub fn numbers<'py>(place: &str, given: &Object<'py>) -> PyResult<Numbers<'py>> {
     let array = match given.cast::<PyArrayDyn<f64>>() {
-        Ok(array) if array.is_c_contiguous() => array.clone(),
+        Ok(array) if is_plain(array) => array.clone(),
         _ => converted(place, given)?,
     };
     let array = array.try_readonly();
@@ -70,8 +77,19 @@ pub fn numbers<'py>(place: &str, given: &Object<'py>) -> PyResult<Numbers<'py>> 
         .map_err(|error| bad_input(place, error, "an array that nobody writes to meanwhile"))
 }
 
+/// Returns whether an array is no subclass, such as a masked array, and its elements are aligned and in C order.
+fn is_plain<T: Element>(array: &Bound<PyArrayDyn<T>>) -> bool {
+    let is_exact = array.is_exact_instance_of::<PyUntypedArray>();
+    is_exact && array.is_c_contiguous() && array.data().is_aligned()
+}
+
 fn converted<'py>(place: &str, given: &Object<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    static IS_MASKED: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let py = given.py();
+    let is_masked = IS_MASKED.import(py, "numpy.ma", "is_masked")?;
+    if is_masked.call1((given,))?.is_truthy()? {
+        return Err(bad_input(place, "masked values", "an array without a mask"));
+    }
     let array = asarray(py, given)
         .map_err(|error| bad_input(place, error.value(py), "an array of real numbers"))?;
     let dtype = array.getattr("dtype")?;
@@ -131,20 +149,65 @@ pub fn points(place: &str, given: &Object) -> PyResult<Vec<DVec3>> {
         .collect())
 }
 
-/// Reads one row of N numbers, or n rows. Returns the rows, and whether the argument was one row.
+/// Rows of N numbers: a common row of all items of a batch, or a row for each item.
+pub struct Rows<const N: usize> {
+    rows: Vec<[f64; N]>,
+    is_common: bool,
+}
+
+impl<const N: usize> Rows<N> {
+    /// Creates a common row of all items.
+    pub fn common(row: [f64; N]) -> Self {
+        let (rows, is_common) = (vec![row], true);
+        Self { rows, is_common }
+    }
+
+    /// Reads an array of shape (N,) or (n, N); for N = 1, a number or (n,).
+    ///
+    /// # Errors
+    /// If the shape is wrong, or a number is not finite.
+    pub fn read(place: &str, given: &Object) -> PyResult<Self> {
+        let row: &[usize] = if N == 1 { &[] } else { &[N] };
+        let allowed = match N {
+            1 => "a number, or (n,)".to_owned(),
+            _ => format!("({N},), or (n, {N})"),
+        };
+        let is_shape =
+            |shape: &[usize]| shape == row || matches!(shape, [_, rest @ ..] if rest == row);
+        let array = array(place, given, &allowed, is_shape)?.finite(place, "finite numbers")?;
+        Ok(Self {
+            rows: array.values().as_chunks::<N>().0.to_vec(),
+            is_common: array.shape() == row,
+        })
+    }
+
+    /// Returns the number of rows; `None` for a common row.
+    pub fn n(&self) -> Option<usize> {
+        (!self.is_common).then_some(self.rows.len())
+    }
+
+    /// Returns the row of an item.
+    pub fn at(&self, item: usize) -> [f64; N] {
+        self.rows[if self.is_common { 0 } else { item }]
+    }
+}
+
+/// Copies an optional array of the given shape into `values`, which is empty if the argument is `None`.
 ///
 /// # Errors
-/// If the shape is wrong, or a number is not finite.
-pub fn one_or_rows<const N: usize>(place: &str, given: &Object) -> PyResult<(Vec<[f64; N]>, bool)> {
-    let row: &[usize] = if N == 1 { &[] } else { &[N] };
-    let allowed = match N {
-        1 => "a number, or (n,)".to_owned(),
-        _ => format!("({N},), or (n, {N})"),
-    };
-    let is_shape = |shape: &[usize]| shape == row || matches!(shape, [_, rest @ ..] if rest == row);
-    let array = array(place, given, &allowed, is_shape)?.finite(place, "finite numbers")?;
-    let rows = array.values().as_chunks::<N>().0.to_vec();
-    Ok((rows, array.shape() == row))
+/// If the argument has another shape or is not an array of real numbers.
+pub fn read_optional(
+    place: &str,
+    given: Option<&Object>,
+    shape: &[usize],
+    values: &mut Vec<f64>,
+) -> PyResult<()> {
+    values.clear();
+    if let Some(given) = given {
+        let array = array(place, given, &shape_of(shape), |is| is == shape)?;
+        values.extend_from_slice(array.values());
+    }
+    Ok(())
 }
 
 /// Returns n numbers from an array of n numbers, or from a single number that is repeated n times.

@@ -114,15 +114,12 @@ pub fn warn(py: Python, notes: impl IntoIterator<Item: ToString>, level: i32) ->
 /// # Errors
 /// If the file does not exist or cannot be opened (`OSError`).
 pub fn check_readable(path: &Path) -> PyResult<()> {
-    let failed = |error: std::io::Error| {
-        let said = format!("{}: cannot be read", path.display());
-        os_error(path, &error, said)
-    };
     // Opening a pipe would block until another process writes to it; the library rejects pipes.
-    if std::fs::metadata(path).map_err(failed)?.is_file() {
-        std::fs::File::open(path).map_err(failed)?;
-    }
-    Ok(())
+    let opened = std::fs::metadata(path).and_then(|about| match about.is_file() {
+        true => std::fs::File::open(path).map(drop),
+        false => Ok(()),
+    });
+    opened.map_err(|error| os_error(path, &error, format!("{}: cannot be read", path.display())))
 }
 
 /// Checks that the folder of an output file exists.
@@ -133,12 +130,13 @@ pub fn check_folder(path: &Path) -> PyResult<()> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
-    let failed = |error: std::io::Error| {
-        let said = format!("{}: cannot be written", path.display());
-        os_error(path, &error, said)
-    };
-    folder.map_or(Ok(()), |folder| {
-        std::fs::metadata(folder).map(drop).map_err(failed)
+    let found = folder.map_or(Ok(()), |folder| std::fs::metadata(folder).map(drop));
+    found.map_err(|error| {
+        os_error(
+            path,
+            &error,
+            format!("{}: cannot be written", path.display()),
+        )
     })
 }
 

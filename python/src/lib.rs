@@ -11,10 +11,10 @@ mod batch;
 mod catalogue;
 mod errors;
 mod foreign;
-mod kernel_pace;
 mod length_unit;
 mod mesh;
 mod model;
+mod output_array;
 mod patch;
 mod picture;
 mod placement;
@@ -43,7 +43,6 @@ mod _core {
         audit::run_audit,
         catalogue::{Catalogue, Solid},
         errors::{_panic, InternalError},
-        kernel_pace::_kernel_pace,
         mesh::Mesh,
         patch::Patch,
         picture::write_frame,

@@ -3,7 +3,7 @@
 use crate::arrays::{
     Matrix, Object, Vector, array, corners, points, rows, to_column, to_rows, whole_numbers,
 };
-use crate::errors::{bad_input, check_readable, exception, guarded, warn};
+use crate::errors::{bad_input, check_readable, exception, guarded, one_of, warn};
 use crate::length_unit::unit_of;
 use crate::sphere_union::SphereUnion;
 use crate::threads::aside;
@@ -203,10 +203,7 @@ impl Mesh {
     /// outwards again.
     fn mirrored(&self, axis: &str) -> PyResult<Self> {
         guarded(|| {
-            let Some(number) = ["x", "y", "z"].iter().position(|name| *name == axis) else {
-                let allowed = r#""x", "y" or "z""#;
-                return Err(bad_input("axis", format!("{axis:?}"), allowed));
-            };
+            let number = one_of("axis", axis, &[("x", 0), ("y", 1), ("z", 2)])?;
             // A capsule is its own mirror image.
             Ok(match &self.capsule {
                 Some(facets) => Self {

@@ -7,6 +7,7 @@ use crate::sphere_union::SphereUnion;
 use bubbletouch::objects::Model;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use std::borrow::Cow;
 
 /// Returns the contact model of a Python object.
 ///
@@ -26,11 +27,11 @@ pub fn model_of<'a>(place: &str, object: &'a Object) -> PyResult<&'a Model> {
 }
 
 /// Contact models of the objects that a patch is pressed on.
-pub enum Objects<'a> {
-    /// A single object.
-    One(&'a Model),
-    /// Several objects, in the order of their poses.
-    Several(Vec<Model>),
+pub struct Objects<'a> {
+    /// Models of the objects, in the order of their poses.
+    pub models: Cow<'a, [Model]>,
+    /// Number of objects of a sequence; `None` if the argument was a single object.
+    pub n_several: Option<usize>,
 }
 
 impl<'a> Objects<'a> {
@@ -42,31 +43,21 @@ impl<'a> Objects<'a> {
         const PLACE: &str = "object";
         let one = model_of(PLACE, object);
         let (Err(_), Ok(objects)) = (&one, object.try_iter()) else {
-            return one.map(Self::One);
+            return Ok(Self {
+                models: Cow::Borrowed(std::slice::from_ref(one?)),
+                n_several: None,
+            });
         };
         let model = |(number, object): (usize, PyResult<Object>)| {
             Ok(model_of(&format!("{PLACE}[{number}]"), &object?)?.clone())
         };
         let models: Vec<Model> = objects.enumerate().map(model).collect::<PyResult<_>>()?;
-        match models.is_empty() {
-            true => Err(bad_input(PLACE, "no object", "at least one")),
-            false => Ok(Self::Several(models)),
-        }
-    }
-
-    /// Returns the models of all objects.
-    pub fn models(&self) -> &[Model] {
-        match self {
-            Self::One(model) => std::slice::from_ref(*model),
-            Self::Several(models) => models,
-        }
-    }
-
-    /// Returns the number of objects of a sequence; `None` if the argument was a single object.
-    pub fn n_several(&self) -> Option<usize> {
-        match self {
-            Self::One(_) => None,
-            Self::Several(models) => Some(models.len()),
+        match models.len() {
+            0 => Err(bad_input(PLACE, "no object", "at least one")),
+            n => Ok(Self {
+                models: models.into(),
+                n_several: Some(n),
+            }),
         }
     }
 }

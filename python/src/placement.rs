@@ -1,6 +1,6 @@
 //! Placement of touches: poses of a patch that approaches an object on a table from above.
 
-use crate::arrays::{Object, one_or_rows, to_column, to_matrix};
+use crate::arrays::{Object, Rows, to_column, to_matrix};
 use crate::errors::{bad_input, guarded};
 use crate::model::model_of;
 use bubbletouch::world::{RestPoses, Touch};
@@ -32,15 +32,7 @@ pub fn touch_poses<'py>(
         let offset = by_touch::<2>("offset", offset)?;
         let yaw = by_touch::<1>("yaw", yaw)?;
         let tilt = by_touch::<2>("tilt", tilt)?;
-        let many = [
-            (offset.0.len(), offset.1),
-            (yaw.0.len(), yaw.1),
-            (tilt.0.len(), tilt.1),
-        ];
-        let mut lengths = many
-            .into_iter()
-            .filter(|(_, is_one)| !is_one)
-            .map(|(n, _)| n);
+        let mut lengths = [offset.n(), yaw.n(), tilt.n()].into_iter().flatten();
         let n = lengths.next();
         if let Some(other) = lengths.find(|other| Some(*other) != n) {
             let given = format!("{} of one and {other} of another", n.unwrap_or(1));
@@ -63,9 +55,9 @@ pub fn touch_poses<'py>(
         let pose = |number: usize| {
             let touch = Touch {
                 rest: 0,
-                offset: at(&offset, number),
-                yaw: at(&yaw, number)[0],
-                tilt: at(&tilt, number),
+                offset: offset.at(number),
+                yaw: yaw.at(number)[0],
+                tilt: tilt.at(number),
                 depth: 0.0,
                 indices: [None; 7],
             };
@@ -78,16 +70,7 @@ pub fn touch_poses<'py>(
     })
 }
 
-/// Reads an argument with N numbers for all touches, or for each touch; the default is zero. Returns the rows, and whether there is one for all touches.
-fn by_touch<const N: usize>(
-    place: &str,
-    given: Option<&Object>,
-) -> PyResult<(Vec<[f64; N]>, bool)> {
-    given.map_or(Ok((vec![[0.0; N]], true)), |given| {
-        one_or_rows(place, given)
-    })
-}
-
-fn at<const N: usize>((rows, is_one): &(Vec<[f64; N]>, bool), number: usize) -> [f64; N] {
-    rows[if *is_one { 0 } else { number }]
+/// Reads an argument with N numbers for all touches, or for each touch; the default is zero.
+fn by_touch<const N: usize>(place: &str, given: Option<&Object>) -> PyResult<Rows<N>> {
+    given.map_or(Ok(Rows::common([0.0; N])), |given| Rows::read(place, given))
 }

@@ -35,24 +35,9 @@ impl Poses {
         let poses = Self::from_argument(place, given)?.poses;
         let [pose] = poses[..] else {
             let given = format!("{} poses", poses.len());
-            return Err(bad_input(place, given, "one pose"));
+            return Err(bad_input(place, given, "one pose, (7,) or (4, 4)"));
         };
         Ok(pose)
-    }
-
-    /// Reads a single pose from an array of shape (7,) or (4, 4).
-    ///
-    /// # Errors
-    /// If the array has another axis, or the pose is not finite or contains no rotation.
-    pub fn only(place: &str, given: &Object) -> PyResult<Pose> {
-        let Self { poses, is_one } = Self::from_argument(place, given)?;
-        match (is_one, &poses[..]) {
-            (true, &[pose]) => Ok(pose),
-            _ => {
-                let given = format!("{} poses", poses.len());
-                Err(bad_input(place, given, "one pose, (7,) or (4, 4)"))
-            }
-        }
     }
 
     /// Reads poses of k objects from an array of shape (n, k, 7), (k, 7), (n, k, 4, 4) or (k, 4, 4). If `n_objects` is `None`, the shapes have no axis k.

@@ -2,7 +2,8 @@
 
 use crate::arrays::{Matrix, Object, frames, whole_number};
 use crate::errors::{bad_input, exception, guarded};
-use crate::threads::pool;
+use crate::patch::side;
+use crate::threads::in_pool;
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{self, Ensemble};
 use bubbletouch::world::ImageShape;
@@ -56,8 +57,8 @@ impl Projection {
     fn new(ensemble: &str, shape: (i64, i64), n_measurements: i64, seed: i128) -> PyResult<Self> {
         guarded(|| {
             let seed = whole_number("seed", seed)?;
-            let side = |side: i64| usize::try_from(side).unwrap_or(0);
-            let (grid, m) = ((side(shape.0), side(shape.1)), side(n_measurements));
+            let grid = (side("shape", shape.0)?, side("shape", shape.1)?);
+            let m = side("n_measurements", n_measurements)?;
             let drawn = ensemble_of(ensemble)?;
             let (ny, nx) = grid;
             let shape = ImageShape { ny, nx };
@@ -75,8 +76,7 @@ impl Projection {
         guarded(|| {
             let (py, sides) = (frames.py(), Some(self.shape().into()));
             let frames = self::frames("frames", frames, self.projection.n_taxels(), sides)?;
-            let pool = pool()?;
-            let measured = py.detach(|| pool.install(|| self.projection.measure(frames.view())));
+            let measured = in_pool(py, || self.projection.measure(frames.view()))?;
             Ok(measured.into_pyarray(py))
         })
     }

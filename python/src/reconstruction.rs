@@ -3,11 +3,10 @@
 use crate::arrays::{Object, array, frames, to_column, whole_number};
 use crate::errors::{bad_input, exception, guarded, one_of};
 use crate::projection::Projection;
-use crate::threads::pool;
+use crate::threads::in_pool;
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{self, Basis, Dictionary, Effort, SensedDictionary, Solver};
 use bubbletouch::world::ImageShape;
-use ndarray::Array2;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -92,23 +91,20 @@ impl Reconstructor {
                 projection.n_taxels(),
                 Some(shape.into()),
             )?;
-            let pool = pool()?;
-            let made = py.detach(|| {
-                pool.install(|| {
-                    let seed = Seed::new(seed);
-                    let (ny, nx) = shape;
-                    let shape = ImageShape { ny, nx };
-                    let dictionary =
-                        Dictionary::learned(basis, shape, training.view(), n_atoms, &seed)?;
-                    let sensed = Sensed::try_new((projection.clone(), dictionary), |owner| {
-                        SensedDictionary::new(&owner.0, &owner.1)
-                    })?;
-                    Solving::try_new(Box::new(sensed), |sensed| {
-                        let sensed = sensed.borrow_dependent();
-                        sensing::Reconstructor::new(solver, sensed, &Effort::default(), noise)
-                    })
+            let made = in_pool(py, || {
+                let (ny, nx) = shape;
+                let image = ImageShape { ny, nx };
+                let training = training.view();
+                let dictionary =
+                    Dictionary::learned(basis, image, training, n_atoms, &Seed::new(seed))?;
+                let sensed = Sensed::try_new((projection.clone(), dictionary), |owner| {
+                    SensedDictionary::new(&owner.0, &owner.1)
+                })?;
+                Solving::try_new(Box::new(sensed), |sensed| {
+                    let sensed = sensed.borrow_dependent();
+                    sensing::Reconstructor::new(solver, sensed, &Effort::default(), noise)
                 })
-            });
+            })?;
             Ok(Self {
                 solving: made.map_err(exception)?,
                 shape,
@@ -130,16 +126,11 @@ impl Reconstructor {
             let is_shape = |shape: &[usize]| matches!(shape, [_, wide] if *wide == m);
             let allowed = format!("(n, {m})");
             let rows = array("measurements", measurements, &allowed, is_shape)?;
-            let rows = rows.finite("measurements", "only finite numbers")?;
-            let rows = Array2::from_shape_vec((rows.shape()[0], m), rows.values().to_vec());
-            let rows = rows.expect("as many numbers as the shape");
-            let pool = pool()?;
-            let found = py.detach(|| {
-                pool.install(|| {
-                    self.solving
-                        .with_dependent(|_, solver| solver.reconstruct(rows.view()))
-                })
-            });
+            let rows = rows.finite("measurements", "only finite numbers")?.matrix();
+            let solve = |solver: &Prepared| solver.reconstruct(rows.view());
+            let found = in_pool(py, || {
+                self.solving.with_dependent(|_, solver| solve(solver))
+            })?;
             let found = found.map_err(exception)?;
             let (n, (ny, nx)) = (found.frames.nrows(), self.shape);
             let said = PyDict::new(py);

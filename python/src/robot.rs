@@ -1,6 +1,6 @@
 //! Class `Robot`: links, joints and poses of a robot of a URDF or MJCF file.
 
-use crate::arrays::{Object, array, one_or_rows, shape_of, to_column, to_matrix};
+use crate::arrays::{Object, Rows, array, shape_of, to_column, to_matrix};
 use crate::errors::{bad_input, check_readable, exception, guarded, one_of};
 use crate::mesh::Mesh;
 use crate::poses::Poses;
@@ -137,7 +137,7 @@ impl Robot {
     ) -> PyResult<Object<'py>> {
         guarded(|| {
             let link = self.robot.link(link).map_err(exception)?;
-            let base = base.map(|base| Poses::only("base", base)).transpose()?;
+            let base = base.map(|base| Poses::single("base", base)).transpose()?;
             let base = base.unwrap_or(Pose::IDENTITY);
             let (positions, is_one) = self.positions(q)?;
             let poses = py.detach(|| {
@@ -214,23 +214,25 @@ impl Robot {
         let mut n_rows = None;
         let mut given = Vec::with_capacity(q.len());
         for (name, values) in q {
-            let name = name.cast::<PyString>()?.to_string();
+            let words = || bad_input("q", &name, "names of joints");
+            let name = name.cast::<PyString>().map_err(|_| words())?.to_string();
             let joint = self.robot.position(&name).map_err(exception)?;
             let place = format!("q[{name:?}]");
-            let (values, is_one) = one_or_rows::<1>(&place, &values)?;
-            if !is_one && *n_rows.get_or_insert(values.len()) != values.len() {
-                let given = shape_of(&[values.len()]);
-                let n = n_rows.unwrap_or_default();
-                let allowed = format!("a number or ({n},), as for the joints before");
-                return Err(bad_input(place, given, allowed));
+            let values = Rows::<1>::read(&place, &values)?;
+            if let Some(n) = values.n()
+                && *n_rows.get_or_insert(n) != n
+            {
+                let known = n_rows.unwrap_or_default();
+                let allowed = format!("a number or ({known},), as for the joints before");
+                return Err(bad_input(place, shape_of(&[n]), allowed));
             }
-            given.push((joint, values, is_one));
+            given.push((joint, values));
         }
         let n = n_rows.unwrap_or(1);
         let mut positions = Array2::from_shape_fn((n, n_joints), |(_, joint)| rest[joint]);
-        for (joint, values, is_one) in given {
+        for (joint, values) in given {
             for (row, position) in positions.column_mut(joint).iter_mut().enumerate() {
-                [*position] = values[if is_one { 0 } else { row }];
+                [*position] = values.at(row);
             }
         }
         Ok((positions, n_rows.is_none()))

@@ -104,13 +104,13 @@ impl Step {
         let mut values = [0.0; MAX_STRENGTHS];
         let mut call = format!("error({name:?}");
         for (key, value) in strengths.into_iter().flatten() {
-            let (key, value): (String, f64) = (key.extract()?, value.extract()?);
+            let key: String = key.extract()?;
             let place = known.iter().position(|strength| strength.key == key);
             let place = place.ok_or_else(|| bad_input(name, format!("`{key}`"), &keys))?;
-            if !known[place].is_allowed(value) {
-                return Err(bad_input(key, value, known[place].allowed));
-            }
-            values[place] = value;
+            let number = value.extract().ok();
+            let number = number.filter(|number| known[place].is_allowed(*number));
+            let allowed = known[place].allowed;
+            values[place] = number.ok_or_else(|| bad_input(&key, &value, allowed))?;
             call += &format!(", {key}={value}");
         }
         Ok(Self {

@@ -1,8 +1,9 @@
 //! Class `Simulation`: execution of a scene, frame by frame or in manual steps.
 
-use crate::arrays::{Object, array, shape_of, to_column, whole_number};
+use crate::arrays::{Object, array, to_column, whole_number};
 use crate::errors::{bad_input, exception, guarded, warn};
 use crate::model::model_of;
+use crate::output_array::{output_array, writable};
 use crate::patch::{Patch, frame_shape};
 use crate::poses::Poses;
 use bubbletouch::scene::{
@@ -10,7 +11,7 @@ use bubbletouch::scene::{
     Stepping,
 };
 use glam::DVec3;
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use self_cell::self_cell;
@@ -141,13 +142,13 @@ impl Simulation {
     /// Sets the pose of an object in the world from the next step on: (7,) or (4, 4). A free object comes to rest from this pose. Raises ValueError if
     /// an argument is invalid.
     fn set_object_pose(&mut self, object: &str, pose: &Object) -> PyResult<()> {
-        let pose = Poses::only("pose", pose)?;
+        let pose = Poses::single("pose", pose)?;
         self.change(|simulation| simulation.set_object_pose(object, pose))
     }
 
     /// Sets the pose of a robot's base in the world from the next step on: (7,) or (4, 4). Raises ValueError if an argument is invalid.
     fn set_robot_pose(&mut self, robot: &str, pose: &Object) -> PyResult<()> {
-        let pose = Poses::only("pose", pose)?;
+        let pose = Poses::single("pose", pose)?;
         self.change(|simulation| simulation.set_robot_pose(robot, pose))
     }
 
@@ -340,16 +341,14 @@ fn fill(
     (shape, values): (&[usize], &[f64]),
     is_written: bool,
 ) -> PyResult<()> {
-    let found = dict.get_item(key)?;
-    let array = found.and_then(|found| found.cast_into::<PyArrayDyn<f64>>().ok());
-    let array = array.filter(|array| array.shape() == shape && array.is_c_contiguous());
-    let writable = array.as_ref().and_then(|array| array.try_readwrite().ok());
-    let Some(mut writable) = writable else {
-        let given = format!("no writeable float64 array `{key}` of {}", shape_of(shape));
-        return Err(bad_input(place, given, EARLIER_FRAME));
+    let Some(found) = dict.get_item(key)? else {
+        return Err(bad_input(place, format!("no array `{key}`"), EARLIER_FRAME));
     };
+    let place = format!("{place}, {key}");
+    let array = output_array::<f64>(&place, &found, (shape, "a float64"))?;
+    let mut target = writable(&place, &array)?;
     if is_written {
-        writable.as_slice_mut()?.copy_from_slice(values);
+        target.as_slice_mut()?.copy_from_slice(values);
     }
     Ok(())
 }

@@ -93,57 +93,77 @@ impl Progress for CallbackProgress {
 /// File name, title, note and columns of a table.
 pub type ColumnsOfTable<'py> = (String, String, String, Bound<'py, PyDict>);
 
-/// Text of a study, its result folder, and the part of the study to run.
-struct StudySource {
-    source: Source,
+/// Study to run, by the keys of the dict that Python gives.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct StudyArguments {
+    /// TOML text of the study.
+    text: String,
+    /// Name of the study in error messages.
+    place: String,
+    /// Name of the study in the manifest of its results.
     name: String,
-    /// Classifiers and features in Python.
-    given: [Vec<Given>; 2],
-    /// Shard to compute; its results are in its journal alone.
-    shard: Option<Shard>,
+    /// Folder to which paths in the study are relative.
+    folder: PathBuf,
+    /// Result folder.
+    out: PathBuf,
+    /// Seed in place of the seed of the study.
+    seed: Option<i128>,
+    classifiers: Vec<Given>,
+    features: Vec<Given>,
+    /// Shard to compute, such as `3/8`; its results are in its journal alone.
+    shard: Option<String>,
     /// Whether the journals of shards in the result folder are merged first.
     merges: bool,
-    /// Number of threads; `None` for the threads of the pool.
-    threads: Option<usize>,
+    /// Number of threads; 0 for the threads of the pool.
+    threads: usize,
+}
+
+impl StudyArguments {
+    /// Returns the source of the study, and the part of the study to run.
+    fn source(&self) -> PyResult<(Source, Part<'static>)> {
+        let seed = self.seed.map(|seed| whole_number("seed", seed));
+        let shard: Option<Shard> = self
+            .shard
+            .as_deref()
+            .map(str::parse)
+            .transpose()
+            .map_err(exception)?;
+        let source = Source {
+            folder: self.folder.clone(),
+            seed: seed.transpose()?,
+            packings: Some(self.out.parent().unwrap_or(Path::new("")).join("packings")),
+            results: self.out.clone(),
+            ..Source::of_text(&self.place, &self.text)
+        };
+        Ok((source, shard.map_or(Part::All, Part::Shard)))
+    }
 }
 
 /// Runs a study or a shard of it. Returns no tables for a shard.
-fn run(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Result<Vec<Table>> {
-    match asked.threads {
-        None => run_here(asked, told, raised),
-        Some(n) => {
-            let pool = ThreadPoolBuilder::new().num_threads(n).build();
-            let pool = pool.map_err(|error| Error::input("threads", n, error))?;
-            pool.install(|| run_here(asked, told, raised))
-        }
-    }
-}
-
-fn run_here(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Result<Vec<Table>> {
+fn run(
+    asked: StudyArguments,
+    (source, part): (&Source, Part),
+    told: &CallbackProgress,
+    raised: &Raised,
+) -> Result<Vec<Table>> {
     let started = SystemTime::now();
-    let is_foreign = asked.given.iter().any(|given| !given.is_empty());
+    let Source { results, place, .. } = source;
+    let is_foreign = !(asked.classifiers.is_empty() && asked.features.is_empty());
     if is_foreign
-        && let Some(about) = about(&asked.source.text)
+        && let Some(about) = about(&asked.text)
         && about.table != "recognition"
     {
         let allowed = "classifiers and features of the program for a study that recognises objects";
-        return Err(Error::input(&asked.source.place, about.words, allowed));
+        return Err(Error::input(place, about.words, allowed));
     }
-    let _provided = provide(asked.given, raised)?;
-    let Source {
-        results,
-        place,
-        folder,
-        ..
-    } = &asked.source;
-    check_folder(&asked.source.text, results)?;
-    let study = load(&asked.source)?;
-    let file = match asked.shard {
-        Some(shard) => shard.file_name(JOURNAL_FILE),
-        None => JOURNAL_FILE.to_owned(),
-    };
-    let path = results.join(file);
-    let part = asked.shard.map_or(Part::All, Part::Shard);
+    let _provided = provide([asked.classifiers, asked.features], raised)?;
+    check_folder(&asked.text, results)?;
+    let study = load(source)?;
+    let path = results.join(match part {
+        Part::Shard(shard) => shard.file_name(JOURNAL_FILE),
+        _ => JOURNAL_FILE.to_owned(),
+    });
     // The results of shards are known only after their journals are merged.
     if !asked.merges {
         study.check(part, &Journal::read_records(&path)?)?;
@@ -166,11 +186,11 @@ fn run_here(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Res
         true => error.under(format!("{place}, ")),
         false => error,
     })?;
-    if asked.shard.is_some() {
+    if matches!(part, Part::Shard(_)) {
         return Ok(Vec::new());
     }
     let manifest = Manifest {
-        study: asked.name.clone(),
+        study: asked.name,
         command: shell_line(&[
             "bubbletouch",
             "run",
@@ -178,7 +198,7 @@ fn run_here(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Res
             "--out",
             &results.display().to_string(),
         ]),
-        paths_from: folder.clone(),
+        paths_from: asked.folder,
         n_finished_before: n_before,
         ..Manifest::ended(study.identity(), started)
     };
@@ -196,45 +216,18 @@ pub fn rename_old_results(folder: PathBuf) -> PyResult<()> {
         .map_err(exception)
 }
 
-/// Runs a study (TOML text) and writes its results into a folder. Returns the file name, title, note and columns of each table. Classifiers and features are
-/// tuples of name, version and object. A shard, such as `3/8`, writes its journal alone and returns no tables.
+/// Runs a study and writes its results into a folder. Returns the file name, title, note and columns of each table. The study is a dict of text (TOML), place,
+/// name, folder, out, seed, classifiers, features, shard, merges and threads. Classifiers and features are tuples of name, version and object. A shard, such as
+/// `3/8`, writes its journal alone and returns no tables.
 #[pyfunction]
-#[pyo3(signature = (text, place, name, folder, out, seed=None, callback=None, classifiers=Vec::new(), features=Vec::new(), shard=None, merges=false, threads=None))]
+#[pyo3(signature = (study, callback=None))]
 pub fn run_study<'py>(
     py: Python<'py>,
-    text: String,
-    place: String,
-    name: String,
-    folder: PathBuf,
-    out: PathBuf,
-    seed: Option<i128>,
+    study: StudyArguments,
     callback: Option<Py<PyAny>>,
-    classifiers: Vec<Given>,
-    features: Vec<Given>,
-    shard: Option<String>,
-    merges: bool,
-    threads: Option<usize>,
 ) -> PyResult<Vec<ColumnsOfTable<'py>>> {
     guarded(|| {
-        let seed = seed.map(|seed| whole_number("seed", seed)).transpose()?;
-        let shard = shard
-            .map(|shard| shard.parse().map_err(exception))
-            .transpose()?;
-        let packings = out.parent().unwrap_or(Path::new("")).join("packings");
-        let asked = StudySource {
-            source: Source {
-                folder,
-                seed,
-                packings: Some(packings),
-                results: out,
-                ..Source::of_text(&place, &text)
-            },
-            name,
-            given: [classifiers, features],
-            shard,
-            merges,
-            threads: threads.filter(|n| *n > 0),
-        };
+        let (source, part) = study.source()?;
         let foreign = Raised::default();
         let of_foreign = foreign.clone();
         let raised = Raised::default();
@@ -251,7 +244,14 @@ pub fn run_study<'py>(
                     told: Instant::now(),
                 }),
             };
-            run(asked, &told, &of_foreign)
+            let threads = study.threads;
+            let run = || run(study, (&source, part), &told, &of_foreign);
+            if threads == 0 {
+                return run();
+            }
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+            let pool = pool.map_err(|error| Error::input("threads", threads, error))?;
+            pool.install(run)
         });
         if let Some(error) = raised.take() {
             return Err(error);

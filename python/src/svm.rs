@@ -1,8 +1,8 @@
 //! Models behind the estimators of `bubbletouch.learning`: soft-margin SVMs trained on features and labels 0, 1, …
 
 use crate::arrays::{Matrix, Object, Vector, array, to_column, whole_numbers};
-use crate::errors::{bad_input, exception, guarded, one_of};
-use crate::threads::{aside, pool};
+use crate::errors::{exception, guarded, one_of};
+use crate::threads::{aside, in_pool};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::classifiers::class_model::ClassModel;
 use bubbletouch::recognition::classifiers::linear_svm::{LinearSvm, LinearSvmParams};
@@ -16,7 +16,7 @@ use bubbletouch::recognition::svm::{Multiclass, SvmParams};
 use ndarray::{Array1, Array2, ArrayView2, Axis, concatenate};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyTuple, PyType};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -24,9 +24,7 @@ use std::sync::Arc;
 fn rows_of(given: &Object) -> PyResult<Array2<f64>> {
     let is_shape = |shape: &[usize]| shape.len() == 2;
     let rows = array("features", given, "(n_rows, n_features)", is_shape)?;
-    let shape = (rows.shape()[0], rows.shape()[1]);
-    let rows = Array2::from_shape_vec(shape, rows.values().to_vec());
-    Ok(rows.expect("as many numbers as the shape"))
+    Ok(rows.matrix())
 }
 
 /// Block size of predictions in the library, rows.
@@ -62,21 +60,38 @@ fn predicted<T: Send>(
     features: &Object,
     predict: impl FnOnce(&Array2<f64>) -> bubbletouch::Result<T> + Send,
 ) -> PyResult<T> {
-    let (py, features, pool) = (features.py(), rows_of(features)?, pool()?);
-    let predicted = py.detach(|| pool.install(|| predict(&features)));
-    predicted.map_err(exception)
+    let rows = rows_of(features)?;
+    in_pool(features.py(), || predict(&rows))?.map_err(exception)
 }
 
-/// Trains a model; returns it together with its training data as Python objects. Models are pickled as their training data.
-fn trained<T: Send + 'static>(
-    features: &Object,
-    labels: &Object,
-    train: impl FnOnce(&Dataset) -> bubbletouch::Result<T> + Send + 'static,
-) -> PyResult<(T, Arc<Dataset>)> {
-    let data = Arc::new(data_of(features, labels)?);
-    let rows = Arc::clone(&data);
-    let model = aside(features.py(), move |_| train(&rows))?;
-    Ok((model.map_err(exception)?, data))
+/// Training data and parameters of a model. Pickling stores them, and unpickling trains again.
+struct Training {
+    data: Arc<Dataset>,
+    params: Py<PyDict>,
+}
+
+impl Training {
+    /// Trains a model. Returns the model and its training.
+    fn run<T: Send + 'static>(
+        (features, labels): (&Object, &Object),
+        params: &Bound<PyDict>,
+        train: impl FnOnce(&Dataset) -> bubbletouch::Result<T> + Send + 'static,
+    ) -> PyResult<(T, Self)> {
+        let data = Arc::new(data_of(features, labels)?);
+        let rows = Arc::clone(&data);
+        let model = aside(features.py(), move |_| train(&rows))?;
+        let params = params.copy()?.unbind();
+        Ok((model.map_err(exception)?, Self { data, params }))
+    }
+
+    /// Returns the call of `class.train` that trains the model again.
+    fn call<'py>(&self, class: Bound<'py, PyType>) -> PyResult<(Object<'py>, Bound<'py, PyTuple>)> {
+        let py = class.py();
+        let features = self.data.records.clone().into_pyarray(py);
+        let labels = to_integers(py, &self.data.targets);
+        let arguments = (features, labels, self.params.bind(py)).into_pyobject(py)?;
+        Ok((class.getattr("train")?, arguments))
+    }
 }
 
 fn data_of(features: &Object, labels: &Object) -> PyResult<Dataset> {
@@ -139,9 +154,7 @@ fn class_weight(is_balanced: bool) -> ClassWeight {
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct KernelSvm {
     model: SvmModel,
-    /// Arguments of the training: pickling stores them, and unpickling trains again with them.
-    asked: Py<PyDict>,
-    data: Arc<Dataset>,
+    training: Training,
 }
 
 #[pymethods]
@@ -151,9 +164,9 @@ impl KernelSvm {
     fn train(features: &Object, labels: &Object, params: Bound<PyDict>) -> PyResult<Self> {
         guarded(|| {
             let asked = params.extract::<SvmArguments>()?.params()?;
-            let (model, data) = trained(features, labels, move |rows| Ok(asked.train(rows)?))?;
-            let asked = params.copy()?.unbind();
-            Ok(Self { model, asked, data })
+            let train = move |rows: &Dataset| Ok(asked.train(rows)?);
+            let (model, training) = Training::run((features, labels), &params, train)?;
+            Ok(Self { model, training })
         })
     }
 
@@ -174,6 +187,17 @@ impl KernelSvm {
             let views: Vec<ArrayView2<f64>> = values.iter().map(|part| part.view()).collect();
             let values = concatenate(Axis(0), &views).expect("parts have the same columns");
             Ok(values.into_pyarray(features.py()))
+        })
+    }
+
+    /// Returns the scores (n, n_classes) of decision values (n, n_problems). A score of one-vs-one is the number of votes plus a term between −1/3 and 1/3.
+    fn class_scores<'py>(&self, py: Python<'py>, values: &Object<'py>) -> PyResult<Matrix<'py>> {
+        guarded(|| {
+            let n_problems = self.model.problems().len();
+            let is_shape = |shape: &[usize]| matches!(shape, [_, n] if *n == n_problems);
+            let values = array("values", values, "(n, n_problems)", is_shape)?;
+            let scores = self.model.class_scores(values.matrix().view());
+            Ok(scores.into_pyarray(py))
         })
     }
 
@@ -207,13 +231,19 @@ impl KernelSvm {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Object<'py>, Bound<'py, PyTuple>)> {
-        let train = py.get_type::<Self>().getattr("train")?;
-        let (features, labels) = arrays_of(py, &self.data);
-        Ok((
-            train,
-            (features, labels, self.asked.bind(py)).into_pyobject(py)?,
-        ))
+        self.training.call(py.get_type::<Self>())
     }
+}
+
+/// Parameters of a linear SVM of a Python call, with the names that Python uses.
+#[derive(Clone, FromPyObject)]
+#[pyo3(from_item_all)]
+struct LinearArguments {
+    c: f64,
+    tolerance: f64,
+    is_balanced: bool,
+    max_passes: usize,
+    seed: u64,
 }
 
 /// Trained linear SVM without a kernel matrix for labels 0, 1, …, used by bubbletouch.learning.LinearSVC. Pickling stores its training rows;
@@ -221,38 +251,27 @@ impl KernelSvm {
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct LinearModel {
     svm: LinearSvm,
-    asked: (f64, bool, f64, usize, u64),
-    data: Arc<Dataset>,
+    training: Training,
 }
 
 #[pymethods]
 impl LinearModel {
     /// Trains a linear SVM on features (n, m) and labels (n,). Raises ValueError if an argument is invalid.
     #[staticmethod]
-    fn train(
-        features: &Object,
-        labels: &Object,
-        c: f64,
-        is_balanced: bool,
-        tolerance: f64,
-        max_passes: i64,
-        seed: u64,
-    ) -> PyResult<Self> {
+    fn train(features: &Object, labels: &Object, params: Bound<PyDict>) -> PyResult<Self> {
         guarded(|| {
-            let max_passes = usize::try_from(max_passes)
-                .map_err(|_| bad_input("max_iter", max_passes, "at least 1"))?;
-            let params = LinearSvmParams {
-                c,
-                class_weight: class_weight(is_balanced),
-                tolerance,
-                max_passes,
+            let asked: LinearArguments = params.extract()?;
+            let train = move |rows: &Dataset| {
+                let params = LinearSvmParams {
+                    c: asked.c,
+                    class_weight: class_weight(asked.is_balanced),
+                    tolerance: asked.tolerance,
+                    max_passes: asked.max_passes,
+                };
+                Ok(params.train(rows, &Seed::new(asked.seed))?)
             };
-            let seeded = Seed::new(seed);
-            let (svm, data) = trained(features, labels, move |rows| {
-                Ok(params.train(rows, &seeded)?)
-            })?;
-            let asked = (c, is_balanced, tolerance, max_passes, seed);
-            Ok(Self { svm, asked, data })
+            let (svm, training) = Training::run((features, labels), &params, train)?;
+            Ok(Self { svm, training })
         })
     }
 
@@ -298,19 +317,7 @@ impl LinearModel {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Object<'py>, Bound<'py, PyTuple>)> {
-        let train = py.get_type::<Self>().getattr("train")?;
-        let (features, labels) = arrays_of(py, &self.data);
-        let (c, is_balanced, tolerance, max_passes, seed) = &self.asked;
-        let given = (
-            features,
-            labels,
-            c,
-            is_balanced,
-            tolerance,
-            max_passes,
-            seed,
-        );
-        Ok((train, given.into_pyobject(py)?))
+        self.training.call(py.get_type::<Self>())
     }
 }
 
@@ -362,11 +369,6 @@ pub fn choose_svm<'py>(
         said.set_item("n_capped", chosen.n_capped)?;
         Ok(said)
     })
-}
-
-fn arrays_of<'py>(py: Python<'py>, data: &Dataset) -> (Matrix<'py>, Vector<'py, i64>) {
-    let features = data.records.clone().into_pyarray(py);
-    (features, to_integers(py, &data.targets))
 }
 
 fn to_integers<'py, 'a>(

@@ -40,6 +40,15 @@ pub fn pool() -> PyResult<Arc<ThreadPool>> {
     Ok(pool)
 }
 
+/// Runs a call on the threads of the pool, without the interpreter's lock.
+///
+/// # Errors
+/// If the system cannot create threads.
+pub fn in_pool<T: Send>(py: Python, call: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let pool = pool()?;
+    Ok(py.detach(|| pool.install(call)))
+}
+
 /// Periodic check for Ctrl-C during a long call.
 pub struct Interrupt {
     looked: Instant,

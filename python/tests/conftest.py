@@ -15,6 +15,12 @@ import pytest
 Command = Callable[..., str]
 
 
+def refused(said: str, call: Callable[[], object], error: type[Exception] = ValueError) -> None:
+    """Checks that a call raises an error whose text matches `said`."""
+    with pytest.raises(error, match=said):
+        call()
+
+
 @pytest.fixture(scope="session")
 def mug() -> bt.SphereUnion:
     return bt.Catalogue.builtin().object("mug").pack(0.5e-3)

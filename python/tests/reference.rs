@@ -1,5 +1,5 @@
 //! Presses, a chain, a projection and SVMs by the library alone, as `.npy` files in a folder: what `tests/test_identity.py` computes again in Python
-//! and compares bit by bit.
+//! and compares bit by bit. With `pace SIDE`, prints the time of the press kernel alone, which `benches/press.py` compares with calls from Python.
 
 use bubbletouch::contact::{Press, Until, Workspace};
 use bubbletouch::geometry::Pose;
@@ -18,7 +18,9 @@ use bubbletouch::world::{Grid, Layout, Patch, Taxel};
 use bubbletouch::{Error, Result};
 use glam::{DQuat, DVec3};
 use ndarray::{Array1, Array2};
+use std::hint::black_box;
 use std::path::Path;
+use std::time::Instant;
 
 const N: usize = 120;
 const TAXEL: Taxel = Taxel {
@@ -45,11 +47,45 @@ fn pose(number: usize) -> Pose {
     Pose::new(turn, at)
 }
 
+/// Prints the shortest mean time of a press of a ball on a grid of `side` × `side` taxels over five rounds, seconds.
+fn print_pace(side: usize) -> Result<()> {
+    let grid = Grid {
+        nx: side,
+        ny: side,
+        pitch: 2e-3,
+    };
+    let patch = Patch::grid(grid, TAXEL)?;
+    let ball = Sphere {
+        center: DVec3::ZERO,
+        radius: 0.02,
+    };
+    let models = [SphereUnion::new(vec![ball])?.into()];
+    let poses = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.03))];
+    let press = Press::new(&patch, &models, &poses, Until::Depth(1e-3));
+    let (mut workspace, mut shortest) = (Workspace::new(), f64::INFINITY);
+    for _ in 0..5 {
+        let start = Instant::now();
+        for _ in 0..20_000 {
+            press.run(&mut workspace)?;
+            black_box(workspace.deflections());
+        }
+        shortest = shortest.min(start.elapsed().as_secs_f64() / 20_000.0);
+    }
+    println!("{shortest}");
+    Ok(())
+}
+
 fn main() -> Result<()> {
-    let folder = std::env::args()
-        .nth(1)
+    let arguments: Vec<String> = std::env::args().collect();
+    if let [_, word, side] = &arguments[..]
+        && word == "pace"
+    {
+        return print_pace(side.parse().expect("a number of rows and columns"));
+    }
+    let folder = arguments
+        .get(1)
         .ok_or_else(|| Error::input("reference", "no folder", "the folder where its files go"))?;
-    let folder = Path::new(&folder);
+    let folder = Path::new(folder);
     let grid = Grid {
         nx: 24,
         ny: 20,

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from conftest import refused
+
 
 def data(n: int = 120) -> tuple[NDArray[np.float64], NDArray[np.str_]]:
     """Returns frames of a disc of one of three sizes at random places with noise, and the names of the classes."""
@@ -56,18 +58,16 @@ def test_each_order_is_audited_as_by_path(tmp_path: Path) -> None:
 
 def test_wrong_arguments_are_named() -> None:
     frames, labels = data()
-    with pytest.raises(ValueError, match="^labels: 119 values; 120, one a touch of frames$"):
-        bt.audit(frames, labels[1:])
-    with pytest.raises(ValueError, match='^order: "n t y"; a letter for each axis'):
-        bt.audit(frames, labels, order="n t y")
-    with pytest.raises(ValueError, match="^before_contact: 0..2; "):
-        bt.audit(frames, labels, before_contact=(0, 2))
-    with pytest.raises(ValueError, match="^untouched: 144; taxels from 0 to 143$"):
-        bt.audit(frames, labels, untouched=[144])
-    with pytest.raises(ValueError, match="^not_claimed: weather; order, session, "):
-        bt.audit(frames, labels, not_claimed=["weather"])
-    with pytest.raises(ValueError, match="^split: group; time with these data$"):
-        bt.audit(frames, labels, split="group")
+    refused("^labels: 119 values; 120, one a touch of frames$", lambda: bt.audit(frames, labels[1:]))
+    refused('^order: "n t y"; a letter for each axis', lambda: bt.audit(frames, labels, order="n t y"))
+    refused("^before_contact: 0..2; ", lambda: bt.audit(frames, labels, before_contact=(0, 2)))
+    refused("^untouched: 144; taxels from 0 to 143$", lambda: bt.audit(frames, labels, untouched=[144]))
+    refused("^not_claimed: weather; order, session, ", lambda: bt.audit(frames, labels, not_claimed=["weather"]))
+    refused("^untouched: -1; at least 0$", lambda: bt.audit(frames, labels, untouched=[-1]))
+    refused("^seed: -1; at least 0$", lambda: bt.audit(frames, labels, seed=-1))
+    refused("^permutations: 10; a whole number from 399 to 100000$", lambda: bt.audit(frames, labels, permutations=10))
+    refused("^frames: NoneType; an array, or the path of a file$", lambda: bt.audit(None))
+    refused("^split: group; time with these data$", lambda: bt.audit(frames, labels, split="group"))
 
 
 def test_a_given_test_set_is_one_more_split(tmp_path: Path) -> None:
@@ -93,16 +93,11 @@ def test_a_given_test_set_is_one_more_split(tmp_path: Path) -> None:
 
 def test_wrong_test_sets_are_named() -> None:
     frames, labels = data()
-    with pytest.raises(ValueError, match="^test: touches of 1 frame of 5 × 12 taxels; touches of 1 frame of 12 × 12 taxels, as frames has$"):
-        bt.audit(frames, labels, test=(frames[:, :5], labels))
-    with pytest.raises(ValueError, match="^test: a test set; labels_test and groups_test, if frames has labels and groups$"):
-        bt.audit(frames, labels, test=(frames, None))
-    with pytest.raises(ValueError, match="^test, labels: 29 values; 30, one a touch of test$"):
-        bt.audit(frames, labels, test=(frames[:30], labels[:29]))
-    with pytest.raises(ValueError, match="^test: not a test set"):
-        bt.audit(frames, labels, test=frames)
-    with pytest.raises(ValueError, match="^labels: texts in one array and numbers in another; texts or numbers in all$"):
-        bt.audit(frames, labels, test=(frames, np.zeros(len(frames), dtype=int)))
+    refused("^test: touches of 1 frame of 5 × 12 taxels; touches of 1 frame of 12 × 12 taxels, as frames has$", lambda: bt.audit(frames, labels, test=(frames[:, :5], labels)))
+    refused("^test: a test set; labels_test and groups_test, if frames has labels and groups$", lambda: bt.audit(frames, labels, test=(frames, None)))
+    refused("^test, labels: 29 values; 30, one a touch of test$", lambda: bt.audit(frames, labels, test=(frames[:30], labels[:29])))
+    refused("^test: not a test set", lambda: bt.audit(frames, labels, test=frames))
+    refused("^labels: texts in one array and numbers in another; texts or numbers in all$", lambda: bt.audit(frames, labels, test=(frames, np.zeros(len(frames), dtype=int))))
 
 
 def said(found: bt.Audit) -> str:
@@ -127,14 +122,10 @@ def test_paths_are_read_as_by_the_command(tmp_path: Path) -> None:
     assert said(bt.audit(frames + 0.01, labels, test=test, permutations=399)) == said(
         bt.audit(frames + 0.01, labels, test=(frames, labels), permutations=399)
     )
-    with pytest.raises(FileNotFoundError, match=r"^frames: .*absent\.npz: no such file; an array, or the path of a file$"):
-        bt.audit(tmp_path / "absent.npz")
-    with pytest.raises(FileNotFoundError, match="^labels: object: no such file; an array, or the path of a file$"):
-        bt.audit(frames, "object")
-    with pytest.raises(ValueError, match=r"^labels: 119 values; 120, one a touch of .*touches\.npy$"):
-        bt.audit(tmp_path / "touches.npy", labels[1:])
-    with pytest.raises(ValueError, match="^frames: dict; an array, or the path of a file$"):
-        bt.audit({"thumb": frames}, labels)  # type: ignore[arg-type]
+    refused(r"^frames: .*absent\.npz: no such file; an array, or the path of a file$", lambda: bt.audit(tmp_path / "absent.npz"), FileNotFoundError)
+    refused("^labels: object: no such file; an array, or the path of a file$", lambda: bt.audit(frames, "object"), FileNotFoundError)
+    refused(r"^labels: 119 values; 120, one a touch of .*touches\.npy$", lambda: bt.audit(tmp_path / "touches.npy", labels[1:]))
+    refused("^frames: dict; an array, or the path of a file$", lambda: bt.audit({"thumb": frames}, labels))  # type: ignore[arg-type]
 
 
 def test_files_of_other_formats_are_read(tmp_path: Path) -> None:
@@ -153,12 +144,9 @@ def test_masked_readings_are_missing_and_masked_labels_are_refused() -> None:
     missing = next(finding for finding in found.findings if finding.check == "missing_readings")
     assert missing.value == 1 / frames.size
     numbers = np.unique(labels, return_inverse=True)[1]
-    with pytest.raises(ValueError, match="^labels, position 7: nan; integers or texts$"):
-        bt.audit(frames, np.ma.masked_array(numbers, mask=np.arange(120) == 7))
-    with pytest.raises(ValueError, match="^groups, position 0: None; integers or texts$"):
-        bt.audit(frames, labels, [None] * 120)
-    with pytest.raises(ValueError, match="^labels, position 2: nan; integers or texts$"):
-        bt.audit(frames, [np.nan if touch == 2 else label for touch, label in enumerate(labels.tolist())])
+    refused("^labels, position 7: nan; integers or texts$", lambda: bt.audit(frames, np.ma.masked_array(numbers, mask=np.arange(120) == 7)))
+    refused("^groups, position 0: None; integers or texts$", lambda: bt.audit(frames, labels, [None] * 120))
+    refused("^labels, position 2: nan; integers or texts$", lambda: bt.audit(frames, [np.nan if touch == 2 else label for touch, label in enumerate(labels.tolist())]))
     one_hot = bt.audit(frames, np.eye(3, dtype=int)[numbers], permutations=399)
     assert said(one_hot) == said(bt.audit(frames, numbers, permutations=399))
 

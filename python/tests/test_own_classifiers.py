@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from bubbletouch import _foreign
 
-from conftest import Command
+from conftest import Command, refused
 
 STUDY: dict[str, Any] = {
     "question": "How well does my classifier tell cans apart?",
@@ -367,8 +367,7 @@ def test_an_error_names_study_configuration_and_trial(how: str, said: str) -> No
     ],
 )
 def test_an_error_of_features_names_them(function: Any, said: str) -> None:
-    with pytest.raises(ValueError, match=f"features mine: .*{said}"):
-        bt.run(with_keys(), features={"mine": (function, said.encode().hex()[:60])})
+    refused(f"features mine: .*{said}", lambda: bt.run(with_keys(), features={"mine": (function, said.encode().hex()[:60])}))
 
 
 def test_what_is_no_classifier_is_refused(tmp_path: Path) -> None:
@@ -384,11 +383,9 @@ def test_what_is_no_classifier_is_refused(tmp_path: Path) -> None:
         ({"features": {"raw": np.sqrt}}, "raw.*; a name that no other features have"),
         ({"processes": -1}, "processes: -1; zero or"),
     ]:
-        with pytest.raises(ValueError, match=said):
-            bt.run(STUDY, tmp_path / "out", **given)
+        refused(said, lambda: bt.run(STUDY, tmp_path / "out", **given))
         assert not (tmp_path / "out").exists()
-    with pytest.raises(ValueError, match="mine"):
-        bt.run(with_keys(classifier="mine"), tmp_path / "out")
+    refused("mine", lambda: bt.run(with_keys(classifier="mine"), tmp_path / "out"))
     with pytest.raises(ValueError, match="study: .*; classifiers and features of the program for a study that recognises objects"):
         bt.run({"question": "q", "stability": {}}, tmp_path / "out", classifiers={"mine": Nearest()})
     assert not (tmp_path / "out").exists()
@@ -494,8 +491,7 @@ def test_a_parameter_that_an_own_method_does_not_have_is_refused() -> None:
         ("powers.root", r"recognition\.parameters\.powers: features powers: .*unexpected keyword argument 'root'"),
         ("svm.C", r"recognition\.parameters\.svm: given, but the study has no classifier or features of your own with this name"),
     ):
-        with pytest.raises(ValueError, match=words):
-            bt.run({**with_keys(classifier="linear_svm"), "axes": {f"recognition.parameters.{key}": [1, 2]}}, **own)
+        refused(words, lambda: bt.run({**with_keys(classifier="linear_svm"), "axes": {f"recognition.parameters.{key}": [1, 2]}}, **own))
 
 
 FACTOR = 2.0

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from conftest import refused
+
 N = 18
 STUDY: dict[str, Any] = {
     "question": "?",
@@ -85,8 +87,7 @@ def test_touch_numbers_that_restart_in_each_session_are_other_touches_or_refused
         assert np.array_equal(found.frames, expected) and found.touches.tolist() == [str(number % 6) for number in range(N)]
         assert found.labels is None or found.labels.tolist() == LABELS.tolist()
     words = r"a\.csv, `trial`: touch 0 in rows 0 to 3 and again in rows 24 to 27; adjacent rows for each touch, or groups that differ"
-    with pytest.raises(ValueError, match=words):
-        bt.read_recorded(file, "taxel_*", touches="trial")
+    refused(words, lambda: bt.read_recorded(file, "taxel_*", touches="trial"))
     # Rows of one touch that are not adjacent, and a session that begins twice.
     columns = rows_of(np.arange(N), sessions)
     turned = np.argsort(np.tile(np.arange(4), N), kind="stable")
@@ -106,8 +107,7 @@ def test_labels_of_touches_whose_numbers_do_not_ascend_are_those_of_the_rows_or_
     assert found.labels.tolist() == LABELS.tolist() and found.touches.tolist() == [str(number) for number in numbers]
     assert np.array_equal(found.frames, np.stack([touch(number) for number in range(N)]))
     words = r"a\.csv, `trial`: a value for each touch, but touch 12 comes before touch 1; a value for each row, or ascending numbers"
-    with pytest.raises(ValueError, match=words):
-        bt.read_recorded(file, "taxel_*", touches="trial", labels=LABELS)
+    refused(words, lambda: bt.read_recorded(file, "taxel_*", touches="trial", labels=LABELS))
     write_rows(file, rows_of(np.sort(numbers), np.zeros(N, int)))
     assert bt.read_recorded(file, "taxel_*", touches="trial", labels=LABELS).labels.tolist() == LABELS.tolist()
 
@@ -143,14 +143,11 @@ def test_two_sources_of_labels_or_groups_are_refused(tmp_path: Path) -> None:
     pattern = f"{tmp_path}/{{label}}/*.npz"
     assert bt.read_recorded(pattern).labels.tolist() == ["cup"] * 3 + ["pen"] * 3
     for labels in ("object", ["cup"] * 6):
-        with pytest.raises(ValueError, match=r"^labels: given beside \{label\} in `.*\{label\}/\*\.npz`; one of both$"):
-            bt.read_recorded(pattern, labels=labels)
-    with pytest.raises(ValueError, match=r"^groups: given beside \{group\} in `"):
-        bt.read_recorded(f"{tmp_path}/{{group}}/*.npz", groups="object")
+        refused(r"^labels: given beside \{label\} in `.*\{label\}/\*\.npz`; one of both$", lambda: bt.read_recorded(pattern, labels=labels))
+    refused(r"^groups: given beside \{group\} in `", lambda: bt.read_recorded(f"{tmp_path}/{{group}}/*.npz", groups="object"))
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["cup/a"] = file["pen/a"] = np.zeros((3, 4))
-    with pytest.raises(ValueError, match=r"^labels: given beside \{label\} in `\{label\}/\*`; one of both$"):
-        bt.read_recorded(tmp_path / "a.h5", "{label}/*", labels=["cup", "pen"])
+    refused(r"^labels: given beside \{label\} in `\{label\}/\*`; one of both$", lambda: bt.read_recorded(tmp_path / "a.h5", "{label}/*", labels=["cup", "pen"]))
 
 
 def test_columns_of_a_pattern_have_the_order_of_the_file(tmp_path: Path) -> None:
@@ -205,16 +202,14 @@ def test_indexes_of_pandas_are_equal_or_refused() -> None:
         ({"frames": [frames, frames[[2, 1, 0]]]}, "^recorded.frames, touch 1: other columns than those of touch 0, or in another order"),
         ({"frames": None, "sensors": [{"name": "a", "frames": frames[::-1]}]}, r"recorded\.labels: another index than recorded\.sensors\[1\]\.frames"),
     ]:
-        with pytest.raises(ValueError, match=words):
-            bt.run(STUDY, recorded={"frames": frames, "labels": labels} | change)
+        refused(words, lambda: bt.run(STUDY, recorded={"frames": frames, "labels": labels} | change))
     # Values without an index are joined by their positions.
     turned = {"frames": frames[::-1], "labels": LABELS[::-1]}
     plain = turned | {"frames": frames.to_numpy()[::-1]}
     turned, plain = (bt.run(STUDY, recorded=given)["accuracy"]["accuracy"].tolist() for given in (turned, plain))
     assert turned == plain
     for options in ({"labels": mixed}, {"labels": labels, "groups": groups}, {"labels": labels, "sessions": groups}):
-        with pytest.raises(ValueError, match="^(labels|groups|sessions): another index than (frames|labels)"):
-            bt.audit(frames, **options)
+        refused("^(labels|groups|sessions): another index than (frames|labels)", lambda: bt.audit(frames, **options))
 
 
 def test_hidden_files_are_not_read_and_other_files_are_no_pickles(tmp_path: Path) -> None:
@@ -228,13 +223,11 @@ def test_hidden_files_are_not_read_and_other_files_are_no_pickles(tmp_path: Path
         assert bt.read_recorded(path).frames[:, 0].tolist() == [0, 0, 1, 1, 2, 2]
     for name in ("b.npy", "b.npz"):
         (tmp_path / name).write_bytes(b"Mac OS X")
-        with pytest.raises(ValueError, match=rf"{name}: cannot be read \(it begins neither as a \.npy nor as a \.npz file\); a complete NumPy file"):
-            bt.read_recorded(tmp_path / name)
+        refused(rf"{name}: cannot be read \(it begins neither as a \.npy nor as a \.npz file\); a complete NumPy file", lambda: bt.read_recorded(tmp_path / name))
 
 
 def test_empty_arrays_have_no_readings(tmp_path: Path) -> None:
     empty = np.zeros((0, 8, 8))
     np.save(tmp_path / "empty.npy", empty)
     for call in (lambda: bt.audit(empty), lambda: bt.audit(tmp_path / "empty.npy"), lambda: bt.read_recorded(tmp_path / "empty.npy")):
-        with pytest.raises(ValueError, match="no readings, shape .0, 8, 8.; at least one reading"):
-            call()
+        refused("no readings, shape .0, 8, 8.; at least one reading", lambda: call())

@@ -10,6 +10,8 @@ import bubbletouch as bt
 import numpy as np
 import pytest
 
+from conftest import refused
+
 N, TAXELS = 45, (6, 4)
 LABELS = np.repeat(["cup", "ball", "pen"], 15)
 SUBJECTS = np.array([f"s{touch % 5}" for touch in range(N)])
@@ -76,11 +78,9 @@ def test_hdf5_with_a_group_for_each_trial(trials: list[Any], usual: Any, tmp_pat
     same(found, trials, groups=SUBJECTS)
     found.groups = None
     assert accuracy(found) == usual
-    with pytest.raises(ValueError, match="a.h5: no attribute `trial_000@class`; one of label, subject"):
-        bt.read_recorded(file, "*/tactile", labels="*@class")
+    refused("a.h5: no attribute `trial_000@class`; one of label, subject", lambda: bt.read_recorded(file, "*/tactile", labels="*@class"))
     # Names that differ in numbers are listed once.
-    with pytest.raises(ValueError, match=r"a.h5: no array `frames`; one of trial_\*/tactile, trial_\*/timestamp$"):
-        bt.read_recorded(file)
+    refused(r"a.h5: no array `frames`; one of trial_\*/tactile, trial_\*/timestamp$", lambda: bt.read_recorded(file))
 
 
 def test_hdf5_with_the_label_in_the_path(trials: list[Any], tmp_path: Path) -> None:
@@ -109,10 +109,8 @@ def test_hdf5_tables_and_texts(trials: list[Any], tmp_path: Path) -> None:
     assert np.array_equal(found.frames, first) and found.labels is not None and found.labels.tolist() == rows["label"].tolist()
     found = bt.read_recorded(tmp_path / "c.h5", "data/taxels", labels="texts")
     assert found.labels is not None and found.labels.tolist() == LABELS.tolist()
-    with pytest.raises(ValueError, match="c.h5: no array `data`; one of data/t, data/taxels, data/label, ragged, texts"):
-        bt.read_recorded(tmp_path / "c.h5", "data")
-    with pytest.raises(ValueError, match="c.h5, array `ragged`: elements of type ndarray; numbers, in an array for each touch"):
-        bt.read_recorded(tmp_path / "c.h5", "ragged")
+    refused("c.h5: no array `data`; one of data/t, data/taxels, data/label, ragged, texts", lambda: bt.read_recorded(tmp_path / "c.h5", "data"))
+    refused("c.h5, array `ragged`: elements of type ndarray; numbers, in an array for each touch", lambda: bt.read_recorded(tmp_path / "c.h5", "ragged"))
 
 
 @pytest.mark.parametrize("version", [2, 3])
@@ -135,8 +133,7 @@ def test_zarr_formats(trials: list[Any], version: int, tmp_path: Path) -> None:
     for path in (tmp_path / "a.zarr" / "data" / "tactile").rglob("*"):
         if path.is_file() and not path.name.startswith((".z", "zarr")):
             path.write_bytes(path.read_bytes()[:20])
-    with pytest.raises(ValueError, match="a.zarr, array `data/tactile`: cannot be read"):
-        bt.read_recorded(tmp_path / "a.zarr", "data/tactile")
+    refused("a.zarr, array `data/tactile`: cannot be read", lambda: bt.read_recorded(tmp_path / "a.zarr", "data/tactile"))
 
 
 def test_a_column_for_each_taxel(trials: list[Any], usual: Any, tmp_path: Path) -> None:
@@ -155,8 +152,7 @@ def test_a_column_for_each_taxel(trials: list[Any], usual: Any, tmp_path: Path) 
     for label in (columns["label"], pa.array(columns["label"]).dictionary_encode()):
         pq.write_table(pa.table({**columns, "label": label}), tmp_path / "a.parquet")
         same(bt.read_recorded(tmp_path / "a.parquet", "taxel_*", **keys), trials, groups=SUBJECTS)
-    with pytest.raises(ValueError, match=r"a.parquet: no array `tax_\*`; one of time, taxel_\*, trial, label, subject"):
-        bt.read_recorded(tmp_path / "a.parquet", "tax_*", labels="label")
+    refused(r"a.parquet: no array `tax_\*`; one of time, taxel_\*, trial, label, subject", lambda: bt.read_recorded(tmp_path / "a.parquet", "tax_*", labels="label"))
 
 
 def test_a_file_for_each_touch(trials: list[Any], tmp_path: Path) -> None:
@@ -180,13 +176,11 @@ def test_a_file_for_each_touch(trials: list[Any], tmp_path: Path) -> None:
     by_group = sorted(range(N), key=lambda touch: (SUBJECTS[touch], LABELS[touch], touch))
     found = bt.read_recorded(f"{tmp_path}/npy/{{group}}/{{label}}/*.npy", touches="file")
     same(found, [trials[touch] for touch in by_group], LABELS[by_group], SUBJECTS[by_group])
-    with pytest.raises(ValueError, match=r"ball_s0_15.csv, array `time`: 0.0, 0.1, .*; one value for each touch"):
-        bt.read_recorded(tmp_path / "csv", "taxel_*", labels="time", touches="file")
+    refused(r"ball_s0_15.csv, array `time`: 0.0, 0.1, .*; one value for each touch", lambda: bt.read_recorded(tmp_path / "csv", "taxel_*", labels="time", touches="file"))
     with pytest.raises(FileNotFoundError, match=r"\*.h5: no such file or folder; .* or a pattern with \*, .label. or .group. of such files"):
         bt.read_recorded(tmp_path / "npy" / "{label}" / "*.h5")
     (tmp_path / "text" / "cup_s0_00.csv").write_text("1,2,3\n4,5\n")
-    with pytest.raises(ValueError, match="cup_s0_00.csv, line 2: 2 values; 3, as line 1 has"):
-        bt.read_recorded(tmp_path / "text", touches="file")
+    refused("cup_s0_00.csv, line 2: 2 values; 3, as line 1 has", lambda: bt.read_recorded(tmp_path / "text", touches="file"))
 
 
 def test_numpy_files(trials: list[Any], tmp_path: Path) -> None:
@@ -195,14 +189,12 @@ def test_numpy_files(trials: list[Any], tmp_path: Path) -> None:
     np.savez(tmp_path / "a.npz", frames=objects, labels=LABELS)
     np.save(tmp_path / "a.npy", objects, allow_pickle=True)
     for name in ("a.npz", "a.npy"):
-        with pytest.raises(ValueError, match=rf"{name}, array `frames`: pickled objects, which may run code; numbers, or numpy.load\(.*allow_pickle=True"):
-            bt.read_recorded(tmp_path / name)
+        refused(rf"{name}, array `frames`: pickled objects, which may run code; numbers, or numpy.load\(.*allow_pickle=True", lambda: bt.read_recorded(tmp_path / name))
     np.save(tmp_path / "b.npy", np.stack([trial[:5] for trial in trials]))
     found = bt.read_recorded(tmp_path / "b.npy", labels=LABELS, groups=list(SUBJECTS))
     assert found.labels is not None and found.groups is not None
     assert found.labels.tolist() == LABELS.tolist() and found.groups.tolist() == SUBJECTS.tolist()
-    with pytest.raises(ValueError, match=r"labels: shape \(4,\); \(45,\), a value for each touch"):
-        bt.read_recorded(tmp_path / "b.npy", labels=LABELS[:4])
+    refused(r"labels: shape \(4,\); \(45,\), a value for each touch", lambda: bt.read_recorded(tmp_path / "b.npy", labels=LABELS[:4]))
 
 
 def test_arrays_in_memory(trials: list[Any], usual: Any) -> None:
@@ -327,8 +319,7 @@ def test_each_fault_is_refused_in_each_format(kind: str, tmp_path: Path) -> None
     for number, (change, words) in enumerate(faults):
         file = tmp_path / f"a{number}.{kind}"
         written(kind, file, good | change)
-        with pytest.raises(ValueError, match=rf"a{number}\.{kind}.*{words}"):
-            bt.read_recorded(file, "frames_*" if is_table else "frames")
+        refused(rf"a{number}\.{kind}.*{words}", lambda: bt.read_recorded(file, "frames_*" if is_table else "frames"))
     file = tmp_path / f"a.{kind}"
     written(kind, file, good)
     found = bt.read_recorded(file, "frames_*" if is_table else "frames")
@@ -336,33 +327,27 @@ def test_each_fault_is_refused_in_each_format(kind: str, tmp_path: Path) -> None
         assert np.array_equal(np.asarray(getattr(found, name)).reshape(array.shape), array)
     accuracy(found)
     for name, words in (("labels", "no array `label`"), ("groups", "no array `label`"), ("touches", "no array `label`")):
-        with pytest.raises(ValueError, match=rf"a\.{kind}: {words}; one of "):
-            bt.read_recorded(file, "frames_*" if is_table else "frames", **{name: "label"})
+        refused(rf"a\.{kind}: {words}; one of ", lambda: bt.read_recorded(file, "frames_*" if is_table else "frames", **{name: "label"}))
     with pytest.raises(ValueError, match=rf"a\.{kind}, `groups`: 0, 1, 2 in touch cup; one value for all rows of a touch"):
         bt.read_recorded(file, "frames_*" if is_table else "frames", touches="labels")
     # Readings are checked by the study, which names the array and the position.
     written(kind, file, good | {"frames": np.where(np.arange(240).reshape(30, 8) == 26, np.nan, frames)})
-    with pytest.raises(ValueError, match=r"^recorded\.frames, frame 3, taxel 2: NaN; a finite number"):
-        accuracy(bt.read_recorded(file, "frames_*" if is_table else "frames"))
+    refused(r"^recorded\.frames, frame 3, taxel 2: NaN; a finite number", lambda: accuracy(bt.read_recorded(file, "frames_*" if is_table else "frames")))
     written(kind, file, {"frames": frames})
-    with pytest.raises(ValueError, match="key recorded.labels: no such key"):
-        accuracy(bt.read_recorded(file, "frames_*" if is_table else "frames"))
+    refused("key recorded.labels: no such key", lambda: accuracy(bt.read_recorded(file, "frames_*" if is_table else "frames")))
     written(kind, file, {"tactile": frames, "labels": labels})
     if kind != "csv":
-        with pytest.raises(ValueError, match=rf"a\.{kind}: no array `frames`; one of "):
-            bt.read_recorded(file)
+        refused(rf"a\.{kind}: no array `frames`; one of ", lambda: bt.read_recorded(file))
     if kind != "zarr":
         whole = file.read_bytes()
         for n in (len(whole) // 2, 10, 0):
             file.write_bytes(whole[:n])
-            with pytest.raises(ValueError, match=rf"a\.{kind}{'' if kind == 'csv' else '.*: cannot be read .*; a complete '}"):
-                bt.read_recorded(file, "frames_*" if is_table else "frames")
+            refused(rf"a\.{kind}{'' if kind == 'csv' else '.*: cannot be read .*; a complete '}", lambda: bt.read_recorded(file, "frames_*" if is_table else "frames"))
     if kind == "parquet":
         pa = pytest.importorskip("pyarrow")
         twice = pa.Table.from_arrays([pa.array([1.0]), pa.array([1.0])], names=["frames_0", "frames_0"])
         pytest.importorskip("pyarrow.parquet").write_table(twice, file)
-        with pytest.raises(ValueError, match=r"a\.parquet: cannot be read .column `frames_0` twice"):
-            bt.read_recorded(file, "frames_*")
+        refused(r"a\.parquet: column `frames_0` twice; each name once", lambda: bt.read_recorded(file, "frames_*"))
 
 
 def test_wrong_test_sets_are_refused_by_their_key() -> None:
@@ -379,5 +364,4 @@ def test_wrong_test_sets_are_refused_by_their_key() -> None:
         ({"frames_test": frames[:0]}, r"recorded\.frames_test: no readings, shape \(0, 8\); at least one reading"),
         ({"labels_test": None}, "key recorded.labels_test: no such key beside frames_test"),
     ]:
-        with pytest.raises(ValueError, match=words):
-            accuracy({**good, **change})
+        refused(words, lambda: accuracy({**good, **change}))

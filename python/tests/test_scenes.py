@@ -9,7 +9,7 @@ import bubbletouch as bt
 import numpy as np
 import pytest
 
-from conftest import Command
+from conftest import Command, refused
 
 SCENE: dict[str, Any] = {
     "title": "A tennis ball comes down on a palm and goes again",
@@ -69,10 +69,8 @@ def test_the_same_frames_as_the_commands(tmp_path: Path, command: Command) -> No
 
 
 def test_what_cannot_be_simulated_is_refused_by_its_key(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="output_hz"):
-        bt.simulate(SCENE | {"output_hz": -1.0})
-    with pytest.raises(ValueError, match="unknown field"):
-        bt.simulate(SCENE | {"wind": 3})
+    refused("output_hz", lambda: bt.simulate(SCENE | {"output_hz": -1.0}))
+    refused("unknown field", lambda: bt.simulate(SCENE | {"wind": 3}))
     with pytest.raises(FileNotFoundError):
         bt.simulate(tmp_path / "missing.toml")
 
@@ -98,8 +96,7 @@ def test_a_step_by_hand_is_the_scenes_own() -> None:
         still.step(0.1)
         assert same(still.observe(), frame)
     assert still.time == pytest.approx(2.0)
-    with pytest.raises(ValueError, match="reset"):
-        next(still)
+    refused("reset", lambda: next(still))
     still.reset()
     assert same(next(still), looped[0])
 
@@ -116,8 +113,7 @@ def test_objects_in_memory_are_touched_as_they_are(box: bt.Mesh) -> None:
     patch, pose = boxed.patch("palm"), np.array([0, 0, -1e-3, 1, 0, 0, 0])
     np.testing.assert_allclose(frame["deflection"], patch.press(box, pose), atol=1e-9)
     assert frame["n_touched"] >= 80
-    with pytest.raises(ValueError, match="surface_error_mm.*beside an object in memory"):
-        bt.simulate(SCENE | {"objects": [ball | {"object": tennis, "surface_error_mm": 1.0}]})
+    refused("surface_error_mm.*beside an object in memory", lambda: bt.simulate(SCENE | {"objects": [ball | {"object": tennis, "surface_error_mm": 1.0}]}))
 
 
 def arm(patch: dict[str, Any]) -> dict[str, Any]:
@@ -190,8 +186,7 @@ def test_what_cannot_be_set_is_refused() -> None:
         (lambda: simulation.reset(-1), "seed: -1"),
         (lambda: simulation.patch("plam"), "patch: `plam`; palm"),
     ]:
-        with pytest.raises(ValueError, match=said):
-            call()
+        refused(said, lambda: call())
 
 
 def test_a_frame_is_written_into_an_earlier_one() -> None:
@@ -212,7 +207,7 @@ def test_a_frame_is_written_into_an_earlier_one() -> None:
         (lambda frame: frame.pop("patches"), "out: no dict `patches`"),
         (lambda frame: frame["patches"].pop("palm"), "out, patches: no dict `palm`"),
         (lambda frame: frame["objects"]["ball"].pop("pose"), "out, objects, ball: .*`pose`"),
-        (lambda frame: frame["patches"]["palm"].update(force=np.zeros((16, 12))), r"`force` of shape \(12, 16\)"),
+        (lambda frame: frame["patches"]["palm"].update(force=np.zeros((16, 12))), r"palm, force: shape \(16, 12\); a float64 array in C order of shape \(12, 16\)"),
         (lambda frame: frame["patches"]["palm"].update(force=np.zeros((12, 16), np.float32)), "float64"),
         (lambda frame: frame["patches"]["palm"]["force"].setflags(write=False), "writeable"),
     ]:
@@ -221,6 +216,5 @@ def test_a_frame_is_written_into_an_earlier_one() -> None:
         before = {key: value.copy() for key, value in damaged.get("patches", {}).get("other", {}).items() if isinstance(value, np.ndarray)}
         simulation.set_object_pose("ball", [0, 0, 5e-3, 1, 0, 0, 0])
         simulation.step(0.01)
-        with pytest.raises(ValueError, match=said):
-            simulation.observe(out=damaged)
+        refused(said, lambda: simulation.observe(out=damaged))
         assert all(np.array_equal(damaged["patches"]["other"][key], value) for key, value in before.items())

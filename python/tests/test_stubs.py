@@ -20,7 +20,7 @@ EXAMPLES = sorted((Path(__file__).resolve().parents[1] / "examples").glob("*.py"
 def documented() -> Iterator[tuple[str, object, str]]:
     """Yields each docstring of the stub: its name, the documented object and the text."""
     for node in ast.parse(STUB.read_text()).body:
-        if not isinstance(node, ast.ClassDef | ast.FunctionDef):
+        if not isinstance(node, ast.ClassDef | ast.FunctionDef) or node.name.startswith("_"):
             continue
         there = getattr(_core, node.name)
         if text := ast.get_docstring(node):

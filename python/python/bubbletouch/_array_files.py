@@ -158,15 +158,26 @@ def _matching(pattern: Path) -> list[Path]:
 
 def open_file(file: Path) -> Source:
     kind = "Zarr" if file.is_dir() else _SUFFIXES[file.suffix.lower()]
-    if kind == "CSV":
-        return _open_table(file)
-    open_of = {"NumPy": _open_npz, "HDF5": _open_hdf5, "Zarr": _open_zarr, "Parquet": _open_parquet}[kind]
     try:
-        return open_of(file)
-    except (ImportError, FileNotFoundError, PermissionError):
-        raise
+        source = {"CSV": _open_table, "NumPy": _open_npz, "HDF5": _open_hdf5, "Zarr": _open_zarr, "Parquet": _open_parquet}[kind](file)
     except Exception as error:
+        # The errors of tables in text files name the file.
+        if kind == "CSV" or isinstance(error, ImportError | FileNotFoundError | PermissionError):
+            raise
         raise ValueError(f"{file}: cannot be read ({error}); a complete {kind} file") from None
+    if len(set(source.names)) < len(source.names):
+        twice = next(name for name in source.names if source.names.count(name) > 1)
+        raise ValueError(f"{file}: column `{twice}` twice; each name once")
+    return source
+
+
+def _attributes_of(opened: Any) -> Callable[[str], Mapping[str, Any]]:
+    """Returns the function that returns the attributes of an array or a group of an HDF5 or Zarr file; an empty name is the file itself."""
+    def attributes(owner: str) -> Mapping[str, Any]:
+        found: Mapping[str, Any] = (opened[owner] if owner else opened).attrs
+        return found
+
+    return attributes
 
 
 def _open_npz(file: Path) -> Source:
@@ -207,11 +218,7 @@ def _open_hdf5(file: Path) -> Source:
         values: Array = opened[table].fields(column)[()] if table and isinstance(opened[table], h5py.Dataset) else opened[name][()]
         return values
 
-    def attributes(owner: str) -> Mapping[str, Any]:
-        found: Mapping[str, Any] = (opened[owner] if owner else opened).attrs
-        return found
-
-    return Source(str(file), names, read, attributes, opened.close)
+    return Source(str(file), names, read, _attributes_of(opened), opened.close)
 
 
 def _open_zarr(file: Path) -> Source:
@@ -231,20 +238,13 @@ def _open_zarr(file: Path) -> Source:
 
     visit(opened, "")
 
-    def attributes(owner: str) -> Mapping[str, Any]:
-        found: Mapping[str, Any] = (opened[owner] if owner else opened).attrs
-        return found
-
-    return Source(str(file), sorted(names, key=natural), lambda name: opened[name][...], attributes)
+    return Source(str(file), sorted(names, key=natural), lambda name: opened[name][...], _attributes_of(opened))
 
 
 def _open_parquet(file: Path) -> Source:
     parquet = optional_package("pyarrow.parquet", file)
     opened = parquet.ParquetFile(file)
     names = list(opened.schema_arrow.names)
-    twice = [name for name in names if names.count(name) > 1]
-    if twice:
-        raise ValueError(f"column `{twice[0]}` twice; each name once")
 
     def read(name: str) -> Array:
         return of_column(opened.read(columns=[name]).column(name))
@@ -261,12 +261,8 @@ def _open_table(file: Path) -> Source:
         # Without names of columns, all columns but those that count the rows are readings.
         note_counts(str(file), [str(column + 1) for column in range(len(columns)) if column not in kept])
         return Source(str(file), ["frames"], lambda name: np.stack([_of_cells(columns[column]) for column in kept], axis=1))
-    twice = [name for name in names if names.count(name) > 1]
-    if twice:
-        raise ValueError(f"{file}: column `{twice[0]}` twice; each name once")
-    return Source(
-        str(file), names, lambda name: _of_cells(columns[names.index(name)]), is_table=True, readings=[names[column] for column in kept]
-    )
+    readings = [names[column] for column in kept]
+    return Source(str(file), names, lambda name: _of_cells(columns[names.index(name)]), is_table=True, readings=readings)
 
 
 def note_counts(place: str, columns: Sequence[str]) -> None:

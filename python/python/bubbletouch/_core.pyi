@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import Any, Literal, TypeAlias, TypeVar, final, overload
+from typing import Any, Literal, TypeAlias, TypedDict, TypeVar, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -26,7 +26,6 @@ __all__ = [
     "Solid",
     "SphereUnion",
     "Step",
-    "_kernel_pace",
     "_panic",
     "advise",
     "choose_svm",
@@ -46,6 +45,19 @@ _Unit: TypeAlias = Literal["m", "cm", "mm", "in"]
 _Model: TypeAlias = Mesh | SphereUnion
 _Objects: TypeAlias = _Model | Sequence[_Model]
 _Out = TypeVar("_Out", NDArray[np.float32], NDArray[np.float64])
+
+class _ReadOptions(TypedDict, total=False):
+    """Options of Skin.read that the skins of MuJoCo and Drake have, too."""
+
+    output: Literal["deflection", "force"]
+    reach: float | None
+    out: NDArray[np.float64] | None
+    wrenches: NDArray[np.float64] | None
+    contacts: NDArray[np.int64] | None
+    taxel_forces: NDArray[np.float64] | None
+    pair_forces: NDArray[np.float64] | None
+    residuals: NDArray[np.float64] | None
+    travels: NDArray[np.float64] | None
 
 class InternalError(RuntimeError):
     """A bug of bubbletouch itself, wherever it was called from: its text asks for a report."""
@@ -1219,6 +1231,9 @@ class KernelSvm:
     def decision_values(self, features: ArrayLike) -> NDArray[np.float64]:
         """Returns the decision values (n, n_problems); positive values favour a problem's positive class."""
 
+    def class_scores(self, values: ArrayLike) -> NDArray[np.float64]:
+        """Returns the scores (n, n_classes) of decision values (n, n_problems). A score of one-vs-one is the number of votes plus a term between −1/3 and 1/3."""
+
     @property
     def problems(self) -> list[dict[str, Any]]:
         """Binary problems of the SVM, one dict each. A dict contains the classes, the training rows, the signed multipliers, ρ (negative bias), the objective,
@@ -1236,15 +1251,7 @@ class LinearModel:
     """
 
     @staticmethod
-    def train(
-        features: ArrayLike,
-        labels: ArrayLike,
-        c: float,
-        is_balanced: bool,
-        tolerance: float,
-        max_passes: int,
-        seed: int,
-    ) -> LinearModel:
+    def train(features: ArrayLike, labels: ArrayLike, params: dict[str, Any]) -> LinearModel:
         """Trains a linear SVM on features (n, m) and labels (n,). Raises ValueError if an argument is invalid."""
 
     def labels(self, features: ArrayLike) -> NDArray[np.int64]:
@@ -1336,21 +1343,11 @@ def rename_old_results(folder: _Path) -> None:
     """Renames a result folder to FOLDER.1, FOLDER.2, …; does nothing if it does not exist."""
 
 def run_study(
-    text: str,
-    place: str,
-    name: str,
-    folder: _Path,
-    out: _Path,
-    seed: int | None = None,
-    callback: Callable[[str, int, int], object] | None = None,
-    classifiers: list[tuple[str, str, Any]] = ...,
-    features: list[tuple[str, str, Any]] = ...,
-    shard: str | None = None,
-    merges: bool = False,
-    threads: int | None = None,
+    study: dict[str, Any], callback: Callable[[str, int, int], object] | None = None
 ) -> list[tuple[str, str, str, dict[str, Any]]]:
-    """Runs a study (TOML text) and writes its results into a folder. Returns the file name, title, note and columns of each table. Classifiers and features are
-    tuples of name, version and object. A shard, such as `3/8`, writes its journal alone and returns no tables.
+    """Runs a study and writes its results into a folder. Returns the file name, title, note and columns of each table. The study is a dict of text (TOML), place,
+    name, folder, out, seed, classifiers, features, shard, merges and threads. Classifiers and features are tuples of name, version and object. A shard, such as
+    `3/8`, writes its journal alone and returns no tables.
     """
 
 def advise(
@@ -1379,13 +1376,6 @@ def with_recorded(text: str, place: str, json: str) -> str:
 def write_frame(path: _Path, frame: ArrayLike, pitch: float) -> None:
     """Writes the deflections (ny, nx; metres) of a grid with this pitch (metres) to a file. The extension selects a picture (.png), a table (.csv) or
     arrays (.npz). Raises OSError if the file cannot be written, and ValueError if an argument is invalid.
-    """
-
-def _kernel_pace(
-    patch: Patch, object: _Model, poses: ArrayLike, depth: ArrayLike, seconds: float
-) -> float:
-    """Measures how many taxel readings per second the press kernel computes on one thread, without output arrays. The number is the reference for presses that
-    fill arrays.
     """
 
 def _panic() -> None:

@@ -26,6 +26,8 @@ from numpy.typing import NDArray
 
 Rows = NDArray[np.float64]
 Given = tuple[str, str, Any]
+# Classifiers, and features.
+Hosted = tuple[list[Given], list[Given]]
 
 # Hexadecimal digits of the version that is derived from code and parameters. With fewer digits, two versions may be equal.
 _DIGITS = 12
@@ -353,7 +355,7 @@ class Function:
         return made
 
 
-def identified(classifiers: Mapping[str, Any] | None, features: Mapping[str, Any] | None) -> tuple[list[Given], list[Given]]:
+def identified(classifiers: Mapping[str, Any] | None, features: Mapping[str, Any] | None) -> Hosted:
     """Returns name, version and object of the given classifiers and features."""
     def has_fit(thing: Any) -> bool:
         return not isinstance(thing, type) and hasattr(thing, "fit") and hasattr(thing, "predict")
@@ -362,7 +364,7 @@ def identified(classifiers: Mapping[str, Any] | None, features: Mapping[str, Any
     return list(of_classifiers), list(_named("features", features, callable, "a function of frames (n, m)"))
 
 
-def hosted(host: Host, given: tuple[list[Given], list[Given]]) -> tuple[list[Given], list[Given]]:
+def hosted(host: Host, given: Hosted) -> Hosted:
     """Returns the classifiers and features as the library calls them."""
     classifiers = [(name, version, Trainer(host, estimator)) for name, version, estimator in given[0]]
     return classifiers, [(name, version, Function(host, function)) for name, version, function in given[1]]

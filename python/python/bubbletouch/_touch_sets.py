@@ -132,18 +132,19 @@ def joined(parts: list[Part], how: tuple[bool, str | Mapping[str, str] | None]) 
 
 def _padded(places: list[str], parts: Sequence[list[Array] | Array], name: str) -> tuple[Array, Array | None]:
     """Returns the touches as one array, padded with NaN to the longest touch, and the lengths of touches if they differ."""
+    frames = f"frames {name}".rstrip()
     if all(isinstance(part, np.ndarray) for part in parts):
         for place, part in zip(places, parts, strict=True):
-            _same_shape(place, name, np.shape(part)[1:], np.shape(parts[0])[1:])
+            _same_shape(place, frames, np.shape(part)[1:], np.shape(parts[0])[1:])
         return np.concatenate([np.asarray(part) for part in parts]), None
     touches = [(place, np.asarray(touch)) for place, part in zip(places, parts, strict=True) for touch in part]
     for place, touch in touches:
         if touch.ndim < 2:
-            raise ValueError(f"{place}, frames {name}: shape {touch.shape} of a touch; frames × taxels, or frames × rows × columns")
-        _same_shape(place, name, touch.shape[1:], touches[0][1].shape[1:])
-    return padded(f"{places[0]}, frames {name}", [touch for _, touch in touches])
+            raise ValueError(f"{place}, {frames}: shape {touch.shape} of a touch; frames × taxels, or frames × rows × columns")
+        _same_shape(place, frames, touch.shape[1:], touches[0][1].shape[1:])
+    return padded(f"{places[0]}, {frames}", [touch for _, touch in touches])
 
 
-def _same_shape(place: str, name: str, given: tuple[int, ...], allowed: tuple[int, ...]) -> None:
+def _same_shape(place: str, frames: str, given: tuple[int, ...], allowed: tuple[int, ...]) -> None:
     if given != allowed:
-        raise ValueError(f"{place}, frames {name}: frames of shape {given}; {allowed}, as other touches have")
+        raise ValueError(f"{place}, {frames}: frames of shape {given}; {allowed}, as other touches have")

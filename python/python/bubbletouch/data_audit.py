@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from bubbletouch import _core
 from bubbletouch._arrays import Array, as_array, as_keys, as_numbers, check_frames, padded
+from bubbletouch._numbers import whole
 from bubbletouch.recorded import Recorded, named
 from bubbletouch.recorded_files import read_recorded
 from bubbletouch.study import Table
@@ -138,10 +139,10 @@ def audit(
 
     Raises ValueError if an argument is invalid, and OSError if a file does not exist or cannot be written.
     """
-    if not 399 <= permutations <= 100_000:
-        raise ValueError(f"permutations: {permutations}; 399 to 100000")
     data: Any = frames
     lengths: Any = None
+    counts = [whole("untouched", taxel, least=0) for taxel in untouched]
+    seed, permutations = whole("seed", seed, least=0), whole("permutations", permutations, least=399, most=100_000)
     if _is_path(data) and _needs_reader(Path(data)):
         data = read_recorded(data)
     if isinstance(data, Recorded):
@@ -158,7 +159,8 @@ def audit(
     kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
     folder = Path(kept.name) if kept is not None else Path(out or "")
     name = Path(data).stem if _is_path(data) else "arrays" if out is None else folder.name
-    found = _of_files(given, (order, columns, grid, full_scale, before_contact, list(untouched), split, None if not_claimed is None else list(not_claimed), seed, permutations, name, folder))
+    options = (order, columns, grid, full_scale, before_contact, counts, split, None if not_claimed is None else list(not_claimed), seed, permutations)
+    found = _of_files(given, (*options, name, folder))
     return Audit(folder, found, kept)
 
 
@@ -169,7 +171,7 @@ def _of_files(given: Mapping[str, Any], options: tuple[Any, ...]) -> _Tables:
         for key, path in files.items():
             if not path.exists():
                 raise FileNotFoundError(f"{_ARGUMENTS.get(key, key)}: {path}: no such file; an array, or the path of a file")
-        arrays = {key: value for key, value in given.items() if value is not None and key not in files}
+        arrays = {key: value for key, value in given.items() if (value is not None or key == "data") and key not in files}
         # Sessions and times have values of the touches of both sets.
         shared = () if "frames_test" not in given else ("sessions", "times")
         check_frames({key.replace("data", "frames"): value for key, value in arrays.items() if key not in shared})

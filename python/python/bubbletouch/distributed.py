@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from bubbletouch import _core
-from bubbletouch._foreign import Given, Host, hosted, identified, pickler
+from bubbletouch._foreign import Host, Hosted, hosted, identified, pickler
 from bubbletouch.recorded import Recorded, named, with_paths
 from bubbletouch.study import Study, StudySource
 
@@ -119,7 +119,7 @@ def run(
     finally:
         for task in shards:
             task.cancel()
-    tables = _core.run_study(out=results, callback=None, **source.call(), **_hosted(given), merges=True)
+    tables = _core.run_study(source.call(results, hosted(Host(), given), merges=True))
     return Study(results, tables, kept)
 
 
@@ -139,9 +139,9 @@ def bubbletouch_shard(source: StudySource, files: Mapping[str, bytes], code: byt
         paths = {path: str(Path(kept) / Path(path).name) for path in files}
         for path, content in files.items():
             Path(paths[path]).write_bytes(content)
-        call = replace(source, recorded=with_paths(source.recorded, paths)).call()
+        moved = replace(source, recorded=with_paths(source.recorded, paths))
         try:
-            _core.run_study(out=out, callback=None, **call, **_hosted(given), shard=shard, threads=threads)
+            _core.run_study(moved.call(out, hosted(Host(), given), shard=shard, threads=threads))
         except ValueError as error:
             raise named(error, {paths[path]: key for path, key in source.files.items()}) from error.__cause__
         return (out / file).read_bytes()
@@ -161,7 +161,7 @@ def _same(files: dict[str, bytes]) -> dict[str, bytes]:
     return files
 
 
-def _pickled(given: tuple[list[Given], list[Given]]) -> bytes:
+def _pickled(given: Hosted) -> bytes:
     """Returns classifiers and features for the workers."""
     for what, things in zip(("classifier", "features"), given, strict=True):
         for name, _, thing in things:
@@ -172,8 +172,3 @@ def _pickled(given: tuple[list[Given], list[Given]]) -> bytes:
                 raise ValueError(f"{what} {name}: cannot be sent to the workers ({type(error).__name__}: {error}); {allowed}") from error
     code: bytes = pickler().dumps(given)
     return code
-
-
-def _hosted(given: tuple[list[Given], list[Given]]) -> dict[str, Any]:
-    classifiers, features = hosted(Host(), given)
-    return {"classifiers": classifiers, "features": features}

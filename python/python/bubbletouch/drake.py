@@ -9,7 +9,7 @@ The patches do not affect the dynamics. The interface equals bubbletouch.mujoco.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,9 @@ from pydrake.systems.framework import Context
 
 import bubbletouch._core as _core
 from bubbletouch._contact_forces import contact_loads
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 Array = NDArray[np.float64]
 
@@ -67,7 +70,7 @@ class Skin:
             carriers=[groups.index(body) for body in carriers],
         )
 
-    def read(self, context: Context, *, match: Literal["normal_force", "contact_force"] | None = None, **options: Any) -> Array:
+    def read(self, context: Context, *, match: Literal["normal_force", "contact_force"] | None = None, **options: Unpack[_core._ReadOptions]) -> Array:
         """Returns the readings at the poses of the diagram's context, (n_taxels,). The options are those of bubbletouch.Skin.read; `match` is the one of
         bubbletouch.mujoco.Skin.read, with the point contacts of the plant's contact results."""
         plant = self._plant.GetMyContextFromRoot(context)

@@ -49,20 +49,26 @@ class _Classifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     """Common base class of the estimators; it maps classes of any type to the labels 0, 1, … of the library."""
 
     classes_: NDArray[Any]
+    _model: _core.KernelSvm | _core.LinearModel
 
-    def _numbered(self, X: ArrayLike, y: ArrayLike) -> tuple[Floats, NDArray[np.int64]]:
-        """Checks the training data and sets classes_. Returns the features (n, m) and the class numbers (n,) from 0."""
+    def _numbered(self, X: ArrayLike, y: ArrayLike) -> tuple[Floats, NDArray[np.int64], NDArray[Any]]:
+        """Checks the training data. Returns the features (n, m), the class numbers (n,) from 0, and the classes, which are set after training."""
         features, labels = validate_data(self, X, y, dtype=np.float64, order="C")
         check_classification_targets(labels)
-        self.classes_, numbers = np.unique(labels, return_inverse=True)
-        if len(self.classes_) < 2:
-            raise ValueError(f"labels: 1 class ({self.classes_[0]!r}); at least two classes")
-        return features, numbers
+        classes, numbers = np.unique(labels, return_inverse=True)
+        if len(classes) < 2:
+            raise ValueError(f"labels: 1 class ({classes[0]}); at least two classes")
+        return features, numbers, classes
 
     def _features(self, X: ArrayLike) -> Floats:
         """Returns the checked features (n, m) of a prediction. Raises NotFittedError before fit()."""
         check_is_fitted(self)
         return cast(Floats, validate_data(self, X, dtype=np.float64, order="C", reset=False))
+
+    def predict(self, X: ArrayLike) -> NDArray[Any]:
+        """Returns the predicted classes (n,) of features (n, m)."""
+        features = self._features(X)
+        return self.classes_[self._model.labels(features)]
 
     def _warn_of(self, n_capped: int, limit: str) -> None:
         """Issues a ConvergenceWarning if binary problems stopped at an iteration limit."""
@@ -73,7 +79,7 @@ class _Classifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
 
 def _is_balanced(class_weight: str | None) -> bool:
     """Returns whether the classes have balanced weights. Raises ValueError for other weights."""
-    if class_weight not in (None, "balanced"):
+    if class_weight is not None and (not isinstance(class_weight, str) or class_weight != "balanced"):
         raise ValueError(f"class_weight: `{class_weight}`; None or balanced")
     return class_weight is not None
 
@@ -93,6 +99,7 @@ class SVC(_Classifier):
     vectors per class), problems_ (each binary problem and its solution), n_capped_ (number of problems that stopped at the iteration cap).
     """
 
+    _model: _core.KernelSvm
     problems_: list[dict[str, Any]]
     support_: NDArray[np.int64]
     n_support_: NDArray[np.int64]
@@ -148,10 +155,9 @@ class SVC(_Classifier):
         """Trains on features (n, m) and labels (n,), and returns the estimator. Ctrl-C raises KeyboardInterrupt at once; the training thread ends
         later.
         """
-        features, numbers = self._numbered(X, y)
+        features, numbers, classes = self._numbered(X, y)
         self._model = _core.KernelSvm.train(features, numbers, self._params(features.shape[1]))
-        # A later set_params() must not change the fitted model.
-        self._fitted_multi_class = self.multi_class
+        self.classes_ = classes
         self.problems_ = self._model.problems
         support = [p["rows"][p["coefficients"] != 0] for p in self.problems_]
         self.support_ = np.unique(np.concatenate(support))
@@ -159,11 +165,6 @@ class SVC(_Classifier):
         self.n_capped_ = self._model.n_capped
         self._warn_of(self.n_capped_, "the iteration cap")
         return self
-
-    def predict(self, X: ArrayLike) -> NDArray[Any]:
-        """Returns the predicted classes (n,) of features (n, m)."""
-        features = self._features(X)
-        return self.classes_[self._model.labels(features)]
 
     def decision_values(self, X: ArrayLike) -> Floats:
         """Returns the decision values (n, n_problems) of features (n, m). Positive values favour the first class of a binary problem. Sums over
@@ -180,19 +181,9 @@ class SVC(_Classifier):
         increases with the sum of the decision values of the class.
         """
         values = self.decision_values(X)
-        n_classes = len(self.classes_)
-        if n_classes == 2:
+        if len(self.classes_) == 2:
             return -values[:, 0] if values.shape[1] == 1 else (values[:, 1] - values[:, 0]) / 2
-        if self._fitted_multi_class == "ovr":
-            return values
-        votes, sums = np.zeros((2, len(values), n_classes))
-        for problem, value in zip(self.problems_, values.T, strict=True):
-            first, second = problem["positive"], problem["negative"]
-            votes[:, first] += value > 0
-            votes[:, second] += value <= 0
-            sums[:, first] += value
-            sums[:, second] -= value
-        return cast(Floats, votes + sums / (3 * (np.abs(sums) + 1)))
+        return self._model.class_scores(values)
 
 
 class LinearSVC(_Classifier):
@@ -211,6 +202,7 @@ class LinearSVC(_Classifier):
     that stopped at max_iter).
     """
 
+    _model: _core.LinearModel
     coef_: Floats
     intercept_: Floats
     n_iter_: int
@@ -235,17 +227,16 @@ class LinearSVC(_Classifier):
         """Trains on features (n, m) and labels (n,), and returns the estimator. Ctrl-C raises KeyboardInterrupt at once; the training thread ends
         later.
         """
-        features, numbers = self._numbered(X, y)
-        seed = 0 if self.random_state is None else whole("random_state", self.random_state, least=0)
-        self._model = _core.LinearModel.train(
-            features,
-            numbers,
-            real("C", self.C, above=0),
-            _is_balanced(self.class_weight),
-            real("tol", self.tol, above=0),
-            whole("max_iter", self.max_iter, least=1),
-            seed,
-        )
+        features, numbers, classes = self._numbered(X, y)
+        params = {
+            "c": real("C", self.C, above=0),
+            "tolerance": real("tol", self.tol, above=0),
+            "is_balanced": _is_balanced(self.class_weight),
+            "max_passes": whole("max_iter", self.max_iter, least=1),
+            "seed": 0 if self.random_state is None else whole("random_state", self.random_state, least=0),
+        }
+        self._model = _core.LinearModel.train(features, numbers, params)
+        self.classes_ = classes
         self.coef_, self.intercept_ = self._model.weights, self._model.bias
         if len(self.classes_) == 2:
             self.coef_ = (self.coef_[1:] - self.coef_[:1]) / 2
@@ -254,11 +245,6 @@ class LinearSVC(_Classifier):
         self.n_capped_ = self._model.n_capped
         self._warn_of(self.n_capped_, f"max_iter = {self.max_iter}")
         return self
-
-    def predict(self, X: ArrayLike) -> NDArray[Any]:
-        """Returns the predicted classes (n,) of features (n, m)."""
-        features = self._features(X)
-        return self.classes_[self._model.labels(features)]
 
     def decision_function(self, X: ArrayLike) -> Floats:
         """Returns scores of features (n, m).
@@ -307,8 +293,10 @@ class GridSearch(_Classifier):
 
     def fit(self, X: ArrayLike, y: ArrayLike, groups: ArrayLike | None = None) -> GridSearch:
         """Chooses C and γ on features (n, m) and labels (n,), trains best_estimator_ on all rows, and returns the GridSearch."""
-        features, numbers = self._numbered(X, y)
+        features, numbers, classes = self._numbered(X, y)
         estimator = SVC() if self.estimator is None else self.estimator
+        if not isinstance(estimator, SVC):
+            raise TypeError(f"estimator: {estimator!r}; an SVC of bubbletouch.learning")
         split = cast(
             "Callable[..., Iterable[tuple[NDArray[Any], NDArray[Any]]]]",
             check_cv(self.cv, numbers, classifier=True).split,
@@ -319,9 +307,10 @@ class GridSearch(_Classifier):
             for fold, (train, test) in enumerate(split(features, numbers, groups), start=1)
         ]
         params = estimator._params(features.shape[1])
-        scales = [real("gamma_scales", scale, above=0) for scale in self.gamma_scales or ()]
+        scales = [real("gamma_scales", scale, above=0) for scale in (() if self.gamma_scales is None else self.gamma_scales)]
         candidates = [real("C", c, above=0) for c in self.C]
         chosen = _core.choose_svm(features, numbers, params, folds, candidates, scales)
+        self.classes_ = classes
         self.results_ = [dict(zip(("C", "gamma", "accuracy"), one, strict=True)) for one in chosen["tried"]]
         self.best_score_ = chosen["accuracy"]
         self.best_params_ = {"C": chosen["C"]}

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bubbletouch._numbers import whole
-from bubbletouch.recording import Floats, Recording
+from bubbletouch.recording import Recording
 
 __all__ = ["write_lerobot"]
 
@@ -106,7 +106,7 @@ def _columns(
     windows = np.maximum(newest[:, None] + np.arange(1 - window, 1), 0)
     columns: dict[str, NDArray[Any]] = {"timestamp": at.astype(np.float32)}
     for name, felt in episode.patches.items():
-        values: Floats | None = getattr(felt, quantity)
+        values = {"deflection": felt.deflection, "force": felt.force, "signal": felt.signal}.get(quantity)
         if values is None:
             raise ValueError(f"quantity: {quantity}, which patch `{name}` has not; deflection or force")
         columns[f"observation.touch.{name}"] = values.reshape(len(time), -1)[windows].astype(np.float32)

@@ -101,19 +101,18 @@ def with_files(table: Mapping[str, Any], folder: Path, files: dict[str, str], pl
             if isinstance(value, str) or not all(isinstance(sensor, Mapping) for sensor in value):
                 raise ValueError(f"{place}.sensors: {type(value).__name__}; a list of dicts, each with name and frames")
             written[key] = [with_files(sensor, folder, files, f"{place}.sensors[{number}]") for number, sensor in enumerate(value, 1)]
+        elif isinstance(value, str | PathLike):
+            written[key] = value
         elif key in _FRAMES and (isinstance(value, list | tuple) or getattr(value, "dtype", None) == object):
             frames, lengths = padded(f"{place}.{key}", list(value))
             stored(key, frames)
             if lengths is not None:
                 stored(key.replace("frames", "lengths"), lengths)
-        elif key in _ARRAYS and value is not None and not isinstance(value, str | PathLike) and (key != "zero" or np.ndim(value) > 0):
+        elif key in _ARRAYS and value is not None and (key != "zero" or np.ndim(value) > 0):
             stored(key, as_array(f"{place}.{key}", value))
-        elif key == "splits" and value is not None and not isinstance(value, str | PathLike):
-            written[key] = _splits(folder, f"{place}.{key}", value)
+        elif key in ("splits", "layout") and value is not None:
+            written[key] = (_splits if key == "splits" else _layout)(folder, f"{place}.{key}", value)
             files[written[key]] = f"{place}.{key}"
-        elif key == "layout" and value is not None and not isinstance(value, str | PathLike):
-            written[key] = _layout(folder, value)
-            files[written[key]] = f"{place}.layout"
         elif value is not None:
             written[key] = value
     return written
@@ -138,12 +137,12 @@ def with_paths(table: Mapping[str, Any], paths: Mapping[str, str]) -> dict[str, 
     return {key: moved(value) for key, value in table.items()}
 
 
-def _layout(folder: Path, value: Any) -> str:
+def _layout(folder: Path, key: str, value: Any) -> str:
     """Writes a layout file of a patch, of positions or of positions and axes, and returns its path."""
     taxels = np.hstack([value.centers, value.axes]) if isinstance(value, Patch) else np.asarray(value)
     if taxels.dtype.kind not in "fiu" or taxels.ndim != 2 or taxels.shape[1] not in (3, 6):
         allowed = "a Patch, or positions (n, 3) in metres, or positions and axes (n, 6)"
-        raise ValueError(f"recorded.layout: shape {taxels.shape} of {taxels.dtype}; {allowed}")
+        raise ValueError(f"{key}: shape {taxels.shape} of {taxels.dtype}; {allowed}")
     # Positions alone are taxels whose axes point along +z.
     axes = taxels[:, 3:] if taxels.shape[1] == 6 else np.tile([0.0, 0.0, 1.0], (len(taxels), 1))
     content = io.BytesIO()

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from bubbletouch import _core
 from bubbletouch._core import Mesh, Simulation, SphereUnion
-from bubbletouch._foreign import Host, hosted, identified
+from bubbletouch._foreign import Host, Hosted, hosted, identified
 from bubbletouch.recorded import Recorded, named, with_files
 
 Callback = Callable[[str, int, int], object]
@@ -167,7 +167,7 @@ def run(
     host = Host(processes)
     given = hosted(host, identified(classifiers, features))
     try:
-        tables = _core.run_study(**source.call(), out=source.results, callback=callback, classifiers=given[0], features=given[1])
+        tables = _core.run_study(source.call(source.results, given), callback)
     except ValueError as error:
         raise named(error, source.files) from error.__cause__
     finally:
@@ -216,10 +216,11 @@ class StudySource:
         table = with_files(table, results / "recorded", files)
         return cls(text, place, name, folder, seed, results, table, files), kept
 
-    def call(self) -> dict[str, Any]:
-        """Returns the arguments of run_study that describe the study."""
+    def call(self, out: Path, given: Hosted, *, shard: str | None = None, merges: bool = False, threads: int = 0) -> dict[str, Any]:
+        """Returns the argument of run_study, given the result folder, and the classifiers and features."""
         text = _core.with_recorded(self.text, self.place, _json(self.recorded)) if self.recorded else self.text
-        return {"text": text, "place": self.place, "name": self.name, "folder": self.folder, "seed": self.seed}
+        study = {"text": text, "place": self.place, "name": self.name, "folder": self.folder, "seed": self.seed, "out": out}
+        return study | {"classifiers": given[0], "features": given[1], "shard": shard, "merges": merges, "threads": threads}
 
 
 def _text(study: str | PathLike[str] | Mapping[str, Any]) -> tuple[str, str, str, Path]:
@@ -227,7 +228,14 @@ def _text(study: str | PathLike[str] | Mapping[str, Any]) -> tuple[str, str, str
     if isinstance(study, Mapping):
         return _core.toml_of(_json(study)), "study", "study", Path()
     path = Path(study)
-    return path.read_text(encoding="utf-8"), str(path), path.stem, path.parent
+    return _content(path), str(path), path.stem, path.parent
+
+
+def _content(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: {error}; a TOML file in UTF-8") from None
 
 
 def advise(
@@ -285,7 +293,7 @@ def simulate(scene: str | PathLike[str] | Mapping[str, Any]) -> Simulation:
         tables, models = _in_memory(scene)
         return Simulation(_core.toml_of(_json(tables)), "scene", Path(), models)
     path = Path(scene)
-    return Simulation(path.read_text(encoding="utf-8"), str(path), path.parent, {})
+    return Simulation(_content(path), str(path), path.parent, {})
 
 
 def _in_memory(scene: Mapping[str, Any]) -> tuple[Mapping[str, Any], dict[str, Mesh | SphereUnion]]:

@@ -1,7 +1,7 @@
 //! Arguments that describe the layout and the taxels of a patch.
 
 use crate::arrays::{Object, array, each, points, whole_number, whole_numbers};
-use crate::errors::{bad_input, exception};
+use crate::errors::{bad_input, exception, one_of};
 use bubbletouch::geometry::Aabb;
 use bubbletouch::world::{DrapeRegion, Layout, MissingTaxels, Taxel};
 use pyo3::prelude::*;
@@ -106,13 +106,9 @@ pub fn drape_region(
 
 /// Converts the argument `missing`, which states what happens to taxels that meet no outer face.
 pub fn missing_taxels(given: &str) -> PyResult<MissingTaxels> {
-    match given {
-        "error" => Ok(MissingTaxels::Refuse),
-        "drop" => Ok(MissingTaxels::Drop),
-        other => Err(bad_input(
-            "missing",
-            format!("{other:?}"),
-            "\"error\" or \"drop\"",
-        )),
-    }
+    let known = [
+        ("error", MissingTaxels::Refuse),
+        ("drop", MissingTaxels::Drop),
+    ];
+    one_of("missing", given, &known)
 }

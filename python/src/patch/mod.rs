@@ -3,4 +3,5 @@
 mod arguments;
 mod patch_class;
 
+pub use arguments::side;
 pub use patch_class::{Patch, frame_shape};

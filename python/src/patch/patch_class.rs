@@ -8,6 +8,7 @@ use crate::batch::{Spare, n_threads};
 use crate::errors::{check_folder, check_readable, exception, guarded, warn};
 use crate::length_unit::unit_of;
 use crate::mesh::Mesh;
+use crate::model::model_of;
 use crate::poses::Poses;
 use crate::press::batch_press::{Wanted, press};
 use crate::press::goal::Goal;
@@ -274,6 +275,7 @@ impl Patch {
                     on_sphere(sphere, drape(facets(sphere).map_err(exception)?)?.0)
                 }
                 Err(_) => {
+                    model_of("mesh", mesh)?;
                     let mesh = mesh.cast::<Mesh>()?.get();
                     let (layout, orientation) = drape(mesh.triangle_mesh().clone())?;
                     mesh.warn_if_turned(py, &orientation)?;

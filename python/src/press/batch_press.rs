@@ -1,24 +1,19 @@
 //! Batches of presses, which write deflections into a NumPy array.
 
-use crate::arrays::{Object, shape_of};
+use crate::arrays::Object;
 use crate::batch::for_each;
-use crate::errors::{bad_input, exception};
-use crate::model::Objects;
+use crate::errors::bad_input;
+use crate::output_array::{output_array, writable};
 use crate::patch::Patch;
-use crate::poses::Poses;
 use crate::press::contacts::{Contacts, OfPose};
-use crate::press::goal::Goal;
+use crate::press::goal::{Goal, Presses};
 use crate::press::output::{Output, Real};
 use bubbletouch::contact::{POSE_PARAMETERS, Press, Until, Workspace, pose_jacobian};
 use bubbletouch::geometry::Pose;
 use bubbletouch::world;
 use glam::DVec3;
-use numpy::{
-    Element, PyArrayDescr, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
-    dtype as dtype_of,
-};
+use numpy::{PyArrayDescr, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, dtype as dtype_of};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 use std::sync::Mutex;
 
@@ -45,58 +40,26 @@ pub fn press<'py>(
     threads: Option<usize>,
     wanted: Wanted,
 ) -> PyResult<Object<'py>> {
-    let objects = Objects::from_argument(object)?;
-    let given = Poses::of_objects("poses", poses, objects.n_several())?;
-    let n_sets = given.poses.len() / objects.models().len();
-    goal.check(n_sets)?;
+    let presses = Presses::new(object, poses, goal)?;
     if wanted.jacobian {
-        check_jacobian(goal.kind(), patch.inner())?;
+        check_jacobian(presses.goal.kind(), patch.inner())?;
     }
     let batch = Batch {
         patch,
-        objects,
-        given,
-        goal,
+        presses,
         threads,
         wanted,
     };
-    let mut shape = patch.sides().to_vec();
-    if !batch.given.is_one {
-        shape.insert(0, n_sets);
-    }
-    let single = dtype.map(|dtype| is_single(py, dtype)).transpose()?;
-    let array = match out {
-        Some(out) => {
-            if let (Some(dtype), Some(single)) = (dtype, single) {
-                let has = out.getattr("dtype")?;
-                if single != is_single(py, &has)? {
-                    return Err(bad_input("dtype", dtype, format!("{has}, which out has")));
-                }
-            }
-            out.clone()
-        }
-        None => {
-            let dtype = match single {
-                Some(true) => dtype_of::<f32>(py),
-                _ => dtype_of::<f64>(py),
-            };
-            zeros(py)?.call1((PyTuple::new(py, &shape)?, dtype))?
-        }
+    // The type of a given array is the type of the frames.
+    let is_single = match (dtype, out) {
+        (Some(dtype), _) => is_single(py, dtype)?,
+        (None, Some(out)) => out.cast::<PyArrayDyn<f32>>().is_ok(),
+        (None, None) => false,
     };
-    let is_zero = out.is_none();
-    if let Ok(array) = array.cast::<PyArrayDyn<f64>>() {
-        check_out(array, &shape)?;
-        return batch.fill(py, array.clone(), is_zero);
+    match is_single {
+        true => batch.fill::<f32>(py, out),
+        false => batch.fill::<f64>(py, out),
     }
-    if let Ok(array) = array.cast::<PyArrayDyn<f32>>() {
-        check_out(array, &shape)?;
-        return batch.fill(py, array.clone(), is_zero);
-    }
-    let given = match array.getattr("dtype") {
-        Ok(dtype) => format!("dtype {dtype}"),
-        Err(_) => array.get_type().to_string(),
-    };
-    Err(bad_input("out", given, "an array of float32 or float64"))
 }
 
 /// Returns an error if the derivatives for a kind of goal are not implemented: for a depth on a patch that is not flat.
@@ -120,39 +83,38 @@ fn is_single(py: Python, dtype: &Object) -> PyResult<bool> {
     }
 }
 
-/// Returns the function `numpy.zeros`, which creates the output arrays. Memory of untouched taxels is never written, and large arrays use large memory pages.
-fn zeros<'py>(py: Python<'py>) -> PyResult<&'py Object<'py>> {
-    static ZEROS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    ZEROS.import(py, "numpy", "zeros")
-}
-
 struct Batch<'a> {
     patch: &'a Patch,
-    objects: Objects<'a>,
-    given: Poses,
-    goal: Goal,
+    presses: Presses<'a>,
     threads: Option<usize>,
     wanted: Wanted,
 }
 
 impl Batch<'_> {
+    /// Presses at all poses. Returns the array of the caller, or a new array, with the frames, and the other requested results.
     fn fill<'py, T: Real>(
         self,
         py: Python<'py>,
-        array: Bound<'py, PyArrayDyn<T>>,
-        is_zero: bool,
+        out: Option<&Object<'py>>,
     ) -> PyResult<Object<'py>> {
-        let mut sides = array.shape().to_vec();
-        sides.extend(self.objects.n_several());
+        let mut shape = self.patch.sides().to_vec();
+        if !self.presses.is_one {
+            shape.insert(0, self.presses.n());
+        }
+        let array = match out {
+            Some(out) => output_array::<T>("out", out, (&shape, T::NAME))?,
+            None => PyArrayDyn::<T>::zeros(py, &shape[..], false),
+        };
+        let is_zero = out.is_none();
+        let mut sides = shape;
+        sides.extend(self.presses.objects.n_several);
         sides.push(POSE_PARAMETERS);
         let changes = self
             .wanted
             .jacobian
             .then(|| PyArrayDyn::<f64>::zeros(py, sides, false));
         let contacts = {
-            let mut writable = array
-                .try_readwrite()
-                .map_err(|error| bad_input("out", error, "an array that nobody else uses"))?;
+            let mut writable = writable("out", &array)?;
             let mut changing = changes.as_ref().map(|changes| changes.readwrite());
             let changes = changing.as_mut().map(|changes| changes.as_slice_mut());
             let frames = writable.as_slice_mut()?;
@@ -175,28 +137,17 @@ impl Batch<'_> {
         (frames, are_zero): (&mut [T], bool),
         changes: Option<&mut [f64]>,
     ) -> PyResult<Option<Contacts>> {
-        let models = self.objects.models();
-        let (patch, goal, k) = (self.patch.inner(), &self.goal, models.len());
-        let (is_one, wanted) = (self.given.is_one, self.wanted);
-        let named = |number: usize, error: bubbletouch::Error| {
-            let place = if is_one {
-                "poses: ".to_owned()
-            } else {
-                format!("poses[{number}]: ")
-            };
-            exception(error.under(place))
-        };
+        let (patch, presses, wanted) = (self.patch.inner(), &self.presses, self.wanted);
         let found: Mutex<Vec<(usize, OfPose)>> = Mutex::new(Vec::new());
         type Item<'a, T> = (&'a mut [T], Option<&'a mut [f64]>);
         let work = |number: usize, (frame, changes): Item<T>, workspace: &mut Workspace| {
-            let poses = &self.given.poses[number * k..][..k];
-            let press = goal.of_pose(number, patch, (models, poses));
+            let press = presses.press(number, patch);
             let row = T::row(frame);
             let pressed = match are_zero {
                 true => press.write_onto_zeros(row, workspace),
                 false => press.write(row, workspace),
             };
-            let pressed = pressed.map_err(|error| named(number, error))?;
+            let pressed = pressed.map_err(|error| presses.exception(number, error))?;
             wanted.output.convert(patch, frame);
             if !wanted.contacts && changes.is_none() {
                 return Ok(());
@@ -208,10 +159,10 @@ impl Batch<'_> {
                 None => press.until,
             };
             let met = Press { until, ..press }.with_contacts().run(workspace);
-            let met = met.map_err(|error| named(number, error))?;
+            let met = met.map_err(|error| presses.exception(number, error))?;
             if let (Some(changes), Some(pressed), Some(_)) = (changes, pressed, met) {
                 let origin = |pose: &Pose| pose.translation - pressed.travel * DVec3::Z;
-                let origins: Vec<DVec3> = poses.iter().map(origin).collect();
+                let origins: Vec<DVec3> = presses.poses(number).iter().map(origin).collect();
                 let contacts = (workspace.contacts(), &origins[..]);
                 pose_jacobian(press.until, patch, contacts, changes);
                 wanted.output.convert(patch, changes);
@@ -229,7 +180,8 @@ impl Batch<'_> {
         let items: Vec<Item<T>> = match changes {
             None => frames.map(|frame| (frame, None)).collect(),
             Some(changes) => {
-                let changes = changes.chunks_exact_mut(n_taxels * k * POSE_PARAMETERS);
+                let n_objects = presses.objects.models.len();
+                let changes = changes.chunks_exact_mut(n_taxels * n_objects * POSE_PARAMETERS);
                 frames.zip(changes.map(Some)).collect()
             }
         };
@@ -240,16 +192,5 @@ impl Batch<'_> {
         }
         let found = found.into_inner().unwrap_or_default();
         Contacts::from_poses(py, found).map(Some)
-    }
-}
-
-/// Returns an error if an array cannot receive the frames because of its shape or memory layout.
-fn check_out<T: Element>(array: &Bound<PyArrayDyn<T>>, shape: &[usize]) -> PyResult<()> {
-    if array.shape() != shape {
-        return Err(bad_input("out", shape_of(array.shape()), shape_of(shape)));
-    }
-    match array.is_c_contiguous() {
-        true => Ok(()),
-        false => Err(bad_input("out", "a strided array", "a C-contiguous one")),
     }
 }

@@ -1,10 +1,12 @@
 //! Goal of a press: pose, depth, force or travel.
 
 use crate::arrays::{Object, array};
-use crate::errors::bad_input;
+use crate::errors::{bad_input, exception};
+use crate::model::Objects;
+use crate::poses::Poses;
+use bubbletouch::Error;
 use bubbletouch::contact::{Press, Until};
 use bubbletouch::geometry::Pose;
-use bubbletouch::objects::Model;
 use bubbletouch::world::Patch;
 use pyo3::prelude::*;
 
@@ -65,43 +67,73 @@ impl Goal {
         }
     }
 
-    /// Checks that there is one amount for all n poses, or one per pose.
-    ///
-    /// # Errors
-    /// If the number of amounts is wrong.
-    pub fn check(&self, n_poses: usize) -> PyResult<()> {
-        let n = self.amounts.len();
-        if n == 1 || n == n_poses {
-            return Ok(());
-        }
-        let allowed = "one for all poses, or one each";
-        Err(bad_input(
-            "press",
-            format!("{n} amounts for {n_poses} poses"),
-            allowed,
-        ))
-    }
-
     /// Returns the kind of the goal with an amount of 0; used where only the kind matters.
     pub fn kind(&self) -> Until {
         (self.kind)(0.0)
     }
+}
 
-    /// Returns the amount of the press with the given number: metres or newtons.
-    pub fn amount(&self, number: usize) -> f64 {
-        match self.amounts[..] {
-            [amount] => amount,
-            _ => self.amounts[number],
+/// Presses on objects at n sets of poses, to goals of one kind.
+pub struct Presses<'a> {
+    /// Objects that are pressed.
+    pub objects: Objects<'a>,
+    /// Poses of the objects in the patch frame, set after set.
+    poses: Vec<Pose>,
+    /// Whether the poses are one set without the axis n.
+    pub is_one: bool,
+    /// Goal of each press.
+    pub goal: Goal,
+}
+
+impl<'a> Presses<'a> {
+    /// Reads the arguments `object` and `poses`.
+    ///
+    /// # Errors
+    /// If an argument is invalid, or the goal has neither one amount for all sets nor one for each.
+    pub fn new(object: &'a Object, poses: &Object, goal: Goal) -> PyResult<Self> {
+        let objects = Objects::from_argument(object)?;
+        let Poses { poses, is_one } = Poses::of_objects("poses", poses, objects.n_several)?;
+        let presses = Self {
+            objects,
+            poses,
+            is_one,
+            goal,
+        };
+        let (n, n_sets) = (presses.goal.amounts.len(), presses.n());
+        if n == 1 || n == n_sets {
+            return Ok(presses);
         }
+        let given = format!("{n} amounts for {n_sets} poses");
+        let allowed = "one for all poses, or one each";
+        Err(bad_input("press", given, allowed))
     }
 
-    /// Returns the press of the given number, on objects with one pose each.
-    pub fn of_pose<'a>(
-        &self,
-        number: usize,
-        patch: &'a Patch,
-        (models, poses): (&'a [Model], &'a [Pose]),
-    ) -> Press<'a> {
-        Press::new(patch, models, poses, (self.kind)(self.amount(number)))
+    /// Returns the number n of presses.
+    pub fn n(&self) -> usize {
+        self.poses.len() / self.objects.models.len()
+    }
+
+    /// Returns the poses of the objects in the press of the given number.
+    pub fn poses(&self, number: usize) -> &[Pose] {
+        let k = self.objects.models.len();
+        &self.poses[number * k..][..k]
+    }
+
+    /// Returns the press of the given number.
+    pub fn press<'b>(&'b self, number: usize, patch: &'b Patch) -> Press<'b> {
+        let amount = match self.goal.amounts[..] {
+            [amount] => amount,
+            _ => self.goal.amounts[number],
+        };
+        let (models, poses) = (&self.objects.models, self.poses(number));
+        Press::new(patch, models, poses, (self.goal.kind)(amount))
+    }
+
+    /// Converts the error of the press of the given number to an exception, which names the pose.
+    pub fn exception(&self, number: usize, error: Error) -> PyErr {
+        exception(error.under(match self.is_one {
+            true => "poses: ".to_owned(),
+            false => format!("poses[{number}]: "),
+        }))
     }
 }

@@ -1,6 +1,6 @@
 //! Quantity that a frame contains: deflections or forces.
 
-use crate::errors::bad_input;
+use crate::errors::one_of;
 use bubbletouch::contact::Row;
 use bubbletouch::world::{Patch, Taxels};
 use numpy::Element;
@@ -21,14 +21,8 @@ impl Output {
     /// # Errors
     /// If the word is neither `deflection` nor `force`.
     pub fn from_argument(output: &str) -> PyResult<Self> {
-        match output {
-            "deflection" => Ok(Self::Deflection),
-            "force" => Ok(Self::Force),
-            other => {
-                let allowed = "\"deflection\" or \"force\"";
-                Err(bad_input("output", format!("{other:?}"), allowed))
-            }
-        }
+        let known = [("deflection", Self::Deflection), ("force", Self::Force)];
+        one_of("output", output, &known)
     }
 
     /// Converts deflections to the quantity of the output. `values` contains equally many numbers for each taxel; zeros are not written.
@@ -55,6 +49,9 @@ impl Output {
 
 /// Type of the numbers in a frame: float32 or float64.
 pub trait Real: Element + Copy + Default + PartialEq {
+    /// Name of the type with its article, for error messages.
+    const NAME: &str;
+
     /// Returns the number times a factor, rounded once.
     fn scaled(self, factor: f64) -> Self;
 
@@ -63,6 +60,8 @@ pub trait Real: Element + Copy + Default + PartialEq {
 }
 
 impl Real for f64 {
+    const NAME: &str = "a float64";
+
     fn scaled(self, factor: f64) -> Self {
         self * factor
     }
@@ -73,6 +72,8 @@ impl Real for f64 {
 }
 
 impl Real for f32 {
+    const NAME: &str = "a float32";
+
     fn scaled(self, factor: f64) -> Self {
         (f64::from(self) * factor) as Self
     }

@@ -1,11 +1,9 @@
 //! Batches of presses with a slide on skins with friction: deflections and three-axis forces.
 
-use crate::arrays::{Object, each, one_or_rows};
+use crate::arrays::{Object, Rows, each, shape_of};
 use crate::batch::{Spare, for_each, n_threads};
 use crate::errors::{bad_input, exception};
-use crate::model::Objects;
-use crate::poses::Poses;
-use crate::press::goal::Goal;
+use crate::press::goal::{Goal, Presses};
 use bubbletouch::contact::{ContactMode, FrictionState, Workspace};
 use bubbletouch::world::{self, Shear, Shears};
 use glam::{DVec2, DVec3};
@@ -50,13 +48,14 @@ pub fn press_and_slide<'py>(
     motion: &Motion<'_, 'py>,
     threads: Option<i64>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let objects = Objects::from_argument(object)?;
-    let models = objects.models();
-    let given = Poses::of_objects("poses", poses, objects.n_several())?;
-    let n = given.poses.len() / models.len();
     let depth = Goal::from_arguments(Some(motion.depth), None, None)?;
-    depth.check(n)?;
-    let slides = slides(motion.slide, n)?;
+    let presses = Presses::new(object, poses, depth)?;
+    let n = presses.n();
+    let slides = Rows::<2>::read("slide", motion.slide)?;
+    if let Some(given) = slides.n().filter(|given| *given != n) {
+        let allowed = format!("(2,), or ({n}, 2)");
+        return Err(bad_input("slide", shape_of(&[given, 2]), allowed));
+    }
     let shears = shears(patch, motion)?;
     let at_rest = || FrictionState::at_rest(patch, shears.clone());
     at_rest().map_err(exception)?;
@@ -71,10 +70,11 @@ pub fn press_and_slide<'py>(
     let mut slid = vec![missed; n];
     let work = |number: usize, slid: &mut Slid, scratch: &mut (Workspace, FrictionState)| {
         let (workspace, friction) = scratch;
-        let poses = &given.poses[number * models.len()..][..models.len()];
-        let press = depth.of_pose(number, patch, (models, poses));
-        let pressed = press.slide(slides[number], Some(&mut *friction), workspace);
-        let Some(contact) = pressed.map_err(exception)? else {
+        let press = presses.press(number, patch);
+        let way = DVec2::from(slides.at(number)).extend(0.0);
+        let pressed = press.slide(way, Some(&mut *friction), workspace);
+        let pressed = pressed.map_err(|error| presses.exception(number, error))?;
+        let Some(contact) = pressed else {
             return Ok(());
         };
         slid.travel = contact.travel;
@@ -98,7 +98,7 @@ pub fn press_and_slide<'py>(
     let items = slid.iter_mut().collect();
     for_each(py, items, threads, &Spare::new(), scratch, work)?;
     let results = PyDict::new(py);
-    let leading: &[usize] = if given.is_one { &[] } else { &[n] };
+    let leading: &[usize] = if presses.is_one { &[] } else { &[n] };
     let shape = |sides: &[usize]| [leading, sides].concat();
     let set = |key, sides: &[usize], of: fn(&Slid) -> &[f64]| {
         let values: Vec<f64> = slid.iter().flat_map(of).copied().collect();
@@ -115,17 +115,6 @@ pub fn press_and_slide<'py>(
     set("wrench", &[6], |slid| &slid.wrench)?;
     set("travel", &[], |slid| std::slice::from_ref(&slid.travel))?;
     Ok(results)
-}
-
-/// Reads the slides of n presses, metres in the patch frame.
-fn slides(given: &Object, n: usize) -> PyResult<Vec<DVec3>> {
-    let (slides, is_one) = one_or_rows::<2>("slide", given)?;
-    if !is_one && slides.len() != n {
-        let given = format!("shape ({}, 2)", slides.len());
-        return Err(bad_input("slide", given, format!("(2,), or ({n}, 2)")));
-    }
-    let at = |number: usize| DVec2::from(slides[if is_one { 0 } else { number }]).extend(0.0);
-    Ok((0..n).map(at).collect())
 }
 
 /// Returns the shear springs of the taxels.

@@ -3,10 +3,9 @@
 //! - `skin_class`: the class with its arguments and results;
 //! - `contact_loads`: contact forces of an engine as arguments;
 //! - `shear_state`: the class `ShearState`, shear springs with friction between successive reads;
-//! - `poses`, `filled`: poses as arguments, and arrays of the caller that are filled.
+//! - `poses`: poses as arguments.
 
 mod contact_loads;
-mod filled;
 mod poses;
 mod shear_state;
 mod skin_class;

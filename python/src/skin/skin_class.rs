@@ -1,13 +1,13 @@
 //! Class `Skin`: its arguments and results.
 
 use super::contact_loads;
-use super::filled::{Target, read_optional};
 use super::poses::PoseSets;
 use super::shear_state::ShearState;
-use crate::arrays::{Object, array, each, shape_of, whole_number};
+use crate::arrays::{Object, array, each, read_optional, shape_of, whole_number};
 use crate::batch::Spare;
 use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
+use crate::output_array::Target;
 use crate::patch::Patch;
 use crate::press::output::Output;
 use bubbletouch::geometry::Pose;
@@ -15,6 +15,7 @@ use bubbletouch::objects::Model;
 use bubbletouch::skin::{self, Pressed, ReadOptions, SkinPoses, SkinReading, SkinRelations};
 use bubbletouch::world::Shear;
 use glam::DVec3;
+use ndarray::ArrayView1;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -42,7 +43,7 @@ struct Arguments {
     patches: Vec<Py<Patch>>,
     bodies: Vec<Py<PyAny>>,
     objects: Option<Vec<usize>>,
-    can_touch: Option<Py<PyAny>>,
+    can_touch: Option<Vec<Vec<bool>>>,
     carriers: Option<Vec<usize>>,
 }
 
@@ -81,11 +82,15 @@ impl Skin {
             let models = models
                 .map(|(number, body)| Ok(model_of(&format!("bodies[{number}]"), body)?.clone()));
             let models: Vec<Model> = models.collect::<PyResult<_>>()?;
-            let excluded = |given| excluded_bodies(given, patches.len(), bodies.len());
+            let touching = |given| touching(given, patches.len(), bodies.len());
+            let can_touch = can_touch.map(touching).transpose()?;
+            let excluded = |row: &Vec<bool>| (0..row.len()).filter(|&body| !row[body]).collect();
             let relations = SkinRelations {
                 objects: objects.clone(),
                 carriers: carriers.clone(),
-                excluded: can_touch.map(excluded).transpose()?,
+                excluded: can_touch
+                    .as_ref()
+                    .map(|rows| rows.iter().map(excluded).collect()),
             };
             let inner = patches.iter().map(|patch| patch.get().inner().clone());
             let inner = skin::Skin::new(inner.collect(), models, relations);
@@ -95,7 +100,7 @@ impl Skin {
                     patches: patches.into_iter().map(Bound::unbind).collect(),
                     bodies: bodies.into_iter().map(Bound::unbind).collect(),
                     objects,
-                    can_touch: can_touch.map(|given| given.clone().unbind()),
+                    can_touch,
                     carriers,
                 },
                 spare: Spare::new(),
@@ -341,14 +346,11 @@ impl Skin {
     }
 }
 
-/// Returns the bodies that cannot touch each patch, given the argument `can_touch`.
-fn excluded_bodies(given: &Object, n_patches: usize, n_bodies: usize) -> PyResult<Vec<Vec<usize>>> {
+/// Reads the pairs of patch and body that can touch, a row for each patch.
+fn touching(given: &Object, n_patches: usize, n_bodies: usize) -> PyResult<Vec<Vec<bool>>> {
     let shape = [n_patches, n_bodies];
     let allowed = format!("bool, {}", shape_of(&shape));
-    let can_touch = array("can_touch", given, &allowed, |is| is == shape)?;
-    let of_patch = |patch: usize| {
-        let row = &can_touch.values()[patch * n_bodies..][..n_bodies];
-        (0..n_bodies).filter(|&body| row[body] == 0.0).collect()
-    };
-    Ok((0..n_patches).map(of_patch).collect())
+    let pairs = array("can_touch", given, &allowed, |is| is == shape)?.matrix();
+    let row = |row: ArrayView1<f64>| row.iter().map(|pair| *pair != 0.0).collect();
+    Ok(pairs.outer_iter().map(row).collect())
 }

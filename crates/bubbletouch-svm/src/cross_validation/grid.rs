@@ -33,7 +33,7 @@ const CLASSES_AT_ONCE: usize = 8;
 pub(crate) struct Grid<'a, T> {
     /// Training rows, sorted by class label.
     pub sorted: &'a Sorted<T>,
-    /// Training and validation rows of each fold, by original row number; repeated rows count once.
+    /// Training and validation rows of each fold, by original row number.
     pub folds: &'a [Split],
     /// Multi-class strategy: one-vs-one or one-vs-rest.
     pub multiclass: Multiclass,
@@ -43,8 +43,8 @@ pub(crate) struct Grid<'a, T> {
 
 /// Cross-validation fold, given by row positions in the sorted order.
 struct Fold {
-    /// Whether each row, in sorted order, is a training row of the fold.
-    is_training: Vec<bool>,
+    /// Number of times that each row, in sorted order, is a training row of the fold. A repeated row has a multiple of the penalty C.
+    n_times: Vec<usize>,
     /// Whether the fold has at least one training row of each class.
     is_class: Vec<bool>,
     /// Weight of each class in training.
@@ -79,23 +79,17 @@ impl<T: SolverScalar> Grid<'_, T> {
 
     fn fold(&self, split: &Split) -> Fold {
         let place = &self.sorted.place;
-        let mut is_training = vec![false; place.len()];
-        split
-            .train
-            .iter()
-            .for_each(|&row| is_training[place[row]] = true);
+        let mut n_times = vec![0; place.len()];
+        split.train.iter().for_each(|&row| n_times[place[row]] += 1);
         let ranges = self.sorted.ranges.iter();
         let mut validation: Vec<usize> = split.test.iter().map(|&row| place[row]).collect();
         validation.sort_unstable();
-        let n_training = |range: &Range<usize>| {
-            let rows = is_training[range.clone()].iter();
-            rows.filter(|is_training| **is_training).count()
-        };
+        let n_training = |range: &Range<usize>| n_times[range.clone()].iter().sum();
         let sizes: Vec<usize> = ranges.map(n_training).collect();
         Fold {
             is_class: sizes.iter().map(|&n| n > 0).collect(),
             weights: self.class_weight.of_sizes(sizes),
-            is_training,
+            n_times,
             validation,
         }
     }
@@ -167,8 +161,8 @@ impl<T: SolverScalar> Grid<'_, T> {
             let rows = classes.iter().flat_map(|&class| {
                 let sign = if class == positive { 1.0 } else { -1.0 };
                 let limit = sign * fold.weights[class];
-                let rows = fold.is_training[ranges[class].clone()].iter();
-                rows.map(move |&is_training| if is_training { limit } else { 0.0 })
+                let rows = fold.n_times[ranges[class].clone()].iter();
+                rows.map(move |&n| if n > 0 { limit * n as f64 } else { 0.0 })
             });
             rows.collect()
         };

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import mujoco
 import numpy as np
@@ -15,6 +15,9 @@ from bubbletouch._contact_forces import contact_loads
 from bubbletouch.mujoco.collisions import geoms_of_others, touching_geoms
 from bubbletouch.mujoco.geoms import depth_behind, geom_surface
 from bubbletouch.mujoco.sensor_callback import install
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 Array = NDArray[np.float64]
 Output = Literal["deflection", "force"]
@@ -51,10 +54,10 @@ class Skin:
     ) -> None:
         if not isinstance(model, mujoco.MjModel):
             raise TypeError(f"model: {model!r}; a mujoco.MjModel, such as mujoco.MjModel.from_xml_path(file)")
+        if not isinstance(layout, Mapping) or not layout:
+            raise ValueError(f"layout: {layout!r}; a dict with at least one Patch, by the name of a site, body or geom")
         self._model = model
         self._patches = dict(layout)
-        if not self._patches:
-            raise ValueError("layout: no patch; at least one, by the name of a site, body or geom")
         for name, patch in self._patches.items():
             if not isinstance(name, str) or not isinstance(patch, _core.Patch):
                 raise TypeError(f"layout: {name!r} with {type(patch).__name__}; a name with a Patch")
@@ -138,22 +141,15 @@ class Skin:
         self,
         data: mujoco.MjData,
         *,
-        output: Output = "deflection",
         match: Match | None = None,
-        reach: float | None = None,
         shear: _core.ShearState | None = None,
-        out: Array | None = None,
-        wrenches: Array | None = None,
-        contacts: NDArray[np.int64] | None = None,
-        taxel_forces: Array | None = None,
-        pair_forces: Array | None = None,
-        residuals: Array | None = None,
-        travels: Array | None = None,
+        **options: Unpack[_core._ReadOptions],
     ) -> Array:
         """Returns the readings at the poses of `data`, (n_taxels,): deflections, metres, or forces along the taxels' axes, newtons.
 
         Call mj_step, mj_forward or mj_kinematics before; `match` needs the contact forces of mj_step or mj_forward.
 
+        output: "deflection" (default) or "force".
         match: None reads the patches at the engine's poses: depths of overlap, not forces of the engine. "normal_force" gives the taxels the engine's normal
             forces: each contact acts on the patch of its body that it faces and whose taxels are near its point. The taxels of a flat patch have the sum
             and the moment of these forces, so the centre of pressure is the engine's; those of a curved patch have the sum along their axes.
@@ -182,21 +178,7 @@ class Skin:
             if data.time < self._times.get(id(shear), -np.inf):
                 shear.reset()
             self._times[id(shear)] = data.time
-        return self._skin.read(
-            patch_poses,
-            body_poses,
-            output=output,
-            loads=loads,
-            reach=reach,
-            shear=shear,
-            out=out,
-            wrenches=wrenches,
-            contacts=contacts,
-            taxel_forces=taxel_forces,
-            pair_forces=pair_forces,
-            residuals=residuals,
-            travels=travels,
-        )
+        return self._skin.read(patch_poses, body_poses, loads=loads, shear=shear, **options)
 
     def _loads(self, data: mujoco.MjData, match: str) -> tuple[NDArray[np.generic], ...]:
         """Returns the engine's contact forces as the argument `loads` of the core."""
