@@ -152,19 +152,19 @@ pub fn group_hold_out(
 ) -> Result<Split> {
     check_fraction(test_fraction)?;
     check_labels(labels.len(), groups)?;
+    let of_groups = classes_of_groups(labels, groups);
     let (mut order, mut drawn) = (Vec::new(), Vec::new());
-    for (stratum, mut members) in strata(labels, groups).into_iter().enumerate() {
+    for (stratum, mut members) in strata(&of_groups).into_iter().enumerate() {
         let stream = seed.named("groups").numbered(stratum as u64);
         members.shuffle(&mut stream.rng());
         let n_test = share(members.len(), test_fraction);
         drawn.extend((0..members.len()).map(|rank| usize::from(rank < n_test)));
         order.extend(members);
     }
-    let classes = distinct(labels);
-    let classes_of = classes_of(labels, groups, &order);
+    let classes_of: Vec<_> = order.iter().map(|group| of_groups[group].clone()).collect();
     let parts = ("parts (training and test)", 2);
     let is_drawn = |_: &FoldSearch, group: usize, part| drawn[group] != part;
-    let is_test = divide((&classes, &classes_of), parts, is_drawn)?;
+    let is_test = divide((&distinct(labels), &classes_of), parts, is_drawn)?;
     let is_test: BTreeMap<usize, usize> = order.into_iter().zip(is_test).collect();
     let sides: Vec<Side> = groups
         .iter()
@@ -190,15 +190,12 @@ pub fn group_k_fold(
 ) -> Result<Vec<Split>> {
     check_folds(k)?;
     check_labels(labels.len(), groups)?;
-    let mut sizes = BTreeMap::<usize, usize>::new();
-    for &group in groups {
-        *sizes.entry(group).or_default() += 1;
-    }
-    let mut order: Vec<(usize, usize)> = sizes.into_iter().collect();
+    let mut order: Vec<(usize, ClassCounts)> =
+        classes_of_groups(labels, groups).into_iter().collect();
     order.shuffle(&mut seed.named("groups").rng());
-    order.sort_by_key(|&(_, size)| std::cmp::Reverse(size));
-    let order: Vec<usize> = order.into_iter().map(|(group, _)| group).collect();
-    let classes_of = classes_of(labels, groups, &order);
+    let size = |classes: &ClassCounts| classes.iter().map(|(_, n)| n).sum::<usize>();
+    order.sort_by_key(|(_, classes)| std::cmp::Reverse(size(classes)));
+    let (order, classes_of): (Vec<usize>, Vec<ClassCounts>) = order.into_iter().unzip();
     let n_rows = |class: usize| labels.iter().filter(|label| **label == class).count() as f64;
     let classes = distinct(labels);
     let n_rows: Vec<f64> = classes.iter().map(|&class| n_rows(class)).collect();
@@ -216,27 +213,22 @@ pub fn group_k_fold(
     folds(labels, &draw_rows(labels, seed), &fold_of, k)
 }
 
-/// Returns the classes of each group, as indices of the distinct labels, each with its number of rows in the group.
-fn classes_of(
+/// Classes of a group, as ascending indices of the distinct labels, each with its number of rows in the group.
+type ClassCounts = Vec<(usize, usize)>;
+
+/// Returns the classes of each group.
+fn classes_of_groups(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
-    order: &[usize],
-) -> Vec<Vec<(usize, usize)>> {
+) -> BTreeMap<usize, ClassCounts> {
     let mut counts = BTreeMap::<usize, BTreeMap<usize, usize>>::new();
     for (class, &group) in positions(labels, &distinct(labels)).into_iter().zip(groups) {
         *counts.entry(group).or_default().entry(class).or_default() += 1;
     }
-    let classes = |group| {
-        counts[group]
-            .iter()
-            .map(|(class, n)| (*class, *n))
-            .collect()
-    };
-    order.iter().map(classes).collect()
+    let of_group =
+        |(group, classes): (usize, BTreeMap<_, _>)| (group, classes.into_iter().collect());
+    counts.into_iter().map(of_group).collect()
 }
-
-/// Classes of a group, as indices of all classes, with their numbers of rows.
-type ClassCounts = Vec<(usize, usize)>;
 
 /// Divides groups into parts, so that every part contains every class. Returns the part of each group. `classes_of` contains the classes of each group, as
 /// indices of `classes`, with their numbers of rows. `place` names the number of parts in errors.
@@ -298,15 +290,10 @@ fn draw_rows(labels: ArrayView1<usize>, seed: &dyn Streams) -> BTreeMap<usize, V
 
 /// Returns the groups of rows in each stratum; a stratum consists of groups that contain equal sets of classes. Strata of a single group are pooled into the
 /// last stratum.
-fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize>> {
-    let mut classes_of = BTreeMap::<usize, Vec<usize>>::new();
-    for (&class, &group) in labels.iter().zip(groups) {
-        classes_of.entry(group).or_default().push(class);
-    }
+fn strata(of_groups: &BTreeMap<usize, ClassCounts>) -> Vec<Vec<usize>> {
     let mut by_classes = BTreeMap::<Vec<usize>, Vec<usize>>::new();
-    for (group, mut classes) in classes_of {
-        classes.sort_unstable();
-        classes.dedup();
+    for (&group, classes) in of_groups {
+        let classes = classes.iter().map(|(class, _)| *class).collect();
         by_classes.entry(classes).or_default().push(group);
     }
     let (mut strata, single): (Vec<_>, Vec<_>) = by_classes

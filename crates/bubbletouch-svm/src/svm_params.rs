@@ -79,9 +79,6 @@ impl Default for SvmParams {
     }
 }
 
-/// Training rows with the number of classes, the kernel, and the centre that is subtracted from the rows.
-type Sorting<'r, 'c> = (LabelledRows<'r>, usize, KernelFunction, ArrayView1<'c, f64>);
-
 impl SvmParams {
     /// Trains an SVM on labelled rows. The result is deterministic. If the data set has weights, the penalty of a row is C times its weight.
     ///
@@ -130,7 +127,8 @@ impl SvmParams {
             tolerance: self.tolerance,
             memory: self.memory_bytes,
         };
-        let trained = self.train_smo((rows, classes.len(), kernel, centre.view()), goal);
+        let numbers: Vec<usize> = (0..classes.len()).collect();
+        let trained = self.train_smo(rows, &numbers, kernel, centre.view(), goal);
         let label = |model: SvmModel| model.with_classes(classes.to_vec());
         let trained: Vec<SvmModel<L>> = trained.into_iter().map(label).collect();
         if ascending == path {
@@ -140,18 +138,24 @@ impl SvmParams {
         Ok(path.iter().map(|&c| trained[at(c)].clone()).collect())
     }
 
-    fn train_smo(&self, sorting: Sorting, goal: Goal) -> Vec<SvmModel> {
-        let (rows, n_classes, kernel, centre) = sorting;
+    /// Trains models with kernel values in the precision that the rows need. `classes` contains the labels of the rows' classes, ascending.
+    fn train_smo(
+        &self,
+        rows: LabelledRows,
+        classes: &[usize],
+        kernel: KernelFunction,
+        centre: ArrayView1<f64>,
+        goal: Goal,
+    ) -> Vec<SvmModel> {
         let n_rows = rows.features.nrows();
-        let numbers: Vec<usize> = (0..n_classes).collect();
         if !self.needs_double(n_rows, kernel, goal.path, (0.0, 1.0)) {
-            let sorted = Sorted::<f32>::new(rows, &numbers, kernel, centre)
+            let sorted = Sorted::<f32>::new(rows, classes, kernel, centre, |_| 0)
                 .weighted(self.class_weight, rows.weights);
             if !self.needs_double(n_rows, kernel, goal.path, sorted.farthest_and_heaviest()) {
                 return self.solve_sorted(sorted, goal);
             }
         }
-        let sorted = Sorted::<f64>::new(rows, &numbers, kernel, centre)
+        let sorted = Sorted::<f64>::new(rows, classes, kernel, centre, |_| 0)
             .weighted(self.class_weight, rows.weights);
         self.solve_sorted(sorted, goal)
     }

@@ -5,6 +5,7 @@ use crate::class_model::ClassModel;
 use crate::classifiers::nearest_centroid::NearestCentroid;
 use crate::dataset::dataset;
 use crate::linear_svm::LinearSvmParams;
+use crate::scaling::Scaling;
 use crate::streams::Streams;
 use ndarray::{Array1, ArrayView2, Axis};
 
@@ -54,15 +55,11 @@ impl HeldOut<'_> {
         if test.is_empty() {
             return Ok(Vec::new());
         }
-        let mut features = self.features.select(Axis(0), &train);
+        let features = self.features.select(Axis(0), &train);
         let labels = Array1::from_iter(train.iter().map(|&row| self.labels[row]));
-        let mean = features.mean_axis(Axis(0));
-        let mean = mean.unwrap_or_else(|| Array1::zeros(features.ncols()));
-        features -= &mean;
-        let std = (features.iter().map(|x| x * x).sum::<f64>() / features.len() as f64).sqrt();
-        let factor = if std > 0.0 { 1.0 / std } else { 1.0 };
-        let tested = (&self.features.select(Axis(0), &test) - &mean) * factor;
-        let data = dataset(features * factor, labels)?;
+        let scaling = Scaling::Overall.fit(features.view())?;
+        let tested = scaling.apply(self.features.select(Axis(0), &test).view())?;
+        let data = dataset(scaling.apply(features.view())?, labels)?;
         let model: Box<dyn ClassModel> = match method {
             HeldOutMethod::NearestCentroid => Box::new(NearestCentroid::train(&data)?),
             HeldOutMethod::LinearSvm => {

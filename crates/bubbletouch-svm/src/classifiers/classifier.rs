@@ -159,18 +159,21 @@ impl Classifier {
         folds: &[Split],
         seed: &dyn Streams,
     ) -> Result<TrainedClassifier> {
-        match &self.c {
-            Cost::Chosen(candidates) if self.kind.has_c() => {
+        let (c, chosen) = match &self.c {
+            _ if !self.kind.has_c() => (None, None),
+            Cost::Fixed(c) => (Some(*c), None),
+            Cost::Chosen(candidates) => {
                 let chosen = self.choose(training, folds, candidates, seed)?;
-                let c = Some(chosen.best.c);
-                let classifier = self.with_choice(&chosen);
-                classifier.train_with_c(training, c, Some(chosen), seed)
+                (Some(chosen.best.c), Some(chosen))
             }
-            Cost::Fixed(c) if self.kind.has_c() => {
-                self.train_with_c(training, Some(*c), None, seed)
-            }
-            _ => self.train_with_c(training, None, None, seed),
-        }
+        };
+        let classifier = match &chosen {
+            Some(chosen) => Cow::Owned(self.with_choice(chosen)),
+            None => Cow::Borrowed(self),
+        };
+        let (scaling, scaled) = self.scaled(training)?;
+        let model = classifier.train_model(&scaled, c.unwrap_or(1.0), seed)?;
+        Ok(TrainedClassifier::new(scaling, model, c, chosen))
     }
 
     /// Chooses C and γ by cross-validation on the training rows; see the function [`choose`].
@@ -249,19 +252,6 @@ impl Classifier {
         let scaled = scaling.apply(training.records.view())?;
         let scaled = Dataset::new(scaled, training.targets.clone());
         Ok((scaling, Cow::Owned(scaled)))
-    }
-
-    /// Trains the classifier with a penalty C, or without C if this kind of classifier has none.
-    fn train_with_c(
-        &self,
-        training: &Dataset,
-        c: Option<f64>,
-        chosen: Option<Chosen>,
-        seed: &dyn Streams,
-    ) -> Result<TrainedClassifier> {
-        let (scaling, scaled) = self.scaled(training)?;
-        let model = self.train_model(&scaled, c.unwrap_or(1.0), seed)?;
-        Ok(TrainedClassifier::new(scaling, model, c, chosen))
     }
 
     /// Trains the model on rows with scaled features. Classifiers without a penalty C ignore `c`.

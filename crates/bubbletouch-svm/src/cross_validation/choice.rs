@@ -262,7 +262,7 @@ fn by_fold<T: SolverScalar>(
         fold.test.iter().for_each(|&row| fold_of[row] = number);
     }
     let rows = LabelledRows::from(training);
-    Sorted::within_classes(rows, &classes, kernel, centre, |row| fold_of[row])
+    Sorted::new(rows, &classes, kernel, centre, |row| fold_of[row])
 }
 
 fn grid<T: SolverScalar>(

@@ -44,18 +44,8 @@ pub(crate) struct Sorted<T> {
 }
 
 impl<T: Scalar> Sorted<T> {
-    /// Sorts rows by class and centres them; the order within a class is preserved.
+    /// Sorts rows by class and by the given key within each class, and subtracts the centre. `classes` contains the labels of the classes, ascending.
     pub fn new(
-        rows: LabelledRows,
-        classes: &[usize],
-        kernel: KernelFunction,
-        centre: ArrayView1<f64>,
-    ) -> Self {
-        Self::within_classes(rows, classes, kernel, centre, |_| 0)
-    }
-
-    /// Sorts rows by class and by the given key within each class, and subtracts the centre.
-    pub fn within_classes(
         LabelledRows {
             features, labels, ..
         }: LabelledRows,

@@ -1,13 +1,13 @@
 //! Linear SVMs, trained by coordinate descent to separate each class from all others.
 
-use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
+use ndarray::{Array2, ArrayView2, Axis, Zip};
 use serde::{Deserialize, Serialize};
 
 use crate::Result;
 use crate::class_model::ClassModel;
 use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
-use crate::linear_svm::coordinate_descent::{self, Rows};
+use crate::linear_svm::coordinate_descent::{self, Rows, Solved};
 use crate::linear_svm::params::LinearSvmParams;
 use crate::saved::SavedModel;
 use crate::streams::Streams;
@@ -46,65 +46,45 @@ impl LinearSvmParams {
         let label = positions(data.targets.view(), &classes);
         let weights = self.class_weight.of_classes(&label, classes.len());
         let penalties: Vec<f64> = label.iter().map(|&class| self.c * weights[class]).collect();
-        let mut multipliers = Array2::zeros((classes.len(), label.len()));
-        let mut ends = Vec::with_capacity(classes.len());
-        for class in 0..classes.len() {
-            let sign: Vec<f64> = label
-                .iter()
-                .map(|&label| if label == class { 1.0 } else { -1.0 })
-                .collect();
+        let signs = |class: usize| -> Vec<f64> {
+            let sign = |&label: &usize| if label == class { 1.0 } else { -1.0 };
+            label.iter().map(sign).collect()
+        };
+        let solved = (0..classes.len()).map(|class| {
             let mut rng = seed.named("class").numbered(class as u64).rng();
-            let solved = coordinate_descent::solve(&rows, (&sign, &penalties), self, &mut rng);
-            multipliers
-                .row_mut(class)
-                .assign(&Array1::from(solved.multipliers));
-            ends.push((solved.n_passes, solved.is_capped));
-        }
-        Ok(against_rest(
-            data,
-            classes,
-            (&label, &penalties),
-            multipliers,
-            &ends,
-        ))
-    }
-}
-
-/// Returns the weights and biases of the model, and the duality gap of each binary problem, given the class and the penalty of each row, and the
-/// multipliers (n_classes × n_rows).
-fn against_rest(
-    data: &Dataset,
-    classes: Vec<usize>,
-    (label, penalties): (&[usize], &[f64]),
-    multipliers: Array2<f64>,
-    ends: &[(usize, bool)],
-) -> LinearSvm {
-    let model = weights(&multipliers, data.records.view());
-    let values = data.records.dot(&model.weights.t()) + &model.bias;
-    let squares = squared_norms(&model);
-    let convergence = (0..classes.len())
-        .map(|class| {
+            coordinate_descent::solve(&rows, (&signs(class), &penalties), self, &mut rng)
+        });
+        let solved: Vec<Solved> = solved.collect();
+        let shape = (classes.len(), label.len());
+        let multipliers =
+            Array2::from_shape_fn(shape, |(class, row)| solved[class].multipliers[row]);
+        // These sums do not contain the rounding errors of the solver's updates.
+        let model = LinearModel {
+            weights: multipliers.dot(&data.records),
+            bias: multipliers.sum_axis(Axis(1)),
+        };
+        let values = data.records.dot(&model.weights.t()) + &model.bias;
+        let squares = model.weights.map_axis(Axis(1), |w| w.dot(&w)) + model.bias.mapv(|b| b * b);
+        let convergence = solved.iter().enumerate().map(|(class, solved)| {
             let loss: f64 = Zip::from(values.column(class))
-                .and(label)
-                .and(penalties)
-                .fold(0.0, |sum, &value, &label, &penalty| {
-                    let sign = if label == class { 1.0 } else { -1.0 };
+                .and(&signs(class))
+                .and(&penalties)
+                .fold(0.0, |sum, &value, &sign, &penalty| {
                     sum + penalty * (1.0 - sign * value).max(0.0)
                 });
             let half = 0.5 * squares[class];
-            let sum = multipliers.row(class).mapv(f64::abs).sum();
             Convergence {
                 primal: half + loss,
-                dual: sum - half,
-                n_passes: ends[class].0,
-                is_capped: ends[class].1,
+                dual: multipliers.row(class).mapv(f64::abs).sum() - half,
+                n_passes: solved.n_passes,
+                is_capped: solved.is_capped,
             }
+        });
+        Ok(LinearSvm {
+            convergence: convergence.collect(),
+            classes,
+            model,
         })
-        .collect();
-    LinearSvm {
-        classes,
-        model,
-        convergence,
     }
 }
 
@@ -139,19 +119,4 @@ impl ClassModel for LinearSvm {
             .filter(|end| end.is_capped)
             .count()
     }
-}
-
-/// Computes the weights `w_k = Σ_i a_ki x_i` and biases `b_k = Σ_i a_ki` of each class k from the signed multipliers a. The result does not contain the
-/// rounding errors of the solver's updates.
-fn weights(multipliers: &Array2<f64>, features: ArrayView2<f64>) -> LinearModel {
-    LinearModel {
-        weights: multipliers.dot(&features),
-        bias: multipliers.sum_axis(Axis(1)),
-    }
-}
-
-/// Returns the squared norm of the weights and the bias of each class k: `|w_k|² + b_k²`.
-fn squared_norms(model: &LinearModel) -> Array1<f64> {
-    let weights = model.weights.slice(s![.., ..]);
-    weights.map_axis(Axis(1), |w| w.dot(&w)) + model.bias.mapv(|b| b * b)
 }

@@ -6,8 +6,6 @@
 //! The 32 nearest rows of each class along this line contain 66 % of a pair's support vectors (6,000 touches of 43 objects, 1,024 features). The 24 rows
 //! nearest to the margin in 64 dimensions contain 84 %.
 
-use std::ops::Range;
-
 use ndarray::{Array2, Axis};
 
 use crate::gram::sorted::Sorted;
@@ -46,7 +44,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         own.flat_map(move |start| {
             let others = (start..n).step_by(OTHERS_AT_ONCE);
             others.map(move |other| {
-                to_and_fro(some(start, CLASSES_AT_ONCE), some(other, OTHERS_AT_ONCE))
+                pairs(some(start, CLASSES_AT_ONCE), some(other, OTHERS_AT_ONCE)).collect()
             })
         })
     }
@@ -70,19 +68,6 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         let along = along.each_ref().map(Vec::as_slice);
         nearest(along, ROWS_ALONG_MEANS, ranked)
     }
-}
-
-/// Returns all pairs of a class in `own` with a later class in `others`. Their order alternates, so that the rows of the last class are still in the cache.
-fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
-    let mut all = Vec::new();
-    for a in own {
-        let start = all.len();
-        all.extend(pairs(a..a + 1, others.clone()));
-        if a % 2 == 1 {
-            all[start..].reverse();
-        }
-    }
-    all
 }
 
 /// Returns all rows projected to a low-dimensional subspace, which is spanned by some of the rows.
