@@ -291,3 +291,52 @@ impl SweptEdge {
         if is_edge { height } else { f64::INFINITY }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    /// Where the faces end, rounding decides on which side of the border a taxel is. The edge reaches beyond both borders, so no taxel slips through.
+    #[test]
+    fn between_two_faces_without_slack_and_their_edge_there_is_no_gap() {
+        let mut rng = Seed::new(5).named("borders").rng();
+        let mut n_borders = 0;
+        for case in 0..20_000 {
+            let mut random = |size: f64| {
+                DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0))) * size
+            };
+            let (from, to) = (random(0.05), random(0.05));
+            let others = [random(0.05), random(0.05)];
+            let (part, radius) = (0.5 + random(0.4).x, 2e-3 + random(1e-3).x);
+            let (Some(one), Some(other)) = (
+                Triangle([from, to, others[0]]).normal(),
+                Triangle([to, from, others[1]]).normal(),
+            ) else {
+                continue;
+            };
+            // Both faces must look down at the ball that comes from below, and the edge must be a ridge.
+            let is_ridge = one.dot(others[1] - from) < -1e-3 && one.z < -1e-2 && other.z < -1e-2;
+            if !is_ridge {
+                continue;
+            }
+            let faces = [
+                SweptFace::new(&[from, to, others[0]], one, radius),
+                SweptFace::new(&[to, from, others[1]], other, radius),
+            ];
+            let edge = SweptEdge::new(from, to, radius, &[one, -other]);
+            for normal in [one, other] {
+                let border = from.lerp(to, part).truncate() + radius * normal.truncate();
+                for step in [-2.0, -1.0, 0.0, 1.0, 2.0] {
+                    let at = border * (1.0 + step * f64::EPSILON);
+                    let is_under = |face: &SweptFace| face.side(0, at)[0] >= 0.0;
+                    let is_stopped = faces.iter().any(is_under) || edge.is_beside(at);
+                    assert!(is_stopped, "case {case}: {at}");
+                    n_borders += 1;
+                }
+            }
+        }
+        assert!(n_borders > 1_000, "{n_borders}");
+    }
+}

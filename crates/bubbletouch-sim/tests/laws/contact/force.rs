@@ -4,7 +4,7 @@ use crate::mesh_shapes::{cuboid, icosphere, joined};
 use crate::scenes::{
     Pressed, Scene, TAXEL, assert_close, ball, direction, grid, mesh, pressed, rng, skin,
 };
-use bubbletouch_sim::contact::{Press, Until, Workspace, spring_load};
+use bubbletouch_sim::contact::{MovedObject, Press, Until, Workspace, spring_load};
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Model, Sphere, SphereUnion};
 use bubbletouch_sim::world::{Layout, Patch, Taxel, Taxels};
@@ -241,6 +241,36 @@ fn a_skin_moved_to_a_force_carries_it_and_first_there() {
         assert!((force_of(&there) - force).abs() <= tolerance);
         assert_close(&found.deflections, &there.deflections, 1e-12, &place);
         n_touched += found.counts().n_touched;
+    }
+    assert!(n_touched > 1_000, "{n_touched}");
+}
+
+#[test]
+fn an_object_held_to_a_force_carries_it_up_to_the_last_bit() {
+    let mut n_touched = 0;
+    for case in 0..200 {
+        let (scene, way) = random_way(case);
+        let force = 10f64.powf(rng("held force", case).gen_range(-3.0..0.5));
+        let found = pressed(scene.press(Until::Force(force)).along(way).with_contacts());
+        let moved = MovedObject {
+            patch: &scene.patch,
+            objects: &scene.objects,
+            moving: Some(0),
+            direction: -way,
+        };
+        let (mut poses, mut workspace) = (scene.poses.clone(), Workspace::new());
+        let travels = [0.0, 0.0, found.travel() + 1e-4];
+        let held = moved.hold(&mut poses, travels, force, &mut workspace);
+        let held = held.unwrap();
+        let stiffness = |taxel: usize| scene.patch.taxels().at(taxel).stiffness;
+        let contacts = workspace.contacts().iter();
+        let stiffness: f64 = contacts.map(|one| stiffness(one.taxel)).sum();
+        let last_bit = stiffness * 0.1 * f64::EPSILON;
+        let error = (held.force - force).abs();
+        let place = format!("case {case}: error {error} of {force} N");
+        assert!(error <= f64::max(1e-13 * force, last_bit), "{place}");
+        assert!((held.travel - found.travel()).abs() < 1e-12, "{place}");
+        n_touched += workspace.contacts().len();
     }
     assert!(n_touched > 1_000, "{n_touched}");
 }

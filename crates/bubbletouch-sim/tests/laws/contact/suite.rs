@@ -6,7 +6,7 @@ use crate::every_part::{Behind, by_every_part};
 use crate::mesh_shapes::{icosphere, inside_out};
 use crate::scenes::{
     N_FAMILIES, Pressed, Scene, TAXEL, assert_close, ball, mesh, pressed, pressed_in,
-    random_layout, random_pose, rng, skin,
+    random_layout, random_pose, rng, skin, union,
 };
 use bubbletouch_sim::contact::{Instructions, Press, Until, Workspace, Wrench, spring_load};
 use bubbletouch_sim::geometry::Pose;
@@ -16,7 +16,7 @@ use bubbletouch_sim::skin::{
     self as skins, ReadOptions, Skin, SkinPoses, SkinReading, SkinRelations,
 };
 use bubbletouch_sim::whole_body::{BodyState, WholeBody};
-use bubbletouch_sim::world::{Layout, Patch, Taxel};
+use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
@@ -78,6 +78,45 @@ fn every_way_pushes_every_taxel_as_far_as_every_part_says() {
     }
     assert!(n_touched.iter().all(|&n| n > 2_000), "{n_touched:?}");
     assert!(n_edges < n_by_mesh / 1000, "{n_edges} of {n_by_mesh}");
+}
+
+/// A sphere beside the last column pushes it by millimetres as soon as its distance from the axis is less than the sum of the radii by one bit.
+#[test]
+fn a_sphere_that_touches_the_last_column_by_one_bit_pushes_it_on_every_way() {
+    let mut n_touched = 0;
+    for case in 0..2000 {
+        let mut rng = rng("tangent", case);
+        let taxel = Taxel {
+            radius: rng.gen_range(0.3e-3..3e-3),
+            ..TAXEL
+        };
+        let [nx, ny] = [0; 2].map(|_| rng.gen_range(1..20));
+        let pitch = rng.gen_range(1e-3..5e-3);
+        let flat = Grid { nx, ny, pitch };
+        let radius = 10f64.powf(rng.gen_range(-3.0..0.0));
+        let reach = taxel.radius + radius;
+        let (last, height) = (flat.x(nx - 1), -rng.gen_range(1e-3..taxel.stroke));
+        let mut x = last + reach;
+        for _ in 0..rng.gen_range(0..4) {
+            x = x.next_down();
+        }
+        let center = DVec3::new(x, flat.y(rng.gen_range(0..ny)), height);
+        let scene = Scene::new(
+            skin(Layout::grid(&flat).unwrap(), taxel),
+            union([center], radius),
+            Pose::IDENTITY,
+        );
+        let beside = x - last;
+        let q = reach * reach - beside * beside;
+        let expected = if q > 0.0 { q.sqrt() - height } else { 0.0 };
+        n_touched += usize::from(q > 0.0);
+        for (name, way) in WAYS {
+            let found = way(&scene).unwrap().into_iter().fold(0.0, f64::max);
+            let place = format!("{name}, case {case}");
+            assert_eq!(found, f64::min(expected, taxel.stroke), "{place}");
+        }
+    }
+    assert!(n_touched > 800, "{n_touched}");
 }
 
 /// Returns the scene after a reflection at the plane x = 0 and a motion.
