@@ -28,6 +28,7 @@
 //! - `[NJ]` Nečas, Jarušek, Haslinger, *On the solution of the variational inequality to the Signorini problem with small friction*, 1980.
 //! - `[RW]` Rockafellar, *Augmented Lagrangians and applications of the proximal point algorithm in convex programming*, 1976.
 
+mod algebra;
 mod body;
 mod curvature;
 mod descent;
@@ -35,8 +36,6 @@ mod energy;
 mod fall;
 mod free_object;
 mod loads;
-#[cfg(test)]
-mod mesh_laws;
 mod meshes;
 mod model;
 mod pair;
@@ -52,9 +51,9 @@ mod slopes;
 mod solver;
 mod stagnation;
 mod symmetric;
-mod tied_max;
 #[cfg(test)]
-mod tilted_bed;
+mod tests;
+mod tied_max;
 
 pub use super::friction::{TangentialSpring, TangentialSpringState};
 pub use free_object::{FreeObject, Ground, HalfSpace, Obstacle, PlacedSkin};

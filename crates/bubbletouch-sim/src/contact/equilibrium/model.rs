@@ -215,7 +215,7 @@ mod tests {
     use crate::contact::equilibrium::loads::{Multipliers, Smoothness};
     use crate::contact::equilibrium::meshes::Depth;
     use crate::contact::equilibrium::shear_springs::Spring;
-    use crate::contact::equilibrium::tilted_bed::{self, Differences};
+    use crate::contact::equilibrium::tests::tilted_bed::{self, Differences};
     use crate::contact::equilibrium::{
         Ground, HalfSpace, Obstacle, PlacedSkin, TangentialSpring, Touched,
     };

@@ -63,12 +63,9 @@ impl Pair {
     /// Returns the derivatives of the deflection with respect to the motion of the body relative to its counterpart; `None` for fixed pairs.
     pub fn derivatives(&self) -> Option<Curvature> {
         match &self.kind {
-            Kind::Taxel(reach) => {
-                let found = reach.derivatives();
-                Some(Curvature::of_point((found.gradient, found.curvature)))
-            }
+            Kind::Taxel(reach) => Some(reach.derivatives()),
             Kind::Mesh(curvature, _) => Some(*curvature),
-            Kind::Rigid(touching) => Some(touching.derivatives()),
+            Kind::Rigid(touching) => Some(touching.curvature),
             Kind::Fixed => None,
         }
     }
@@ -93,7 +90,7 @@ impl Pair {
 
     pub fn is_grazing(&self) -> bool {
         match &self.kind {
-            Kind::Taxel(reach) => reach.derivatives().is_grazing,
+            Kind::Taxel(reach) => reach.is_grazing(),
             Kind::Mesh(_, is_grazing) => *is_grazing,
             _ => false,
         }

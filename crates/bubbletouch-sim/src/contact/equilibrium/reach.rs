@@ -2,6 +2,8 @@
 
 use super::super::law;
 use super::super::taxel_contact::GRAZING;
+use super::algebra::outer;
+use super::curvature::Curvature;
 use crate::world::PlacedTaxel;
 use glam::{DMat3, DVec3};
 
@@ -16,15 +18,6 @@ pub(super) struct Reach {
     axis: DVec3,
     /// Sum of the radii of taxel and sphere, metres.
     reach: f64,
-}
-
-/// First and second derivative of a taxel's deflection with respect to the sphere's centre.
-pub(super) struct Derivatives {
-    /// Gradient of the deflection with respect to the sphere's centre, dimensionless.
-    pub gradient: DVec3,
-    /// Second derivative of the deflection with respect to the sphere's centre, 1/m.
-    pub curvature: DMat3,
-    pub is_grazing: bool,
 }
 
 impl Reach {
@@ -68,7 +61,14 @@ impl Reach {
         height < taxel.behind && !law::is_in_front(q, height, taxel.behind)
     }
 
-    pub fn derivatives(&self) -> Derivatives {
+    /// Returns whether the deflection is on the tangent beside the sphere.
+    pub fn is_grazing(&self) -> bool {
+        let least = GRAZING * self.reach;
+        self.reach * self.reach - self.beside.length_squared() < least * least
+    }
+
+    /// Returns the derivatives of the deflection with respect to the sphere's centre.
+    pub fn derivatives(&self) -> Curvature {
         let Self {
             beside,
             axis,
@@ -77,29 +77,18 @@ impl Reach {
         } = *self;
         let b2 = beside.length_squared();
         let across = DMat3::IDENTITY - outer(axis, axis);
-        let least = GRAZING * reach;
+        if self.is_grazing() {
+            let slope = (1.0 - GRAZING * GRAZING).sqrt() / GRAZING;
+            let b = b2.sqrt();
+            let outward = beside / b;
+            let bending = (across - outer(outward, outward)) * (-slope / b);
+            return Curvature::of_point((-slope * outward - axis, bending));
+        }
         let q = reach * reach - b2;
-        if q >= least * least {
-            let up = q.sqrt();
-            return Derivatives {
-                gradient: -beside / up - axis,
-                curvature: (across + outer(beside, beside) * (1.0 / q)) * (-1.0 / up),
-                is_grazing: false,
-            };
-        }
-        let slope = (1.0 - GRAZING * GRAZING).sqrt() / GRAZING;
-        let b = b2.sqrt();
-        let outward = beside / b;
-        Derivatives {
-            gradient: -slope * outward - axis,
-            curvature: (across - outer(outward, outward)) * (-slope / b),
-            is_grazing: true,
-        }
+        let up = q.sqrt();
+        let bending = (across + outer(beside, beside) * (1.0 / q)) * (-1.0 / up);
+        Curvature::of_point((-beside / up - axis, bending))
     }
-}
-
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
 #[cfg(test)]
@@ -134,7 +123,7 @@ mod tests {
         ] {
             let c = beside * side + height * axis;
             let found = at(c).derivatives();
-            assert_eq!(found.is_grazing, beside > 4.99e-3);
+            assert_eq!(at(c).is_grazing(), beside > 4.99e-3);
             let step = 1e-8;
             for k in 0..3 {
                 let e = step * DVec3::AXES[k];
@@ -147,11 +136,8 @@ mod tests {
                 );
                 let gradient = |c| at(c).derivatives().gradient;
                 let bend = (gradient(c + e) - gradient(c - e)) / (2.0 * step);
-                let error = (bend - found.curvature.col(k)).length();
-                assert!(
-                    error < 1e-3 * found.curvature.col(k).length() + 1.0,
-                    "{bend}"
-                );
+                let error = (bend - found.bending.col(k)).length();
+                assert!(error < 1e-3 * found.bending.col(k).length() + 1.0, "{bend}");
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Contact of a free object's part with a rigid counterpart.
 
+use super::algebra::outer;
 use super::curvature::Curvature;
 use glam::{DMat3, DVec3};
 
@@ -37,18 +38,12 @@ impl Touching {
         distance: f64,
         other: Option<(u32, DVec3)>,
     ) -> Self {
-        let n = normal;
-        let along = DMat3::from_cols(n * n.x, n * n.y, n * n.z);
-        let bending = (DMat3::IDENTITY - along) * (-1.0 / distance);
+        let bending = (DMat3::IDENTITY - outer(normal, normal)) * (-1.0 / distance);
         Self {
-            curvature: Curvature::of_point((-n, bending)),
+            curvature: Curvature::of_point((-normal, bending)),
             inset: radius,
             parts: None,
             other,
         }
-    }
-
-    pub fn derivatives(&self) -> Curvature {
-        self.curvature
     }
 }

@@ -9,7 +9,6 @@
 //! | `near` | corners and ridges of a mesh that are near another shape |
 //! | `overlap` | depth of two overlapping shapes |
 
-mod algebra;
 mod contacts;
 mod found;
 mod near;

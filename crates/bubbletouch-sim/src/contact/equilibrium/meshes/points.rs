@@ -16,9 +16,9 @@
 //! −h, and the nearest one is as deep. The penetration is thus −h where q is on a face, and continuous when the point slides over the patch. The faces of
 //! a valley share the force. A floor and a wall are two patches and two contacts.
 
+use super::super::algebra::{cross_matrix, outer};
 use super::super::curvature::Curvature;
 use super::super::rigid_shape::RigidShape;
-use super::algebra::{cross_matrix, outer};
 use super::found::{Found, MISS, Placed, Range};
 use crate::geometry::Pose;
 use crate::mesh::{CREASE, Closest, MeshFeature, MeshFeatures};

@@ -11,9 +11,9 @@
 //! up to second order, where a is the vector from the centre of mass to c. K is the second derivative of the distance from the part: zero for a face, and
 //! `(1 − d dᵀ − t tᵀ) / r` for an edge along t. A corner is a sphere without radius ([`Reach`]).
 
+use super::super::algebra::{cross_matrix, outer};
 use super::super::curvature::Curvature;
 use super::super::reach::Reach;
-use super::algebra::{cross_matrix, outer};
 use crate::contact::law;
 use crate::contact::mesh::skin_mesh::MeshAt;
 use crate::contact::taxel_contact::GRAZING;
@@ -45,10 +45,8 @@ pub(in crate::contact::equilibrium) struct MeshReach {
 
 /// Mesh at a pose in the frame of a patch.
 pub(in crate::contact::equilibrium) struct MeshOnSkin<'a> {
-    model: &'a MeshModel,
+    mesh: MeshAt<'a>,
     features: &'a MeshFeatures,
-    pose: &'a Pose,
-    rotation: DMat3,
 }
 
 /// Taxel in the frame of a mesh.
@@ -71,12 +69,10 @@ struct Stop {
 }
 
 impl<'a> MeshOnSkin<'a> {
-    pub fn new(model: &'a MeshModel, pose: &'a Pose) -> Self {
+    pub fn new(model: &'a MeshModel, pose: &Pose) -> Self {
         Self {
-            model,
+            mesh: MeshAt::new(model, pose),
             features: model.features(),
-            pose,
-            rotation: DMat3::from_quat(pose.rotation),
         }
     }
 
@@ -93,7 +89,7 @@ impl<'a> MeshOnSkin<'a> {
         let margin = probe.reach + motion - GRAZING * probe.taxel.behind;
         let lowest = probe.floor - probe.reach - motion;
         let limit = motion * (1.0 + 1.0 / GRAZING);
-        self.model.bvh().search(
+        self.mesh.mesh.bvh().search(
             limit,
             |bounds| bounds.widened(margin).entry(p, n, lowest),
             |triangle, _, mut limit| {
@@ -114,21 +110,22 @@ impl<'a> MeshOnSkin<'a> {
     }
 
     fn probe(&self, taxel: &PlacedTaxel, motion: f64) -> Probe {
-        let back = self.rotation.transpose();
+        let MeshAt { mesh, object, .. } = &self.mesh;
+        let back = object.rotation.transpose();
         let placed = PlacedTaxel {
-            center: back * (taxel.center - self.pose.translation),
+            center: back * (taxel.center - object.translation),
             across: taxel.across.map(|across| back * across),
             axis: back * taxel.axis,
             ..*taxel
         };
         // A taxel whose substrate is inside the mesh is pushed by the surface through which its axis enters.
         let substrate = placed.center + taxel.behind * placed.axis;
-        let may_be_inside = self.model.bounds().distance_squared(substrate) == 0.0;
+        let may_be_inside = mesh.bounds().distance_squared(substrate) == 0.0;
         let entered = match may_be_inside {
-            true => MeshAt::new(self.model, self.pose).entered(taxel),
+            true => self.mesh.entered(taxel),
             false => None,
         };
-        let reach = taxel.radius + self.model.rounding();
+        let reach = taxel.radius + object.reach;
         Probe {
             taxel: placed,
             reach,
@@ -172,8 +169,8 @@ impl<'a> MeshOnSkin<'a> {
         MeshReach {
             part,
             deflection: stop.deflection,
-            center: self.pose.translation + self.rotation * stop.center,
-            curvature: stop.curvature.turned(&self.rotation),
+            center: self.mesh.object.place(stop.center),
+            curvature: stop.curvature.turned(&self.mesh.object.rotation),
             is_grazing: stop.is_grazing,
             is_behind,
         }
@@ -245,12 +242,8 @@ impl Probe {
         is_nearest(found.gradient.normalize()).then_some(Stop {
             deflection: reach.deflection,
             center: corner,
-            curvature: Curvature {
-                gradient: found.gradient,
-                bending: found.curvature,
-                turning: [DMat3::ZERO; 2],
-            },
-            is_grazing: found.is_grazing,
+            curvature: found,
+            is_grazing: reach.is_grazing(),
         })
     }
 

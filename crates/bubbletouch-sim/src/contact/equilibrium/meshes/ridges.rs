@@ -2,8 +2,8 @@
 //!
 //! Ridges touch where their nearest points are inside both, and the normal lies between the normals of the faces, outwards of both solids.
 
+use super::super::algebra::{cross_matrix, outer};
 use super::super::curvature::Curvature;
-use super::algebra::cross_matrix;
 use super::found::{Found, MISS, Range};
 use crate::geometry::{Aabb, Pose};
 use crate::mesh::Edge;
@@ -132,8 +132,7 @@ impl Crossing {
     /// Returns the derivatives of the penetration. A rotation of the first ridge relative to the second one turns the normal about the second ridge.
     fn curvature(&self) -> Curvature {
         let (m, [t, u]) = (self.normal, self.along);
-        let (axis, way) = (t.cross(m) / self.sine, m.cross(u));
-        let turn = DMat3::from_cols(axis * way.x, axis * way.y, axis * way.z);
+        let turn = outer(t.cross(m) / self.sine, m.cross(u));
         Curvature {
             gradient: -m,
             bending: DMat3::ZERO,

@@ -1,14 +1,14 @@
 //! Tests of the energy of free meshes: continuity, and derivatives against finite differences.
 
-use super::energy::Energy;
-use super::loads::{Load, Multipliers, Smoothness};
-use super::meshes::{Depth, Placed, Range, each_contact, overlap};
-use super::model::Model;
-use super::pair::Key;
-use super::pairs::Group;
-use super::scene::Scene;
 use super::tilted_bed::{self, Differences};
-use super::{Ground, PlacedSkin};
+use crate::contact::equilibrium::energy::Energy;
+use crate::contact::equilibrium::loads::{Load, Multipliers, Smoothness};
+use crate::contact::equilibrium::meshes::{Depth, Placed, Range, each_contact, overlap};
+use crate::contact::equilibrium::model::Model;
+use crate::contact::equilibrium::pair::Key;
+use crate::contact::equilibrium::pairs::Group;
+use crate::contact::equilibrium::scene::Scene;
+use crate::contact::equilibrium::{Ground, PlacedSkin};
 use crate::geometry::Pose;
 use crate::mesh::TriangleMesh;
 use crate::objects::MeshModel;

@@ -1,16 +1,16 @@
 //! Two bodies on a tilted bed of taxels, and the finite differences of their energy, for tests.
 
-use super::FreeObject;
-use super::body::Body;
-use super::rigid_shape::RigidShape;
-use super::scene::Scene;
-use super::symmetric::{Symmetric, norm};
+use crate::contact::equilibrium::FreeObject;
+use crate::contact::equilibrium::body::Body;
+use crate::contact::equilibrium::rigid_shape::RigidShape;
+use crate::contact::equilibrium::scene::Scene;
+use crate::contact::equilibrium::symmetric::{Symmetric, norm};
 use crate::geometry::Pose;
 use crate::world::{Grid, Patch, Taxel};
 use glam::{DQuat, DVec3};
 
 /// Returns a bed of n × n taxels.
-pub(super) fn patch(n: usize, damping: f64) -> Patch {
+pub(in crate::contact::equilibrium) fn patch(n: usize, damping: f64) -> Patch {
     let taxel = Taxel {
         radius: 1e-3,
         stiffness: 200.0,
@@ -25,7 +25,7 @@ pub(super) fn patch(n: usize, damping: f64) -> Patch {
     Patch::grid(grid, taxel).unwrap()
 }
 
-pub(super) fn world_from_patch() -> Pose {
+pub(in crate::contact::equilibrium) fn world_from_patch() -> Pose {
     Pose::new(
         DQuat::from_rotation_x(0.4) * DQuat::from_rotation_y(-0.2),
         DVec3::new(0.1, -0.2, 0.3),
@@ -33,7 +33,7 @@ pub(super) fn world_from_patch() -> Pose {
 }
 
 /// Returns the two bodies with their start poses.
-pub(super) fn bodies<'a, S: Into<RigidShape<'a>>>(
+pub(in crate::contact::equilibrium) fn bodies<'a, S: Into<RigidShape<'a>>>(
     shapes: [S; 2],
     starts: [Pose; 2],
 ) -> Vec<Body<'a>> {
@@ -48,7 +48,10 @@ pub(super) fn bodies<'a, S: Into<RigidShape<'a>>>(
 }
 
 /// Returns the scene after some of the twelve motions of the bodies, given by number and length in metres, and the work of the weights, joules.
-pub(super) fn moved<'a>(scene: &Scene<'a>, steps: &[(usize, f64)]) -> (Scene<'a>, f64) {
+pub(in crate::contact::equilibrium) fn moved<'a>(
+    scene: &Scene<'a>,
+    steps: &[(usize, f64)],
+) -> (Scene<'a>, f64) {
     let mut motion = [0.0; 12];
     steps.iter().for_each(|(k, by)| motion[*k] += by);
     let mut moved = scene.clone();
@@ -59,7 +62,7 @@ pub(super) fn moved<'a>(scene: &Scene<'a>, steps: &[(usize, f64)]) -> (Scene<'a>
 }
 
 /// First and second finite differences of the energy with respect to the twelve motions of two bodies.
-pub(super) struct Differences {
+pub(in crate::contact::equilibrium) struct Differences {
     slopes: [f64; 12],
     bends: [[f64; 12]; 12],
 }
