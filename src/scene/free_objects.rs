@@ -3,12 +3,12 @@
 use super::frame::{ObjectReading, PoseControl};
 use super::plan::ScenePlan;
 use super::plan_object::Movement;
-use super::skin_state::{OUT_OF_REACH, PlacedObjects, SkinState};
+use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, Obstacle, Outcome, PlacedSkin,
     RigidContact, TangentialSpring, TangentialSpringState, TaxelLoad, Touched,
 };
-use crate::contact::{Press, Until, Workspace};
+use crate::contact::{OUT_OF_REACH, Press, Until, Workspace};
 use crate::error::Result;
 use crate::geometry::Pose;
 

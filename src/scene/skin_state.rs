@@ -4,8 +4,8 @@ use super::frame::PatchReading;
 use super::planned::{Carrier, PlannedPatch};
 use crate::contact::equilibrium::{TangentialSpring, TangentialSpringState, TaxelLoad};
 use crate::contact::{
-    Contact, ContactModeCounts, DamperState, FrictionState, NormalForce, Press, Record,
-    TaxelContact, Until, Workspace, Wrench, axial_load,
+    Contact, ContactModeCounts, DamperState, FrictionState, NormalForce, OUT_OF_REACH, Press,
+    Record, TaxelContact, Until, Workspace, Wrench, axial_load,
 };
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -22,12 +22,6 @@ pub(super) struct PlacedObjects<'p> {
     /// Bounding ball of each object, object frame, metres.
     pub balls: Vec<Sphere>,
 }
-
-/// Pose of objects without contact: far from all patches, but with a finite squared distance.
-pub(super) const OUT_OF_REACH: Pose = Pose {
-    rotation: glam::DQuat::IDENTITY,
-    translation: DVec3::new(0.0, 0.0, 1e100),
-};
 
 impl PlacedObjects<'_> {
     /// Returns the pose of each object in the patch frame, `patch_from_object`. An object that carries the patch does not touch it and gets a pose out of

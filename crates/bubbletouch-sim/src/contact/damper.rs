@@ -22,6 +22,10 @@ pub fn relaxation_factor(taxel: &Taxel, dt: f64) -> f64 {
 }
 
 /// Deflections and forces of the taxels of one patch, carried from one time step to the next.
+///
+/// The state has all taxels, because a damper has no limit below which its taxel counts as at rest. The deflections of a press are in a
+/// [`Workspace`](super::Workspace), which the next press overwrites. A [`BodyState`](crate::whole_body::BodyState) stores the ranges of deflected taxels of a skin
+/// with millions of taxels, and sets relaxing taxels to rest at [`AT_REST`](crate::whole_body::AT_REST).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DamperState {
     /// Deflection of each taxel, metres, shape (n_taxels,).

@@ -44,6 +44,7 @@ mod instructions;
 pub(crate) mod lanes;
 pub(crate) mod law;
 mod mesh;
+pub(crate) mod object_at;
 mod pose_jacobian;
 mod press;
 mod press_summary;
@@ -66,6 +67,7 @@ pub(crate) use instructions::for_instructions;
 pub use law::saturation_limit;
 #[doc(hidden)]
 pub use law::triangle::stopping_height;
+pub use object_at::OUT_OF_REACH;
 pub use pose_jacobian::{POSE_PARAMETERS, pose_jacobian};
 pub use press::{Press, Record, Until};
 pub use press_summary::Contact;

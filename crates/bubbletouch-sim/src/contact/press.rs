@@ -4,7 +4,7 @@
 //! The results of the two kernels are equal up to rounding.
 
 use super::FrictionState;
-use super::grid::{OutputBuffer, Row, force};
+use super::grid::{GridPress, OutputBuffer, Row, force};
 use super::press_summary::Contact;
 use super::tree::Path;
 use super::workspace::Workspace;
@@ -142,7 +142,7 @@ impl<'a> Press<'a> {
     /// out of its range ([`Until`]). If the force exceeds the largest force on the path past the objects; the message contains this largest force and its
     /// travel.
     pub fn run(&self, workspace: &mut Workspace) -> Result<Option<Contact>> {
-        self.run_with(workspace, &mut OutputBuffer::none())
+        self.run_with(workspace, None)
     }
 
     /// Presses the patch and writes the deflections into `row`, which is faster than copying them afterwards.
@@ -200,13 +200,7 @@ impl<'a> Press<'a> {
         workspace: &mut Workspace,
     ) -> Result<Option<Contact>> {
         check_output(output.row.len(), self.patch.n_taxels())?;
-        let contact = self.run_with(workspace, &mut output)?;
-        match workspace.is_on_grid() {
-            // Either the kernel has written the row, or nothing is touched.
-            true => output.finish(),
-            false => output.row.write(workspace.deflections()),
-        }
-        Ok(contact)
+        self.run_with(workspace, Some(&mut output))
     }
 
     fn check(&self) -> Result<()> {
@@ -218,12 +212,25 @@ impl<'a> Press<'a> {
     fn run_with(
         &self,
         workspace: &mut Workspace,
-        output: &mut OutputBuffer,
+        output: Option<&mut OutputBuffer>,
     ) -> Result<Option<Contact>> {
         self.check()?;
         let contact = match self.kernel(workspace) {
-            Some(grid) => self.run_by_rows(grid, (workspace, output))?,
-            None => Path::new(self, workspace).run()?,
+            Some(grid) => {
+                let mut none = OutputBuffer::none();
+                let output = output.unwrap_or(&mut none);
+                let contact = self.run_by_rows(workspace.on_grid(grid), output)?;
+                // If nothing is touched, the kernel has not filled the row.
+                output.finish();
+                contact
+            }
+            None => {
+                let contact = Path::new(self, workspace).run()?;
+                if let Some(output) = output {
+                    output.row.write(workspace.deflections());
+                }
+                contact
+            }
         };
         let counts_untouched = matches!(self.until, Until::Depth(_));
         Ok(contact.filter(|contact| counts_untouched || contact.n_touched > 0))
@@ -244,22 +251,22 @@ impl<'a> Press<'a> {
 
     fn run_by_rows(
         &self,
-        grid: &EvenGrid,
-        (workspace, output): (&mut Workspace, &mut OutputBuffer),
+        mut press: GridPress,
+        output: &mut OutputBuffer,
     ) -> Result<Option<Contact>> {
         let (objects, poses) = (self.objects, self.poses);
-        let press = workspace.on_grid();
         if let Until::Force(force) = self.until {
             let stiffness = self.patch.taxels().at(0).stiffness;
-            return force::press((grid, stiffness), objects, poses, force, (press, output));
+            let placed = (objects, poses);
+            return force::press(&mut press, placed, (force, stiffness), output);
         }
-        let first = press.gather(grid, objects, poses, self.until);
+        let first = press.gather(objects, poses, self.until);
         let travel = self.until.limit(first.unwrap_or(f64::INFINITY));
         if travel == f64::INFINITY {
-            press.touch_nothing(grid);
+            press.touch_nothing();
             return Ok(None);
         }
-        Ok(Some(press.indent(grid, travel, output)))
+        Ok(Some(press.indent(travel, output)))
     }
 }
 

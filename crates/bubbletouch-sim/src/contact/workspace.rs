@@ -1,28 +1,28 @@
 //! Scratch memory of a thread for presses.
 
-use super::grid::{GridLines, GridPress};
+use super::grid::{GridPress, GridScratch, GridValues};
 use super::instructions::Instructions;
+use super::object_at::ClusterSearch;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
+use crate::world::EvenGrid;
 
 /// Scratch memory of one thread for presses, and the result of the last press. Reuse avoids allocations once the largest patch has been pressed.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     instructions: Instructions,
     /// Scratch memory for flat grids pressed along their axis.
-    grid: GridPress,
-    /// Whether the last press was a press of a flat grid along its axis, whose result is in `grid`.
-    is_on_grid: bool,
-    /// Deflections, metres, shape (n_taxels,).
-    pub(super) deflections: Vec<f64>,
+    grid: GridScratch,
+    /// Deflections, metres, shape (n_taxels,). Above zero are only taxels of `touched`, or of the rectangle that a press of a flat grid has reached.
+    pub(super) deflections: GridValues,
     /// Indices of the object and of its part (sphere or triangle) that determine each deflection, shape (n_taxels,); unspecified for untouched taxels.
     pub(super) deciding: Vec<[u32; 2]>,
-    /// Indices of the touched taxels, ascending after a press.
+    /// Indices of the touched taxels, ascending after a press; empty after a press of a flat grid along its axis.
     pub(super) touched: Vec<u32>,
     /// Indices of the spheres of an object near the patch.
     pub(super) near: Vec<u32>,
-    /// Lines (columns and rows) of the last evenly spaced grid.
-    pub(super) lines: GridLines,
+    /// Search for these spheres.
+    pub(super) clusters: ClusterSearch,
     /// Contacts of the touched taxels, in the order of `touched`.
     pub(super) contacts: Vec<TaxelContact>,
     /// Parts of objects (spheres or triangles) that push their taxels even from behind the substrate, with these taxels.
@@ -58,15 +58,7 @@ impl Workspace {
 
     /// Returns the deflections of the last press, metres, shape (n_taxels,), in the order of the layout.
     pub fn deflections(&self) -> &[f64] {
-        match self.is_on_grid {
-            true => self.grid.deflections(),
-            false => &self.deflections,
-        }
-    }
-
-    /// Returns whether the last press was a press of a flat grid along its axis.
-    pub(super) fn is_on_grid(&self) -> bool {
-        self.is_on_grid
+        self.deflections.all()
     }
 
     /// Returns the contacts of the last press, ascending by taxel; empty after presses that do not record contacts.
@@ -101,26 +93,32 @@ impl Workspace {
         !self.held.is_empty()
     }
 
-    /// Returns the scratch memory for grids and marks the next press as a press of a flat grid along its axis.
-    pub(super) fn on_grid(&mut self) -> &mut GridPress {
-        self.is_on_grid = true;
-        self.contacts.clear();
-        self.grid.instructions = self.instructions;
-        &mut self.grid
+    /// Prepares a press of a flat grid along its axis.
+    pub(super) fn on_grid<'a>(&'a mut self, grid: &'a EvenGrid) -> GridPress<'a> {
+        self.untouch();
+        GridPress {
+            grid,
+            instructions: self.instructions,
+            scratch: &mut self.grid,
+            deflections: &mut self.deflections,
+        }
     }
 
     /// Resizes the buffers for `n_taxels` taxels and clears only the taxels that the last press touched.
     pub(super) fn clear(&mut self, n_taxels: usize) {
-        self.is_on_grid = false;
+        self.untouch();
+        self.touched.reserve(n_taxels);
+        self.contacts.reserve(n_taxels);
+        self.deflections.clear(n_taxels, 1, 0.0);
+        self.deciding.resize(n_taxels, [0; 2]);
+    }
+
+    fn untouch(&mut self) {
         for &taxel in &self.touched {
             self.deflections[taxel as usize] = 0.0;
         }
         self.touched.clear();
-        self.touched.reserve(n_taxels);
         self.contacts.clear();
-        self.contacts.reserve(n_taxels);
-        self.deflections.resize(n_taxels, 0.0);
-        self.deciding.resize(n_taxels, [0; 2]);
     }
 
     /// Raises the deflection of a taxel to `needed`, metres. If several object parts require equal deflections, the first part counts.

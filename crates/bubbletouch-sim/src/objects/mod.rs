@@ -47,7 +47,7 @@ pub use pack::pack;
 pub use shape::Shape;
 pub use solid::{Part, Solid};
 pub use sphere_clusters::SphereClusters;
-pub(crate) use sphere_clusters::{Cluster, ClusterBounds, MAX_IN_CLUSTER};
+pub(crate) use sphere_clusters::{Cluster, MAX_IN_CLUSTER};
 pub use sphere_csv::{read_spheres, write_spheres};
 pub use sphere_union::{Represented, Sphere, SphereUnion};
 pub use surface_error::{SurfaceError, surface_error};

@@ -7,12 +7,10 @@ use super::point_loads::LoadPart;
 use super::reading::{SkinReading, TouchCounts, clear};
 use super::shear_state::ShearState;
 use super::skin::Skin;
+use crate::contact::OUT_OF_REACH;
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, check_poses};
 use glam::DVec3;
-
-/// Distance, metres, to which a body without contact is moved. The body keeps its index in the list of bodies.
-const OUT_OF_REACH: f64 = 1e6;
 
 /// Poses of patches and bodies in the world: one set or several, set after set.
 #[derive(Clone, Copy, Debug)]
@@ -218,7 +216,7 @@ impl Skin {
         let bodies = &poses.bodies[set * n_bodies..][..n_bodies];
         reading.place(&poses.patches[index], bodies);
         for body in &self.excluded[number] {
-            reading.placed[*body].translation.z += OUT_OF_REACH;
+            reading.placed[*body] = OUT_OF_REACH;
         }
         let objects = &self.objects[number];
         let frame = &mut reading.deflections[set * self.n_taxels()..][part.taxels()];
@@ -234,7 +232,7 @@ impl Skin {
             let members = object.members.iter().copied();
             if force == 0.0 {
                 for member in members {
-                    reading.placed[member].translation.z += OUT_OF_REACH;
+                    reading.placed[member] = OUT_OF_REACH;
                 }
                 reading.travels[at] = f64::NAN;
                 continue;

@@ -15,8 +15,9 @@ use super::dome_patch::DomePatch;
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
 use crate::contact::law;
+use crate::contact::object_at::PlacedSphere;
 use crate::world::DomeRing;
-use glam::{DVec3, Vec3Swizzles};
+use glam::Vec3Swizzles;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
@@ -28,12 +29,13 @@ const ACOS_ROUNDING: f64 = 1e-7;
 impl Pushed for DomePatch {
     /// Always returns true: the caller has already tested the bounding ball, and a dome has no narrower bound.
     #[inline(always)]
-    fn is_near(&self, _: DVec3, _: f64) -> bool {
+    fn is_near(&self, _: &PlacedSphere) -> bool {
         true
     }
 
     #[inline(always)]
-    fn push(&self, state: &mut PatchState, center: DVec3, reach: f64) {
+    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere) {
+        let PlacedSphere { center, reach } = *sphere;
         let radius = self.dome().radius();
         let power = center.length_squared() - reach * reach;
         let substrate = self.substrate;

@@ -2,22 +2,21 @@
 
 use super::SphereClusters;
 use super::body_patch::{BodyPatch, Surface};
-use super::lanes::{LANES, View};
 use super::patch_state::PatchState;
 use crate::contact::lanes::SelectedLanes;
+use crate::contact::object_at::{LOOK, ObjectAt, PlacedSphere};
 use crate::contact::{Instructions, for_instructions};
 use crate::geometry::Pose;
-use glam::{DMat3, DVec3};
+use crate::objects::Sphere;
 
-/// Surface with taxels that spheres push. A trait is used because closures would be compiled without vector instructions.
+/// Surface with taxels that spheres push. Spheres are in the frame of the surface, enlarged by the radius of the taxels. A trait is used because closures would
+/// be compiled without vector instructions.
 pub(super) trait Pushed {
-    /// Returns whether a ball comes near any taxel. `center` is in the frame of the surface. `reach` is the radius of the ball plus the taxels' radius,
-    /// metres.
-    fn is_near(&self, center: DVec3, reach: f64) -> bool;
+    /// Returns whether a ball comes near any taxel.
+    fn is_near(&self, ball: &PlacedSphere) -> bool;
 
-    /// Raises the deflections of the taxels by a sphere. `center` is in the frame of the surface. `reach` is the sum of the radii of sphere and taxel,
-    /// metres.
-    fn push(&self, state: &mut PatchState, center: DVec3, reach: f64);
+    /// Raises the deflections of the taxels by a sphere.
+    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere);
 }
 
 impl PatchState {
@@ -54,49 +53,47 @@ fn push_surface(
     object: &SphereClusters,
     patch_from_object: &Pose,
 ) {
-    let rotation = DMat3::from_quat(patch_from_object.rotation);
-    let (origin, radius) = (patch_from_object.translation, patch.taxel().radius);
+    let at = ObjectAt::new(patch_from_object, patch.taxel().radius);
     match patch.surface() {
         Surface::Rows(rows) => {
             let uvw = rows.extrusion().uvw_from_patch();
-            let view = View::new(uvw * rotation, uvw * origin, radius, rows.ball_in_uvw());
-            push_each(state, rows, object, &view);
+            let at = ObjectAt {
+                rotation: uvw * at.rotation,
+                translation: uvw * at.translation,
+                ..at
+            };
+            push_each(state, (rows, &rows.ball_in_uvw()), object, at);
         }
-        Surface::Dome(dome) => {
-            let view = View::new(rotation, origin, radius, dome.ball);
-            push_each(state, dome, object, &view);
-        }
-        Surface::Draped(draped) => {
-            let view = View::new(rotation, origin, radius, draped.ball);
-            push_each(state, draped, object, &view);
-        }
+        Surface::Dome(dome) => push_each(state, (dome, &dome.ball), object, at),
+        Surface::Draped(draped) => push_each(state, (draped, &draped.ball), object, at),
     }
 }
 
+/// Raises the deflections of the taxels of a surface, all of which are inside a ball.
 #[inline(always)]
-fn push_each(state: &mut PatchState, surface: &impl Pushed, object: &SphereClusters, view: &View) {
-    let bounds = object.bounds();
-    let mut gaps = std::mem::take(&mut state.gaps);
-    gaps.clear();
-    gaps.resize(bounds.len().next_multiple_of(LANES), f64::INFINITY);
-    view.lay_gaps(bounds, &mut gaps[..bounds.len()]);
+fn push_each(
+    state: &mut PatchState,
+    (surface, around): (&impl Pushed, &Sphere),
+    object: &SphereClusters,
+    at: ObjectAt,
+) {
+    let mut search = std::mem::take(&mut state.clusters);
+    search.lay(at, object, around);
     let mut n_evaluated = 0;
-    for (look, gaps) in gaps.as_chunks::<LANES>().0.iter().enumerate() {
+    for (look, gaps) in search.looks().iter().enumerate() {
         for k in SelectedLanes::below(gaps, 0.0) {
-            let cluster = look * LANES + k;
-            let (center, reach) = view.ball(bounds, cluster);
-            if !surface.is_near(center, reach) {
+            let cluster = look * LOOK + k;
+            if !surface.is_near(&at.sphere(object.bounds().ball(cluster))) {
                 continue;
             }
-            let spheres = view.spheres(object, cluster);
-            for k in spheres.near() {
-                let (center, reach) = spheres.at(k);
-                surface.push(state, center, reach);
+            let cluster = object.cluster(cluster);
+            for k in at.spheres_below(&cluster, around, 0.0) {
+                surface.push(state, &at.sphere(cluster.at(k)));
                 n_evaluated += 1;
             }
         }
     }
-    state.gaps = gaps;
+    state.clusters = search;
     state.n_evaluated += n_evaluated;
     state.n_rejected += object.n_spheres() - n_evaluated;
 }

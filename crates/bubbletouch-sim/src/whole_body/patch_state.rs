@@ -3,6 +3,7 @@
 use super::body_patch::BodyPatch;
 use super::lanes::LANES;
 use super::row_patch::SphereOverBundle;
+use crate::contact::object_at::ClusterSearch;
 use crate::contact::{Relaxation, relaxation_factor, saturation_limit};
 use std::ops::Range;
 
@@ -10,6 +11,9 @@ use std::ops::Range;
 pub const AT_REST: f64 = 1e-9;
 
 /// Deflections of one patch: 8 bytes per taxel, and 8 more per deflected taxel.
+///
+/// Relaxing taxels remain deflected for many steps, far from the objects. Each row therefore has its own range, unlike the one rectangle of a press of a grid
+/// (`GridValues`), and a step takes the time of the deflected taxels.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PatchState {
     /// Deflections, metres, shape (n_taxels,), padded so that the last row also consists of whole blocks.
@@ -28,8 +32,8 @@ pub(super) struct PatchState {
     pub n_evaluated: usize,
     /// Number of spheres near the patch that were excluded without evaluating rows, rings or tiles of taxels.
     pub n_rejected: usize,
-    /// Scratch memory of a search: a bound for each cluster of an object's spheres, negative if a sphere of the cluster may touch the patch.
-    pub gaps: Vec<f64>,
+    /// Scratch memory of the search for the spheres near the patch.
+    pub clusters: ClusterSearch,
     /// Scratch memory for one sphere: the bundles of columns near it, with the index of each bundle's first column.
     pub under: Vec<(u32, SphereOverBundle)>,
 }
@@ -64,7 +68,7 @@ impl PatchState {
         size_of::<Self>()
             + size_of_val(&self.deflections[..])
             + size_of_val(&self.spans[..])
-            + self.gaps.capacity() * size_of::<f64>()
+            + self.clusters.n_bytes()
             + self.under.capacity() * size_of::<(u32, SphereOverBundle)>()
             + self.active.capacity() * size_of::<u32>()
             + (self.touched.capacity() + self.before.capacity()) * size_of::<(u32, f64)>()

@@ -4,9 +4,10 @@ use super::lanes::{Balls, FAR, LANES, ball_around, filled};
 use crate::contact::Lines;
 use crate::contact::lanes::largest;
 use crate::contact::law::{beats, indent, squares_in_front};
+use crate::contact::object_at::PlacedSphere;
 use crate::objects::Sphere;
 use crate::world::Extrusion;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 /// Equal taxels in a row that is repeated along a line, with the structures that find the taxels near a sphere.
 #[derive(Clone, Debug)]
@@ -140,7 +141,8 @@ impl SphereOverBundle {
     /// Returns the sphere's position relative to the columns. Also returns the square of the largest distance along the rows, m², at which the sphere pushes
     /// a taxel from the front. The square is zero or less if the sphere pushes no taxel.
     #[inline(always)]
-    pub fn new(bundle: &Bundle, center: DVec3, reach: f64) -> (Self, f64) {
+    pub fn new(bundle: &Bundle, sphere: &PlacedSphere) -> (Self, f64) {
+        let PlacedSphere { center, reach } = *sphere;
         let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
             let (du, dv) = (center.x - bundle.u[k], center.y - bundle.v[k]);

@@ -10,7 +10,7 @@ use super::patch_state::PatchState;
 use super::row_patch::{RowPatch, SphereOverBundle};
 use crate::contact::lanes::SelectedLanes;
 use crate::contact::law::{beats, indent};
-use glam::DVec3;
+use crate::contact::object_at::PlacedSphere;
 
 /// Maximum number of bundles of columns for which a sphere counts as small. For a small sphere, testing whether contact requires more than the present
 /// deflection takes as long as the root.
@@ -18,26 +18,27 @@ const FEW: usize = 3;
 
 impl Pushed for RowPatch {
     #[inline(always)]
-    fn is_near(&self, center: DVec3, reach: f64) -> bool {
-        let mut is_near = false;
+    fn is_near(&self, ball: &PlacedSphere) -> bool {
+        let (mut is_near, across) = (false, across_rows(ball));
         for circles in self.circles() {
-            is_near |= !circles.near(center.with_z(0.0), reach).is_empty();
+            is_near |= !circles.near(&across).is_empty();
         }
-        is_near && !is_beside(self, center.z, reach)
+        is_near && !is_beside(self, ball)
     }
 
     #[inline(always)]
-    fn push(&self, state: &mut PatchState, center: DVec3, reach: f64) {
-        if is_beside(self, center.z, reach) {
+    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere) {
+        if is_beside(self, sphere) {
             return;
         }
+        let across = across_rows(sphere);
         let mut under = std::mem::take(&mut state.under);
         under.clear();
         let (mut widest, mut lowest) = (0.0, [f64::INFINITY; LANES]);
         for (look, circles) in self.circles().iter().enumerate() {
-            for k in circles.near(center.with_z(0.0), reach) {
+            for k in circles.near(&across) {
                 let bundle = look * LANES + k;
-                let (share, spare) = SphereOverBundle::new(&self.bundles()[bundle], center, reach);
+                let (share, spare) = SphereOverBundle::new(&self.bundles()[bundle], sphere);
                 if spare > 0.0 {
                     widest = if spare > widest { spare } else { widest };
                     lower(&mut lowest, &share.heights);
@@ -46,9 +47,9 @@ impl Pushed for RowPatch {
             }
         }
         if !SelectedLanes::below(&lowest, self.behind()).is_empty() {
-            push_through(state, self, &under, center.z, widest.sqrt());
+            push_through(state, self, &under, sphere.center.z, widest.sqrt());
         } else if !under.is_empty() {
-            push_rows(state, self, &under, center.z, widest.sqrt());
+            push_rows(state, self, &under, sphere.center.z, widest.sqrt());
         }
         state.under = under;
     }
@@ -66,10 +67,19 @@ fn lower(lowest: &mut [f64; LANES], heights: &[f64; LANES]) {
     }
 }
 
-/// Returns whether no row is within the distance `reach` of the position `w` along the rows, metres.
+/// Returns the circle of a sphere in the plane perpendicular to the rows, as a sphere with its centre at w = 0.
 #[inline(always)]
-fn is_beside(patch: &RowPatch, w: f64, reach: f64) -> bool {
-    let rows = &patch.lines().positions;
+fn across_rows(sphere: &PlacedSphere) -> PlacedSphere {
+    PlacedSphere {
+        center: sphere.center.with_z(0.0),
+        ..*sphere
+    }
+}
+
+/// Returns whether the sphere is beside all rows.
+#[inline(always)]
+fn is_beside(patch: &RowPatch, sphere: &PlacedSphere) -> bool {
+    let (rows, w, reach) = (&patch.lines().positions, sphere.center.z, sphere.reach);
     w + reach <= rows[0] || w - reach >= rows[rows.len() - 1]
 }
 

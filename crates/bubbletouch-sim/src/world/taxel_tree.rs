@@ -111,12 +111,12 @@ impl TaxelTree {
 
     /// Returns the bounding box of all taxels (their centres at rest and the substrate below them), metres; `None` if there are no taxels.
     pub fn bounds(&self) -> Option<&Aabb> {
-        self.nodes.first().map(|root| &root.bounds)
+        self.root().map(|root| &root.bounds)
     }
 
     /// Returns a ball that contains all taxels (their spheres at rest and the substrate below them), metres; `None` if there are no taxels.
     pub fn ball(&self) -> Option<Sphere> {
-        let root = self.nodes.first()?;
+        let root = self.root()?;
         let ball = Sphere::around(&root.bounds);
         Some(Sphere {
             radius: ball.radius + root.radius,
@@ -126,7 +126,7 @@ impl TaxelTree {
 
     /// Returns the largest radius of a taxel, metres.
     pub fn largest_radius(&self) -> f64 {
-        self.nodes.first().map_or(0.0, |root| root.radius)
+        self.root().map_or(0.0, |root| root.radius)
     }
 
     /// Returns the largest sum of stroke and radius of a taxel, metres.
@@ -138,8 +138,13 @@ impl TaxelTree {
     /// a taxel.
     #[inline]
     pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
-        let root = self.nodes.first();
+        let root = self.root();
         root.is_some_and(|root| root.is_near(center, radius))
+    }
+
+    /// Returns the node that contains all taxels; `None` if there are no taxels.
+    pub(crate) fn root(&self) -> Option<&Node> {
+        self.nodes.first()
     }
 
     /// Calls `visit` with each taxel that a ball (metres, in the patch frame) can push, and possibly with other taxels nearby.

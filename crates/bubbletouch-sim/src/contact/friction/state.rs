@@ -89,6 +89,9 @@ pub struct FrictionLoad {
 
 /// Shear springs of one patch with friction, carried from one time step to the next.
 ///
+/// A shear spring depends on the path of its contact. The state therefore contains the contacts of the last step, with their material points on the objects,
+/// which no other state of deflections needs.
+///
 /// ```
 /// use bubbletouch_sim::contact::{FrictionState, NormalForce, Press, Until, Workspace};
 /// use bubbletouch_sim::geometry::Pose;

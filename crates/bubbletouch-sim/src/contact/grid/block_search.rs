@@ -12,11 +12,11 @@ use super::lines::{GridLines, Lines};
 use super::pair_batch::Pair;
 use crate::contact::lanes::{least, most};
 use crate::contact::mesh::directions::Directions;
-use crate::geometry::Pose;
+use crate::contact::object_at::ObjectAt;
 use crate::objects::mesh_blocks::{
     ALL_SIDES, Block, BlockNode, INNER_SIDES, LANES, Lane, MeshBlocks, OUTER_SIDES, STACK, vector,
 };
-use glam::{BVec3, DMat3, Mat3, Vec3, Vec3Swizzles};
+use glam::{BVec3, Mat3, Vec3, Vec3Swizzles};
 use std::ops::Range;
 
 /// Bound of the rounding errors of single precision, relative to the lengths in the scene. Each bound is computed from about ten numbers, each rounded by 6e-8.
@@ -257,18 +257,12 @@ struct Found {
 }
 
 impl BlockSearch {
-    pub fn new(
-        blocks: &MeshBlocks,
-        pose: &Pose,
-        (reach, behind): (f64, f64),
-        lines: &GridLines,
-    ) -> Self {
-        let rotation = DMat3::from_quat(pose.rotation);
-        let center = pose.transform_point(blocks.center);
+    pub fn new(blocks: &MeshBlocks, object: &ObjectAt, behind: f64, lines: &GridLines) -> Self {
+        let (center, reach) = (object.place(blocks.center), object.reach);
         let last = |lines: &Lines| lines.positions.last().copied().unwrap_or(0.0);
         let length = blocks.radius + center.length() + reach + last(&lines.x) + last(&lines.y);
         Self {
-            rotation: rotation.as_mat3(),
+            rotation: object.rotation.as_mat3(),
             center: center.as_vec3(),
             reach: reach as f32,
             behind: behind as f32,

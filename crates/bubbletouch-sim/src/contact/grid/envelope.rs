@@ -11,10 +11,9 @@
 //! whose near side is in front of the substrate count for each taxel; the rule is evaluated only for other triangles ([`stop_in_front`]).
 
 use super::block_search::{BlockSearch, Candidates, PlacedBlock, PlacedPairs, Tested};
+use super::grid_values::{GridValues, NOTHING, joined};
 use super::lines::GridLines;
-use super::pair_batch::{
-    Column, EdgePairs, FacePairs, MAY_BE_BEHIND, PAIRS, Pair, PairList, Placement,
-};
+use super::pair_batch::{Column, EdgePairs, FacePairs, MAY_BE_BEHIND, PAIRS, Pair, PairList};
 use super::placed_objects::PlacedObjects;
 use crate::contact::Until;
 use crate::contact::instructions::{Instructions, for_instructions};
@@ -22,22 +21,19 @@ use crate::contact::lanes::SelectedLanes;
 use crate::contact::law::stop_in_front;
 use crate::contact::law::triangle::{FACE_SLACK, SweptEdge, SweptFace, corner_height};
 use crate::contact::mesh::skin_mesh::MeshAt;
+use crate::contact::object_at::ObjectAt;
 use crate::mesh::Triangle;
 use crate::objects::Model;
 use crate::objects::mesh_blocks::{ContactTriangle, LANES, Lane, MeshBlocks, STACK};
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use std::ops::Range;
 
 /// Travel of the patch at which a triangle first stops each taxel, given as the least height in the patch frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Envelope {
-    /// Heights at which triangles stop the taxels, metres, shape (n_taxels,); infinite if no triangle evaluated so far stops the taxel. During a search, some
-    /// heights are upper bounds.
-    heights: Vec<f64>,
-    n_columns: usize,
-    /// Rectangle of taxels that contains all finite heights.
-    rows: Range<usize>,
-    columns: Range<usize>,
+    /// Heights at which triangles stop the taxels, metres; infinite if no triangle evaluated so far stops the taxel. During a search, some heights are upper
+    /// bounds.
+    pub heights: GridValues,
     /// Smallest of the heights, metres; infinite if the goal of the press does not depend on it.
     pub first: f64,
     /// Scratch memory of the search.
@@ -56,31 +52,6 @@ struct Scratch {
 }
 
 impl Envelope {
-    /// Resets the heights to infinity. If the grid is unchanged, only the rectangle of finite heights is written.
-    fn clear(&mut self, n_columns: usize, n_rows: usize) {
-        if (self.n_columns, self.heights.len()) == (n_columns, n_columns * n_rows) {
-            for row in self.rows.clone() {
-                self.heights[row * n_columns..][self.columns.clone()].fill(f64::INFINITY);
-            }
-        } else {
-            self.n_columns = n_columns;
-            self.heights.clear();
-            self.heights.resize(n_columns * n_rows, f64::INFINITY);
-        }
-        (self.rows, self.columns) = (n_rows..0, n_columns..0);
-        self.first = f64::INFINITY;
-    }
-
-    /// Returns the rows and the columns of the taxels that a mesh may stop.
-    pub fn rectangle(&self) -> (&Range<usize>, &Range<usize>) {
-        (&self.rows, &self.columns)
-    }
-
-    /// Returns the heights at which meshes stop the taxels of a row, for the columns of the rectangle, metres.
-    pub fn row(&self, row: usize) -> &[f64] {
-        &self.heights[row * self.n_columns..][self.columns.clone()]
-    }
-
     /// Computes the heights at which meshes stop the taxels, up to the goal of the press. Returns whether there is a mesh. `first` is the travel at first
     /// contact with spheres.
     pub fn look(
@@ -89,10 +60,10 @@ impl Envelope {
         (until, first): (Until, f64),
         instructions: Instructions,
     ) -> bool {
-        self.clear(
-            placed.lines.x.positions.len(),
-            placed.lines.y.positions.len(),
-        );
+        let lines = placed.lines;
+        let (n_columns, n_rows) = (lines.x.positions.len(), lines.y.positions.len());
+        self.heights.clear(n_columns, n_rows, f64::INFINITY);
+        self.first = f64::INFINITY;
         let mut has_meshes = false;
         let mut scratch = self.scratch.take().unwrap_or_default();
         for (object, pose) in placed.objects.iter().zip(placed.patch_from_objects) {
@@ -100,17 +71,12 @@ impl Envelope {
                 continue;
             };
             has_meshes = true;
-            let reach = placed.radius + mesh.rounding();
-            let rotation = DMat3::from_quat(pose.rotation);
+            let object = ObjectAt::new(pose, placed.radius + mesh.rounding());
             let mut sweep = Sweep {
                 triangles: &mesh.blocks().triangles,
-                placement: Placement {
-                    rotation,
-                    translation: pose.translation,
-                    reach,
-                },
+                object,
                 behind: placed.behind,
-                lines: placed.lines,
+                lines,
                 until,
                 others: first,
                 bound: f64::INFINITY,
@@ -121,10 +87,9 @@ impl Envelope {
                 faces: &mut scratch.faces,
                 edges: &mut scratch.edges,
                 envelope: self,
-                behind_substrate: [0..0, 0..0],
+                behind_substrate: [NOTHING, NOTHING],
             };
-            let bounds =
-                BlockSearch::new(mesh.blocks(), pose, (reach, placed.behind), placed.lines);
+            let bounds = BlockSearch::new(mesh.blocks(), &object, placed.behind, lines);
             sweep_blocks(
                 instructions,
                 &mut sweep,
@@ -157,8 +122,8 @@ impl Envelope {
             };
         }
         if n > 0 {
-            cover(&mut self.rows, first[0] as usize..last[0] as usize);
-            cover(&mut self.columns, first[1] as usize..last[1] as usize);
+            let [rows, columns] = [0, 1].map(|k| first[k] as usize..last[k] as usize);
+            self.heights.cover(&rows, &columns);
         }
     }
 
@@ -166,7 +131,8 @@ impl Envelope {
     fn enter(&mut self, mesh: &MeshAt, placed: &PlacedObjects, [columns, rows]: [Range<usize>; 2]) {
         for row in rows {
             for column in columns.clone() {
-                let height = &mut self.heights[row * self.n_columns + column];
+                let taxel = self.heights.number(row, column);
+                let height = &mut self.heights[taxel];
                 // A taxel at its stroke stays there, even if the mesh reaches further.
                 if *height < placed.behind + placed.radius {
                     continue;
@@ -178,21 +144,11 @@ impl Envelope {
                 let at = DVec3::new(x, y, 0.0);
                 if let Some(entered) = mesh.entered_on_grid(at, placed.radius, placed.behind) {
                     *height = height.min(entered);
-                    cover(&mut self.rows, row..row + 1);
-                    cover(&mut self.columns, column..column + 1);
+                    self.heights.cover(&(row..row + 1), &(column..column + 1));
                 }
             }
         }
     }
-}
-
-/// Enlarges a range so that it contains another.
-#[inline(always)]
-fn cover(range: &mut Range<usize>, part: Range<usize>) {
-    *range = match range.start < range.end {
-        true => range.start.min(part.start)..range.end.max(part.end),
-        false => part,
-    };
 }
 
 /// Maximum number of rows and of columns of the candidate taxels of a node for which the search tests whether all are already stopped below it. The test reads the
@@ -211,7 +167,7 @@ const TESTS: usize = 4;
 struct Sweep<'a> {
     /// Triangles in the order of the blocks.
     triangles: &'a [ContactTriangle],
-    placement: Placement,
+    object: ObjectAt,
     /// Upper bound of the least height, metres.
     bound: f64,
     /// Pairs of taxels and triangles that are not yet evaluated: pairs whose taxels are certainly under the faces, and other pairs.
@@ -332,8 +288,9 @@ impl Sweep<'_> {
     fn note_behind(&mut self, candidates: &Candidates) {
         for lane in SelectedLanes::of_bits(candidates.behind) {
             let [columns, rows] = candidates.rectangle(lane);
-            cover(&mut self.behind_substrate[0], columns);
-            cover(&mut self.behind_substrate[1], rows);
+            let [of_columns, of_rows] = &mut self.behind_substrate;
+            *of_columns = joined(of_columns, &columns);
+            *of_rows = joined(of_rows, &rows);
         }
     }
 
@@ -342,7 +299,8 @@ impl Sweep<'_> {
     #[inline(always)]
     fn is_hidden(&self, [columns, rows]: &[Range<usize>; 2], low: f32) -> bool {
         let is_hidden = |row: usize, column: usize| {
-            self.envelope.heights[row * self.envelope.n_columns + column] <= f64::from(low)
+            let heights = &self.envelope.heights;
+            heights[heights.number(row, column)] <= f64::from(low)
         };
         let (last_row, last_column) = (rows.end - 1, columns.end - 1);
         (rows.len() <= FEW)
@@ -437,7 +395,7 @@ impl Sweep<'_> {
     #[inline(always)]
     fn evaluate_under(&mut self) {
         self.faces
-            .evaluate_under((self.triangles, self.placement), self.lines);
+            .evaluate_under((self.triangles, &self.object), self.lines);
         let n = self.faces.n;
         self.envelope
             .lower_pairs(&self.faces.pairs, &self.faces.heights, n);
@@ -447,10 +405,10 @@ impl Sweep<'_> {
     /// Evaluates the waiting pairs of taxels and triangles.
     #[inline(always)]
     fn evaluate_faces(&mut self) {
-        let slack = FACE_SLACK * self.placement.reach;
+        let slack = FACE_SLACK * self.object.reach;
         self.faces.evaluate(
-            (self.triangles, self.placement),
-            (self.lines, &self.envelope.heights),
+            (self.triangles, &self.object),
+            (self.lines, self.envelope.heights.all()),
             (slack, self.behind),
         );
         let n = self.faces.n;
@@ -476,9 +434,7 @@ impl Sweep<'_> {
         let (row, column) = (pair.row as usize, pair.column as usize);
         let triangle = &self.triangles[pair.triangle as usize];
         if parts == MAY_BE_BEHIND {
-            let [a, b, c] = triangle.corners;
-            let place = |corner| self.placement.place(corner);
-            let triangle = Triangle([place(a), place(b), place(c)]);
+            let triangle = self.object.triangle(&Triangle(triangle.corners));
             return self.lower_by_rule(&triangle, [column..column + 1, row..row + 1]);
         }
         let at = DVec2::new(self.lines.x.positions[column], self.lines.y.positions[row]);
@@ -487,8 +443,8 @@ impl Sweep<'_> {
                 self.edges.add(pair, at, (triangle, part));
                 continue;
             }
-            let corner = self.placement.place(triangle.corners[part - 3]);
-            let reach = self.placement.reach;
+            let corner = self.object.place(triangle.corners[part - 3]);
+            let reach = self.object.reach;
             if corner.z - reach < self.envelope.heights[pair.taxel as usize] {
                 self.lower_to(row, column, corner_height(corner, reach, at));
             }
@@ -501,7 +457,7 @@ impl Sweep<'_> {
     /// Evaluates the waiting pairs of taxels and edges.
     #[inline(always)]
     fn evaluate_edges(&mut self) {
-        self.edges.evaluate(self.placement);
+        self.edges.evaluate(&self.object);
         let n = self.edges.n;
         self.envelope
             .lower_pairs(&self.edges.pairs, &self.edges.heights, n);
@@ -512,26 +468,23 @@ impl Sweep<'_> {
     #[inline(always)]
     fn lower(&mut self, triangle: usize, [columns, rows]: [Range<usize>; 2]) {
         let triangle = &self.triangles[triangle];
-        let place = |corner: DVec3| self.placement.place(corner);
-        let [a, b, c] = triangle.corners;
-        let corners = [place(a), place(b), place(c)];
-        let reach = self.placement.reach;
+        let Triangle(corners) = self.object.triangle(&Triangle(triangle.corners));
+        let reach = self.object.reach;
         let lowest = corners[0].z.min(corners[1].z).min(corners[2].z);
         if lowest - reach < self.behind {
             return self.lower_by_rule(&Triangle(corners), [columns, rows]);
         }
         let face = &triangle.face;
-        let normal = self.placement.rotation * face.normal;
+        let normal = self.object.turn(face.normal);
         let swept = SweptFace::new(&corners, normal, reach);
         if !swept.is_steep() {
             self.lower_to_face(&swept, [columns.clone(), rows.clone()]);
-            cover(&mut self.envelope.rows, rows.clone());
-            cover(&mut self.envelope.columns, columns.clone());
+            self.envelope.heights.cover(&rows, &columns);
         }
         for k in 0..3 {
             if face.has_edge(k) {
                 let (from, to) = (corners[k], corners[(k + 1) % 3]);
-                let across = self.placement.rotation * face.across[k];
+                let across = self.object.turn(face.across[k]);
                 let swept = SweptEdge::new(from, to, reach, &[normal, across]);
                 self.lower_under(swept.ground(), [&columns, &rows], |at| {
                     match swept.is_beside(at) {
@@ -552,24 +505,23 @@ impl Sweep<'_> {
 
     #[inline(always)]
     fn lower_to(&mut self, row: usize, column: usize, height: f64) {
-        let lowest = &mut self.envelope.heights[row * self.envelope.n_columns + column];
-        if height < *lowest {
-            *lowest = height;
+        let heights = &mut self.envelope.heights;
+        let taxel = heights.number(row, column);
+        if height < heights[taxel] {
+            heights[taxel] = height;
+            heights.cover(&(row..row + 1), &(column..column + 1));
             self.envelope.first = self.envelope.first.min(height);
-            cover(&mut self.envelope.rows, row..row + 1);
-            cover(&mut self.envelope.columns, column..column + 1);
         }
     }
 
     /// Lowers the heights of the taxels of a rectangle that a face stops, row by row.
     #[inline(always)]
     fn lower_to_face(&mut self, face: &SweptFace, [columns, rows]: [Range<usize>; 2]) {
-        let slack = FACE_SLACK * self.placement.reach;
+        let slack = FACE_SLACK * self.object.reach;
         let is_for_depth = matches!(self.until, Until::Depth(_));
         for row in rows {
             let y = self.lines.y.positions[row];
-            let first = row * self.envelope.n_columns;
-            let heights = &mut self.envelope.heights[first..][columns.clone()];
+            let heights = self.envelope.heights.row(row, columns.clone());
             face.lower_row(y, &self.lines.x.positions[columns.clone()], slack, heights);
             if is_for_depth {
                 let lowest = heights.iter().fold(self.envelope.first, |a, &b| a.min(b));
@@ -610,8 +562,7 @@ impl Sweep<'_> {
         for row in rows {
             for column in columns.clone() {
                 let at = DVec2::new(self.lines.x.positions[column], self.lines.y.positions[row]);
-                if let Some(height) = stop_in_front(triangle, self.placement.reach, at, self.behind)
-                {
+                if let Some(height) = stop_in_front(triangle, self.object.reach, at, self.behind) {
                     self.lower_to(row, column, height);
                 }
             }

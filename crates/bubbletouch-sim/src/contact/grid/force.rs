@@ -12,28 +12,26 @@ use crate::contact::{Contact, Until};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::EvenGrid;
 
 /// Presses a grid of taxels until its spring force reaches a target; the fast path of [`Until::Force`]. All taxels have one stiffness, N/m.
 pub(crate) fn press(
-    (grid, stiffness): (&EvenGrid, f64),
-    objects: &[Model],
-    patch_from_objects: &[Pose],
-    force: f64,
-    (press, output): (&mut GridPress, &mut OutputBuffer),
+    press: &mut GridPress,
+    (objects, patch_from_objects): (&[Model], &[Pose]),
+    (force, stiffness): (f64, f64),
+    output: &mut OutputBuffer,
 ) -> Result<Option<Contact>> {
-    let stroke = grid.stroke;
-    let gathered = press.gather(grid, objects, patch_from_objects, Until::Depth(stroke));
+    let stroke = press.grid.stroke;
+    let gathered = press.gather(objects, patch_from_objects, Until::Depth(stroke));
     let Some(first) = gathered else {
-        press.touch_nothing(grid);
+        press.touch_nothing();
         return Ok(None);
     };
-    let mut curve = ForceCurve::new(press, (grid, stiffness), first + stroke);
+    let mut curve = ForceCurve::new(press, stiffness, first + stroke);
     if curve.largest() < force {
         // This press is deep enough to reach every taxel that the objects can saturate.
         let depth = top(objects, patch_from_objects) + stroke - first;
-        press.gather(grid, objects, patch_from_objects, Until::Depth(depth));
-        curve = ForceCurve::new(press, (grid, stiffness), first + depth);
+        press.gather(objects, patch_from_objects, Until::Depth(depth));
+        curve = ForceCurve::new(press, stiffness, first + depth);
     }
     let largest = curve.largest();
     if force > largest * (1.0 + ROUNDING) {
@@ -45,7 +43,7 @@ pub(crate) fn press(
         return Err(unreachable_force(force, largest, &where_to));
     }
     let travel = curve.travel(force.min(largest));
-    Ok(Some(press.indent(grid, travel, output)))
+    Ok(Some(press.indent(travel, output)))
 }
 
 /// Relative rounding error of a force that is the sum of thousands of spring forces: far above 1e-16, far below any measurable difference.
@@ -63,8 +61,9 @@ struct ForceCurve<'a> {
 
 impl<'a> ForceCurve<'a> {
     /// Creates the force curve of a grid against the objects gathered by `press`, up to a `travel` in metres.
-    fn new(press: &'a mut GridPress, (grid, stiffness): (&EvenGrid, f64), travel: f64) -> Self {
-        let starts = press.starts(grid, travel);
+    fn new(press: &'a mut GridPress, stiffness: f64, travel: f64) -> Self {
+        let grid = press.grid;
+        let starts = press.starts(travel);
         let last = starts.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
         Self {
             starts,

@@ -9,15 +9,15 @@
 //! | `block_search` | a mesh → the triangles that taxels may touch |
 //! | `pair_batch` | pairs of a taxel and a triangle → the height at which the triangle stops the taxel |
 //! | `envelope` | meshes → the height at which they stop each taxel |
-//! | `deflection_grid` | all deflections, and the rectangle that contains those above zero |
+//! | `grid_values` | deflections or heights of all taxels, and the rectangle that a press reaches |
 //! | `output_buffer` | deflections → a row of the caller's array |
 //! | `press` | travel → deflections |
 //! | `force` | force → travel |
 
 mod block_search;
-mod deflection_grid;
 mod envelope;
 pub(super) mod force;
+mod grid_values;
 mod lines;
 mod output_buffer;
 mod pair_batch;
@@ -26,9 +26,8 @@ mod placed_sphere;
 mod press;
 mod sphere_search;
 
-pub(super) use lines::GridLines;
+pub(super) use grid_values::GridValues;
 pub use lines::Lines;
 pub(super) use output_buffer::OutputBuffer;
 pub use output_buffer::Row;
-pub(super) use placed_sphere::View;
-pub(super) use press::GridPress;
+pub(super) use press::{GridPress, GridScratch};

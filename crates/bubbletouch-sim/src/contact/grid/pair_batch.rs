@@ -5,8 +5,9 @@
 use super::lines::GridLines;
 use crate::contact::lanes::least;
 use crate::contact::law::triangle::{SweptEdge, SweptFace};
+use crate::contact::object_at::ObjectAt;
 use crate::objects::mesh_blocks::ContactTriangle;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
 /// Maximum number of pairs in a batch. If larger, more pairs are evaluated whose taxels are already stopped below; if smaller, vectors are used less well.
 pub(super) const PAIRS: usize = 32;
@@ -54,29 +55,6 @@ impl PairList {
     pub fn add(&mut self, pair: Pair, is_wanted: bool) {
         self.pairs[self.n] = pair;
         self.n += usize::from(is_wanted);
-    }
-}
-
-/// Pose of a mesh in the frame of the grid, and the radius of the swept ball.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Placement {
-    pub rotation: DMat3,
-    pub translation: DVec3,
-    /// Sum of a taxel's radius and the rounding of the mesh, metres.
-    pub reach: f64,
-}
-
-impl Placement {
-    /// Moves a point from the frame of the mesh to the frame of the grid.
-    #[inline(always)]
-    pub fn place(&self, point: DVec3) -> DVec3 {
-        self.turn(point) + self.translation
-    }
-
-    /// Turns a vector from the frame of the mesh to the frame of the grid.
-    #[inline(always)]
-    fn turn(&self, vector: DVec3) -> DVec3 {
-        self.rotation * vector
     }
 }
 
@@ -132,7 +110,7 @@ impl FacePairs {
     #[inline(always)]
     pub fn evaluate_under(
         &mut self,
-        (triangles, placement): (&[ContactTriangle], Placement),
+        (triangles, object): (&[ContactTriangle], &ObjectAt),
         lines: &GridLines,
     ) {
         for lane in 0..self.n.min(PAIRS) {
@@ -145,10 +123,10 @@ impl FacePairs {
         }
         let n = self.n.next_multiple_of(WIDTH).min(PAIRS);
         for lane in 0..n {
-            let corner = placement.place(get(&self.corners[0], lane));
-            let normal = placement.turn(get(&self.normal, lane));
+            let corner = object.place(get(&self.corners[0], lane));
+            let normal = object.turn(get(&self.normal, lane));
             let at = DVec2::new(self.x[lane], self.y[lane]);
-            let face = SweptFace::new(&[corner; 3], normal, placement.reach);
+            let face = SweptFace::new(&[corner; 3], normal, object.reach);
             self.heights[lane] = face.height(at);
         }
     }
@@ -161,18 +139,18 @@ impl FacePairs {
     #[inline(always)]
     pub fn evaluate(
         &mut self,
-        (triangles, placement): (&[ContactTriangle], Placement),
+        (triangles, object): (&[ContactTriangle], &ObjectAt),
         (lines, heights): (&GridLines, &[f64]),
         (slack, behind): (f64, f64),
     ) {
         self.read(triangles, lines, heights);
         let n = self.n.next_multiple_of(WIDTH).min(PAIRS);
-        let reach = placement.reach;
+        let reach = object.reach;
         for lane in 0..n {
             let [a, b, c] = &self.corners;
-            let (a, b) = (placement.place(get(a, lane)), placement.place(get(b, lane)));
-            let c = placement.place(get(c, lane));
-            let normal = placement.turn(get(&self.normal, lane));
+            let (a, b) = (object.place(get(a, lane)), object.place(get(b, lane)));
+            let c = object.place(get(c, lane));
+            let normal = object.turn(get(&self.normal, lane));
             let at = DVec2::new(self.x[lane], self.y[lane]);
             let face = SweptFace::new(&[a, b, c], normal, reach);
             let is_steep = face.is_steep();
@@ -242,16 +220,16 @@ impl EdgePairs {
 
     /// Evaluates all pairs.
     #[inline(always)]
-    pub fn evaluate(&mut self, placement: Placement) {
+    pub fn evaluate(&mut self, object: &ObjectAt) {
         let n = self.n.next_multiple_of(WIDTH).min(PAIRS);
         for lane in 0..n {
-            let from = placement.place(get(&self.ends[0], lane));
-            let to = placement.place(get(&self.ends[1], lane));
+            let from = object.place(get(&self.ends[0], lane));
+            let to = object.place(get(&self.ends[1], lane));
             let normals = [
-                placement.turn(get(&self.normals[0], lane)),
-                placement.turn(get(&self.normals[1], lane)),
+                object.turn(get(&self.normals[0], lane)),
+                object.turn(get(&self.normals[1], lane)),
             ];
-            let edge = SweptEdge::new(from, to, placement.reach, &normals);
+            let edge = SweptEdge::new(from, to, object.reach, &normals);
             self.heights[lane] = edge.height(DVec2::new(self.x[lane], self.y[lane]));
         }
     }

@@ -1,117 +1,57 @@
 //! Sphere over a flat grid, and the taxels under it, row by row.
 
-use super::deflection_grid::{BLOCK, DeflectionGrid, WIDE};
-use super::lines::GridLines;
+use super::grid_values::{BLOCK, GridValues, WIDE};
+use super::lines::{GridLines, Lines};
+use crate::contact::lanes::least;
 use crate::contact::law::{self, beats, indent};
-use crate::geometry::Pose;
-use crate::objects::{Cluster, ClusterBounds, MAX_IN_CLUSTER, Sphere};
-use glam::{DMat3, DVec3};
+use crate::contact::object_at::{ClusterBox, ObjectAt, PlacedSphere, ROUNDING, Region};
+use glam::DVec3;
 use std::ops::Range;
 
-/// Sphere in the patch frame whose radius is enlarged by the taxel's radius, so that a taxel can be treated as a point.
+/// Region of a flat grid. The bound of a sphere is the travel before which it meets no taxel, metres. The bound of a cluster is infinite if its projection misses
+/// the grid.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PlacedSphere {
-    pub center: DVec3,
-    /// Sum of the radii of taxel and sphere, metres.
-    pub reach: f64,
-}
-
-/// Factor that covers rounding of a radius: far above 1e-16 and far below any measurable difference.
-const ROUNDING: f64 = 1.0 + 1e-9;
-
-/// Largest number of columns for which a sphere's footprint on the grid is treated as a square. If larger, taxels beside large spheres are computed
-/// needlessly; if smaller, taxels at the ends of short rows are.
-const SQUARE: usize = 10;
-
-/// Transform from an object's frame to the patch frame, used to select the spheres that can press the grid.
-#[derive(Clone, Debug)]
-pub(crate) struct View {
-    /// Rows of the rotation matrix from the object's frame to the patch frame.
-    rows: DMat3,
-    translation: DVec3,
-    /// Radius of the taxels, metres.
-    taxel_radius: f64,
+pub(super) struct GridRegion {
     /// Largest |x| and largest |y| of a taxel centre, metres.
     half_size: [f64; 2],
 }
 
-impl View {
-    /// Creates the transform for an object at the pose `patch_from_object`, and for a grid whose taxels have one radius.
-    pub fn new(taxel_radius: f64, lines: &GridLines, pose: &Pose) -> Self {
-        let last = |positions: &[f64]| positions.last().copied().unwrap_or(0.0);
+impl GridRegion {
+    /// Creates the region of a grid with the given lines.
+    pub fn new(lines: &GridLines) -> Self {
+        let last = |lines: &Lines| lines.positions.last().copied().unwrap_or(0.0);
         Self {
-            rows: DMat3::from_quat(pose.rotation).transpose(),
-            translation: pose.translation,
-            taxel_radius,
-            half_size: [last(&lines.x.positions), last(&lines.y.positions)],
+            half_size: [last(&lines.x), last(&lines.y)],
         }
     }
 
-    /// Writes, for each cluster of spheres, a travel before which no sphere of the cluster meets a taxel, metres. The travel is infinite if the cluster's
-    /// projection misses the patch.
+    /// Returns whether a projection with a radius of `reach`, metres, misses the grid.
     #[inline(always)]
-    pub fn lay_starts(&self, bounds: &ClusterBounds, starts: &mut [f64]) {
-        let n = starts.len();
-        let [x, y, z] = &bounds.middle;
-        let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
-        let [wide, deep, high] = &bounds.half;
-        let (wide, deep, high) = (&wide[..n], &deep[..n], &high[..n]);
-        let (radius, largest) = (&bounds.radius[..n], &bounds.largest[..n]);
+    pub fn misses(&self, center: DVec3, reach: f64) -> bool {
         let [half_x, half_y] = self.half_size;
-        let up = self.rows.z_axis.abs();
-        for k in 0..n {
-            let middle = DVec3::new(x[k], y[k], z[k]);
-            let beside = (self.taxel_radius + radius[k]) * ROUNDING;
-            let at_x = self.rows.x_axis.dot(middle) + self.translation.x;
-            let at_y = self.rows.y_axis.dot(middle) + self.translation.y;
-            let at_z = self.rows.z_axis.dot(middle) + self.translation.z;
-            let below = up.dot(DVec3::new(wide[k], deep[k], high[k]));
-            let below = (below + largest[k] + self.taxel_radius) * ROUNDING;
-            // For spheres of different sizes the bounding ball is the tighter bound.
-            let below = if beside < below { beside } else { below };
-            let is_beside = (at_x.abs() >= half_x + beside) | (at_y.abs() >= half_y + beside);
-            starts[k] = if is_beside {
-                f64::INFINITY
-            } else {
-                at_z - below
-            };
+        (center.x.abs() >= half_x + reach) | (center.y.abs() >= half_y + reach)
+    }
+}
+
+impl Region for GridRegion {
+    #[inline(always)]
+    fn cluster_bound(&self, object: &ObjectAt, cluster: &ClusterBox) -> f64 {
+        let center = object.place(cluster.ball.center);
+        let beside = (object.reach + cluster.ball.radius) * ROUNDING;
+        let below = object.rotation.row(2).abs().dot(cluster.half);
+        let below = (below + cluster.largest + object.reach) * ROUNDING;
+        // For spheres of different sizes the bounding ball is the tighter bound.
+        let start = center.z - least(beside, below);
+        if self.misses(center, beside) {
+            f64::INFINITY
+        } else {
+            start
         }
     }
 
-    /// Returns, for each sphere of a cluster, the travel before which the sphere meets no taxel, metres.
     #[inline(always)]
-    pub fn starts(&self, cluster: &Cluster) -> [f64; MAX_IN_CLUSTER] {
-        let [x, y, z] = cluster.centers;
-        let mut starts = [f64::INFINITY; MAX_IN_CLUSTER];
-        for (k, start) in starts.iter_mut().enumerate() {
-            let center = DVec3::new(x[k], y[k], z[k]);
-            let reach = self.taxel_radius + cluster.radii[k];
-            let its = self.rows.z_axis.dot(center) + self.translation.z - reach;
-            *start = if k < cluster.n_spheres {
-                its
-            } else {
-                f64::INFINITY
-            };
-        }
-        starts
-    }
-
-    /// Returns the sphere in the patch frame; `None` if the sphere meets no taxel before `travel` or its projection misses the patch.
-    #[inline(always)]
-    pub fn place(&self, sphere: &Sphere, travel: f64) -> Option<PlacedSphere> {
-        let reach = self.taxel_radius + sphere.radius;
-        let z = self.rows.z_axis.dot(sphere.center) + self.translation.z;
-        if z - reach >= travel {
-            return None;
-        }
-        let x = self.rows.x_axis.dot(sphere.center) + self.translation.x;
-        let y = self.rows.y_axis.dot(sphere.center) + self.translation.y;
-        let [half_x, half_y] = self.half_size;
-        let beside = reach * ROUNDING;
-        (x.abs() < half_x + beside && y.abs() < half_y + beside).then_some(PlacedSphere {
-            center: DVec3::new(x, y, z),
-            reach,
-        })
+    fn sphere_bound(&self, sphere: &PlacedSphere) -> f64 {
+        sphere.center.z - sphere.reach
     }
 }
 
@@ -142,7 +82,7 @@ impl PlacedSphere {
 
     /// Raises each deflection to the deflection that contact with the sphere requires if its centre is at `height` above the grid, metres.
     #[inline(always)]
-    pub fn indent(&self, lines: &GridLines, height: f64, deflections: &mut DeflectionGrid) {
+    pub fn indent(&self, lines: &GridLines, height: f64, deflections: &mut GridValues) {
         let reach2 = self.reach * self.reach;
         let lift = height.max(0.0);
         let footprint = (reach2 - lift * lift).max(0.0);
@@ -170,7 +110,7 @@ impl PlacedSphere {
         lines: &GridLines,
         height: f64,
         behind: f64,
-        deflections: &mut DeflectionGrid,
+        deflections: &mut GridValues,
     ) {
         let gap = behind - height;
         let reach2 = self.reach * self.reach;
@@ -200,7 +140,7 @@ impl PlacedSphere {
         rows: Range<usize>,
         first: usize,
         height: f64,
-        deflections: &mut DeflectionGrid,
+        deflections: &mut GridValues,
     ) {
         let reach2 = self.reach * self.reach;
         let mut dx2 = [[f64::INFINITY; BLOCK]; N];
@@ -229,7 +169,7 @@ impl PlacedSphere {
         rows: Range<usize>,
         footprint: f64,
         height: f64,
-        deflections: &mut DeflectionGrid,
+        deflections: &mut GridValues,
     ) {
         let reach2 = self.reach * self.reach;
         let last = lines.x.positions.len() - WIDE;
@@ -254,54 +194,6 @@ impl PlacedSphere {
                     indent(&squares, &[height; WIDE], taxels);
                 }
                 next = first + WIDE;
-            }
-        }
-    }
-
-    /// Raises the deflection of each taxel that the sphere pushes further, and writes `mark` for these taxels. A sphere wholly behind the substrate, whose
-    /// height is `behind`, pushes no taxel.
-    ///
-    /// The footprint is the region where contact with the sphere requires a deflection above zero: `b² < S² − max(h, 0)²`. S is the sum of the radii, b the
-    /// distance from the taxel's axis, and h the height of the sphere's centre. Ranges of columns are rounded outwards, small footprints to a square. The
-    /// comparison with S in the innermost loop decides exactly.
-    pub fn indent_and_mark<M: Copy>(
-        &self,
-        lines: &GridLines,
-        behind: f64,
-        deflections: &mut [f64],
-        (mark, marks): (M, &mut [M]),
-    ) {
-        let DVec3 { x, y, z: height } = self.center;
-        let reach2 = self.reach * self.reach;
-        let lift = height.max(0.0);
-        let footprint = (reach2 - lift * lift).max(0.0);
-        let half_width = footprint.sqrt();
-        let square = lines.x.within(x, half_width);
-        for row in lines.y.within(y, half_width) {
-            let dy = lines.y.positions[row] - y;
-            let mut columns = square.clone();
-            if square.len() > SQUARE {
-                let half_width = (footprint - dy * dy).max(0.0).sqrt();
-                columns = lines.x.within(x, half_width);
-            }
-            let first = row * lines.x.positions.len();
-            let taxels = first + columns.start..first + columns.end;
-            let marked = deflections[taxels.clone()]
-                .iter_mut()
-                .zip(&mut marks[taxels]);
-            for ((deflection, marked), place) in marked.zip(&lines.x.positions[columns]) {
-                let dx = place - x;
-                let q = reach2 - dy * dy - dx * dx;
-                if !law::is_in_front(q, height, behind) {
-                    continue;
-                }
-                if law::may_exceed(q, height, *deflection) {
-                    let needed = law::deflection(q, height);
-                    if needed > *deflection {
-                        *deflection = needed;
-                        *marked = mark;
-                    }
-                }
             }
         }
     }

@@ -1,23 +1,22 @@
 //! Press kernel of a flat grid along its axis. The kernel evaluates only spheres and triangles that reach the skin, and only the taxels under these parts.
 
-use super::deflection_grid::DeflectionGrid;
 use super::envelope::Envelope;
+use super::grid_values::GridValues;
 use super::lines::GridLines;
 use super::output_buffer::{OutputBuffer, Row};
 use super::placed_objects::PlacedObjects;
-use super::placed_sphere::PlacedSphere;
 use super::sphere_search::{SphereSearch, search};
 use crate::contact::instructions::{Instructions, for_instructions};
 use crate::contact::law::saturation_limit;
+use crate::contact::object_at::PlacedSphere;
 use crate::contact::{Contact, Until};
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::EvenGrid;
+use crate::world::{EvenGrid, Grid};
 
 /// Scratch memory of one thread for presses of flat grids.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct GridPress {
-    pub instructions: Instructions,
+pub(crate) struct GridScratch {
     /// Lines (columns and rows) of the last grid.
     lines: GridLines,
     /// Search for the spheres that can press a taxel.
@@ -26,7 +25,6 @@ pub(crate) struct GridPress {
     envelope: Envelope,
     /// Whether there are meshes.
     has_meshes: bool,
-    deflections: DeflectionGrid,
     /// Height of the substrate, metres, below which spheres push only taxels whose substrate is inside the sphere. The value is −∞ if the press comes from
     /// the front, where spheres push at any distance behind the taxels.
     behind: f64,
@@ -34,17 +32,21 @@ pub(crate) struct GridPress {
     starts: Vec<f64>,
 }
 
-impl GridPress {
-    /// Returns the deflections of the last press, metres, shape (n_taxels,), row by row (patch y, ascending).
-    pub fn deflections(&self) -> &[f64] {
-        self.deflections.deflections()
-    }
+/// Press of a flat grid along its axis.
+#[derive(Debug)]
+pub(crate) struct GridPress<'a> {
+    pub grid: &'a EvenGrid,
+    pub instructions: Instructions,
+    pub scratch: &'a mut GridScratch,
+    /// Deflections, metres, row by row (patch y, ascending).
+    pub deflections: &'a mut GridValues,
+}
 
+impl GridPress<'_> {
     /// Collects the spheres that press a taxel before the goal of the press is reached. Returns the travel at first contact if the goal is a depth; `None` if
     /// the patch meets nothing.
-    pub(crate) fn gather(
+    pub fn gather(
         &mut self,
-        grid: &EvenGrid,
         objects: &[Model],
         patch_from_objects: &[Pose],
         until: Until,
@@ -54,8 +56,10 @@ impl GridPress {
             patch_from_objects.len(),
             "one pose an object"
         );
-        self.lines.lay(&grid.grid);
-        self.behind = match until {
+        let (grid, instructions) = (self.grid, self.instructions);
+        let scratch = &mut *self.scratch;
+        scratch.lines.lay(&grid.grid);
+        scratch.behind = match until {
             Until::Pose => grid.behind,
             _ => f64::NEG_INFINITY,
         };
@@ -63,31 +67,25 @@ impl GridPress {
             objects,
             patch_from_objects,
             radius: grid.radius,
-            behind: self.behind,
-            lines: &self.lines,
+            behind: scratch.behind,
+            lines: &scratch.lines,
         };
-        let mut first = search(self.instructions, &mut self.search, &placed, until);
-        let instructions = self.instructions;
-        self.has_meshes = self.envelope.look(&placed, (until, first), instructions);
-        if self.has_meshes {
-            first = first.min(self.envelope.first);
+        let mut first = search(instructions, &mut scratch.search, &placed, until);
+        let envelope = &mut scratch.envelope;
+        scratch.has_meshes = envelope.look(&placed, (until, first), instructions);
+        if scratch.has_meshes {
+            first = first.min(envelope.first);
         }
         first.is_finite().then_some(first)
     }
 
     /// Computes the deflections of the patch at a travel. The method `gather` must have been called before, for this travel or a larger travel.
-    pub(crate) fn indent(
-        &mut self,
-        grid: &EvenGrid,
-        travel: f64,
-        output: &mut OutputBuffer,
-    ) -> Contact {
-        let stroke = grid.stroke;
-        self.push(grid, travel, output);
+    pub fn indent(&mut self, travel: f64, output: &mut OutputBuffer) -> Contact {
+        self.push(travel, output);
         output.finish();
-        let row = &mut output.row;
+        let (stroke, row) = (self.grid.stroke, &mut output.row);
         let [n_touched, n_saturated] =
-            stop_at_stroke(self.instructions, &mut self.deflections, stroke, row);
+            stop_at_stroke(self.instructions, self.deflections, stroke, row);
         Contact {
             travel,
             n_touched,
@@ -96,46 +94,45 @@ impl GridPress {
     }
 
     /// Returns the travel at which each taxel begins to move, metres, for the taxels that the gathered objects touch before `travel`.
-    pub(crate) fn starts(&mut self, grid: &EvenGrid, travel: f64) -> &[f64] {
-        self.push(grid, travel, &mut OutputBuffer::none());
-        self.starts.clear();
-        self.starts.reserve(grid.grid.n_taxels());
-        let Self {
-            deflections,
-            starts,
-            ..
-        } = self;
-        deflections.each_row(|_, taxels| {
+    pub fn starts(&mut self, travel: f64) -> &[f64] {
+        self.push(travel, &mut OutputBuffer::none());
+        let starts = &mut self.scratch.starts;
+        starts.clear();
+        starts.reserve(self.grid.grid.n_taxels());
+        self.deflections.each_row(|_, taxels| {
             let touched = taxels.iter().filter(|needed| **needed > 0.0);
             starts.extend(touched.map(|needed| travel - *needed));
         });
-        &self.starts
+        starts
     }
 
-    /// Sets the deflections of all taxels of a grid to zero.
-    pub(crate) fn touch_nothing(&mut self, grid: &EvenGrid) {
-        self.deflections.clear(grid.grid.nx, grid.grid.ny);
+    /// Sets the deflections of all taxels of the grid to zero.
+    pub fn touch_nothing(&mut self) {
+        let Grid { nx, ny, .. } = self.grid.grid;
+        self.deflections.clear(nx, ny, 0.0);
     }
 
     /// Computes the deflections that contact with the objects requires at a travel of the patch, not limited to the stroke.
-    fn push(&mut self, grid: &EvenGrid, travel: f64, output: &mut OutputBuffer) {
-        self.touch_nothing(grid);
-        output.in_steps(self.search.found.len());
+    fn push(&mut self, travel: f64, output: &mut OutputBuffer) {
+        self.touch_nothing();
+        let scratch = &mut *self.scratch;
+        output.in_steps(scratch.search.found.len());
         indent_all(
             self.instructions,
-            &self.search.found,
-            &self.lines,
-            (travel, self.behind),
-            &mut self.deflections,
+            &scratch.search.found,
+            &scratch.lines,
+            (travel, scratch.behind),
+            self.deflections,
             output,
         );
-        if self.has_meshes {
-            let (rows, columns) = self.envelope.rectangle();
-            self.deflections.cover(rows, columns);
-            for row in rows.clone() {
-                let taxels = self.deflections.row(row, columns.clone());
-                for (deflection, height) in taxels.iter_mut().zip(self.envelope.row(row)) {
-                    *deflection = deflection.max(travel - height);
+        if scratch.has_meshes {
+            let heights = &mut scratch.envelope.heights;
+            let (rows, columns) = heights.rectangle();
+            self.deflections.cover(&rows, &columns);
+            for row in rows {
+                let taxels = self.deflections.row(row, columns.clone()).iter_mut();
+                for (deflection, height) in taxels.zip(heights.row(row, columns.clone())) {
+                    *deflection = deflection.max(travel - *height);
                 }
             }
         }
@@ -148,7 +145,7 @@ for_instructions! {
         spheres: &[PlacedSphere],
         lines: &GridLines,
         travel_and_behind: (f64, f64),
-        deflections: &mut DeflectionGrid,
+        deflections: &mut GridValues,
         output: &mut OutputBuffer,
     ) = indent_each
 }
@@ -158,7 +155,7 @@ fn indent_each(
     spheres: &[PlacedSphere],
     lines: &GridLines,
     (travel, behind): (f64, f64),
-    deflections: &mut DeflectionGrid,
+    deflections: &mut GridValues,
     output: &mut OutputBuffer,
 ) {
     for sphere in spheres {
@@ -174,11 +171,11 @@ fn indent_each(
 
 for_instructions! {
     /// Counts touched and saturated taxels, limits their deflections to the stroke, and writes them into the output row if there is one.
-    fn stop_at_stroke(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [usize; 2] = stop_each
+    fn stop_at_stroke(deflections: &mut GridValues, stroke: f64, row: &mut Row) -> [usize; 2] = stop_each
 }
 
 #[inline(always)]
-fn stop_each(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [usize; 2] {
+fn stop_each(deflections: &mut GridValues, stroke: f64, row: &mut Row) -> [usize; 2] {
     let mut stop = Stop {
         stroke,
         limit: saturation_limit(stroke),

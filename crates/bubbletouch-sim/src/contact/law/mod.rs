@@ -32,7 +32,7 @@ mod sphere;
 pub(super) mod triangle;
 
 pub(crate) use behind::{far_side, is_in_front, reaches_front, squares_in_front, stop_in_front};
-pub(crate) use sphere::{beats, deflection, indent, may_exceed, needed};
+pub(crate) use sphere::{beats, deflection, indent, needed};
 
 /// Returns the deflection, metres, above which a taxel with this stroke (metres) is saturated: the stroke times 1 + 1e-12. The tolerance ensures that a press
 /// to a depth of exactly the stroke saturates no taxel.

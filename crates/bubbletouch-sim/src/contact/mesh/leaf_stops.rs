@@ -154,7 +154,7 @@ impl LeafSearch<'_> {
 
     #[inline(always)]
     fn descend(&mut self, stack: &mut [Waiting; STACK]) {
-        let blocks = self.mesh.model().blocks();
+        let blocks = self.mesh.mesh.blocks();
         stack[0] = Waiting {
             low: [f32::NEG_INFINITY; LEAF],
             lowest: f32::NEG_INFINITY,
@@ -299,7 +299,7 @@ impl LeafSearch<'_> {
         // In this frame the taxel rises from the origin along z.
         let (x, y) = ray.direction.any_orthonormal_pair();
         let turn = DMat3::from_cols(x, y, ray.direction).transpose();
-        let triangle = &self.mesh.model().blocks().triangles[place];
+        let triangle = &self.mesh.mesh.blocks().triangles[place];
         let corners = triangle.corners.map(|corner| turn * (corner - ray.origin));
         let lowest = corners[0].z.min(corners[1].z).min(corners[2].z);
         let height = match lowest - ray.reach < self.leaf.behind[taxel] {
@@ -307,7 +307,7 @@ impl LeafSearch<'_> {
             false => triangle::stop(&corners, &triangle.face, &turn, ray.reach),
         };
         if height < self.stops.heights[taxel] {
-            self.stops.triangles[taxel] = Some(self.mesh.model().blocks().numbers[place]);
+            self.stops.triangles[taxel] = Some(self.mesh.mesh.blocks().numbers[place]);
             if self.stops.is_lowest {
                 self.stops.heights = [height; LEAF];
                 self.limits = [rounded_up(height); LEAF];
@@ -322,7 +322,7 @@ impl LeafSearch<'_> {
     #[cold]
     #[inline(never)]
     fn height_by_rule(&self, place: usize, taxel: usize) -> f64 {
-        let number = self.mesh.model().blocks().numbers[place] as usize;
+        let number = self.mesh.mesh.blocks().numbers[place] as usize;
         let height = self.mesh.stop_in_front(&self.leaf.taxel(taxel), number);
         height.unwrap_or(f64::INFINITY)
     }

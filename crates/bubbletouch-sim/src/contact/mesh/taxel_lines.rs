@@ -33,11 +33,12 @@ impl Ray {
     /// Returns the axis of an entry of a leaf.
     #[inline(always)]
     pub fn new(mesh: &MeshAt, leaf: &Leaf, entry: usize) -> Self {
-        let mesh_from_patch = mesh.rotation().transpose();
+        let mesh_from_patch = mesh.object.rotation.transpose();
+        let center = leaf.vector(&leaf.centers, entry);
         Self {
-            origin: mesh_from_patch * (leaf.vector(&leaf.centers, entry) - mesh.translation()),
+            origin: mesh_from_patch * (center - mesh.object.translation),
             direction: mesh_from_patch * leaf.vector(&leaf.axes, entry),
-            reach: leaf.radii[entry] + mesh.model().rounding(),
+            reach: leaf.radii[entry] + mesh.object.reach,
         }
     }
 }
@@ -149,7 +150,7 @@ impl TaxelLines {
     /// metres.
     #[inline(always)]
     pub fn new(mesh: &MeshAt, leaf: &Leaf, limits: &[f64; LEAF]) -> Option<Self> {
-        let blocks = mesh.model().blocks();
+        let blocks = mesh.mesh.blocks();
         let mut lines = Lines::default();
         let mut squares = [0.0; LEAF];
         for (k, square) in squares.iter_mut().enumerate() {

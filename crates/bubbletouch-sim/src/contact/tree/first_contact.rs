@@ -3,25 +3,32 @@
 //! First contact depends on the taxels' spheres and the direction, not on the taxels' axes. The search therefore uses a copy of the taxels whose axes are the
 //! direction and whose strokes are unlimited. The taxel whose copy has the largest deflection touches first.
 
-use super::near_spheres::{PlacedUnion, needed_of_leaf};
+use super::near_spheres::needed_of_leaf;
 use super::path::meeting;
-use crate::contact::Press;
 use crate::contact::instructions::{Instructions, for_instructions};
+use crate::contact::lanes::SelectedLanes;
 use crate::contact::mesh::skin_mesh::MeshAt;
 use crate::contact::mesh::{LeafStops, SearchStack, stop_leaf};
+use crate::contact::object_at::{ClusterSearch, LOOK, ObjectAt, PlacedSphere, Region};
+use crate::contact::{Press, Workspace};
 use crate::geometry::Pose;
-use crate::objects::{Model, Sphere, SphereUnion};
+use crate::objects::{Model, SphereUnion};
 use crate::world::{Leaf, Node, Travelling};
 use glam::DVec3;
 use std::cell::Cell;
 
 /// Returns the travel of the patch at which a taxel first meets an object, metres; negative if the patch is past this contact. Returns `None` if the path
 /// misses all objects.
-pub(super) fn first_contact(press: &Press, travelling: &Travelling) -> Option<f64> {
+pub(super) fn first_contact(
+    press: &Press,
+    travelling: &Travelling,
+    workspace: &mut Workspace,
+) -> Option<f64> {
     let [_, end] = meeting(press)?;
     let front = Front {
         direction: press.along,
         travelling,
+        root: travelling.taxels.root()?,
     };
     // At this travel the patch is past all objects on its path.
     let mut farthest = 0.0;
@@ -30,7 +37,13 @@ pub(super) fn first_contact(press: &Press, travelling: &Travelling) -> Option<f6
             translation: pose.translation - end * press.along,
             ..*pose
         };
-        farthest = front.farthest(object, &pose, farthest);
+        farthest = match object {
+            Model::Spheres(union) => {
+                let (best, search) = (Instructions::Best, &mut workspace.clusters);
+                farthest_sphere(best, &front, (union, &pose), farthest, search)
+            }
+            Model::Mesh(mesh) => front.farthest_of_mesh(&MeshAt::new(mesh, &pose), farthest),
+        };
     }
     (farthest > 0.0).then_some(end - farthest)
 }
@@ -39,17 +52,10 @@ pub(super) fn first_contact(press: &Press, travelling: &Travelling) -> Option<f6
 struct Front<'a> {
     direction: DVec3,
     travelling: &'a Travelling,
+    root: &'a Node,
 }
 
 impl Front<'_> {
-    /// Returns the larger of `others` and the largest deflection that an object requires of a taxel whose axis is the direction of travel, metres.
-    fn farthest(&self, object: &Model, pose: &Pose, others: f64) -> f64 {
-        match object {
-            Model::Spheres(union) => self.farthest_sphere(union, pose, others),
-            Model::Mesh(mesh) => self.farthest_of_mesh(&MeshAt::new(mesh, pose), others),
-        }
-    }
-
     /// Returns the larger of `others` and the largest deflection that a mesh requires of a taxel, metres. The taxels nearest to a low corner of the mesh are
     /// evaluated first, so that most triangles are excluded for the others.
     fn farthest_of_mesh(&self, mesh: &MeshAt, others: f64) -> f64 {
@@ -69,44 +75,11 @@ impl Front<'_> {
         farthest
     }
 
-    /// Returns the larger of `others` and the largest deflection that a sphere union requires of a taxel, metres. The cluster with the largest bound is
-    /// evaluated first, then those whose bound exceeds the deflection found.
-    fn farthest_sphere(&self, union: &SphereUnion, pose: &Pose, others: f64) -> f64 {
-        let (placed, travelling) = (PlacedUnion::new(union, pose), &self.travelling.taxels);
-        let mut foremost = (others, None);
-        for (cluster, ball) in placed.clusters() {
-            let most = self.most(&ball);
-            if most > foremost.0 && travelling.is_near(ball.center, ball.radius) {
-                foremost = (most, Some(cluster));
-            }
-        }
-        let Some(first) = foremost.1 else {
-            return others;
-        };
-        let mut farthest = self.farthest_of(&placed, placed.cluster(first), others);
-        for (cluster, ball) in placed.clusters() {
-            if self.most(&ball) > farthest && travelling.is_near(ball.center, ball.radius) {
-                farthest = self.farthest_of(&placed, placed.cluster(cluster), farthest);
-            }
-        }
-        farthest
-    }
-
-    fn farthest_of(&self, placed: &PlacedUnion, numbers: &[u32], others: f64) -> f64 {
-        farthest_of_each(Instructions::Best, self, placed, numbers, others)
-    }
-
-    /// Returns an upper bound of the deflection, metres, by a ball in the patch frame, for taxels whose axes are the direction of travel.
-    #[inline(always)]
-    fn most(&self, ball: &Sphere) -> f64 {
-        self.travelling.front + ball.radius - ball.center.dot(self.direction)
-    }
-
     /// Returns an upper bound of the deflections, metres, that a ball requires of the taxels in a tree node. All taxels are parallel, so the bound uses the
     /// distance from their axes.
     #[inline(always)]
-    fn most_of(&self, node: &Node, ball: &Sphere) -> f64 {
-        let room = node.margin(ball.center, ball.radius);
+    fn most_of(&self, node: &Node, ball: &PlacedSphere) -> f64 {
+        let room = node.margin(ball.center, ball.reach);
         match room >= 0.0 {
             true => room.sqrt() + node.front(self.direction) - ball.center.dot(self.direction),
             false => f64::NEG_INFINITY,
@@ -114,31 +87,57 @@ impl Front<'_> {
     }
 }
 
+/// The bound of a sphere is minus an upper bound of the deflection that the sphere requires, metres.
+impl Region for Front<'_> {
+    #[inline(always)]
+    fn sphere_bound(&self, sphere: &PlacedSphere) -> f64 {
+        let most = self.travelling.front + sphere.reach - sphere.center.dot(self.direction);
+        if self.root.margin(sphere.center, sphere.reach) >= 0.0 {
+            -most
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
 for_instructions! {
-    /// Returns the larger of `others` and the largest deflection that any of the listed spheres requires of a taxel, metres.
-    fn farthest_of_each(
+    /// Returns the larger of `others` and the largest deflection that a sphere union at a pose requires of a taxel, metres. The clusters with the least bound are
+    /// evaluated first, then those whose bound is less than minus the deflection found.
+    fn farthest_sphere(
         front: &Front,
-        placed: &PlacedUnion,
-        numbers: &[u32],
+        union: (&SphereUnion, &Pose),
         others: f64,
-    ) -> f64 = farthest_by_leaves
+        search: &mut ClusterSearch,
+    ) -> f64 = farthest_by_clusters
 }
 
 #[inline(always)]
-fn farthest_by_leaves(front: &Front, placed: &PlacedUnion, numbers: &[u32], others: f64) -> f64 {
+fn farthest_by_clusters(
+    front: &Front,
+    (union, pose): (&SphereUnion, &Pose),
+    others: f64,
+    search: &mut ClusterSearch,
+) -> f64 {
+    let object = ObjectAt::new(pose, 0.0);
+    let clusters = union.clusters();
+    search.lay(object, clusters, front);
     let farthest = Cell::new(others);
-    for &number in numbers {
-        let sphere = placed.at(number);
-        if front.most(&sphere) <= farthest.get() {
-            continue;
+    for limit in [search.least().next_up(), f64::INFINITY] {
+        for (look, bounds) in search.looks().iter().enumerate() {
+            for k in SelectedLanes::below(bounds, limit.min(-farthest.get())) {
+                let cluster = clusters.cluster(look * LOOK + k);
+                for k in object.spheres_below(&cluster, front, -farthest.get()) {
+                    let sphere = object.sphere(cluster.at(k));
+                    front.travelling.taxels.each_leaf(
+                        |node| front.most_of(node, &sphere) > farthest.get(),
+                        |leaf| {
+                            let needed = needed_of_leaf(leaf, &sphere);
+                            farthest.set(needed.into_iter().fold(farthest.get(), f64::max));
+                        },
+                    );
+                }
+            }
         }
-        front.travelling.taxels.each_leaf(
-            |node| front.most_of(node, &sphere) > farthest.get(),
-            |leaf| {
-                let needed = needed_of_leaf(leaf, &sphere);
-                farthest.set(needed.into_iter().fold(farthest.get(), f64::max));
-            },
-        );
     }
     farthest.get()
 }

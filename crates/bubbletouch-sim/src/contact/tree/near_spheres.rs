@@ -1,62 +1,42 @@
-//! Search for the spheres of an object near a skin, by clusters, so that most spheres of a large object are skipped.
+//! Spheres of an object near a skin of any layout, and the deflections that they require.
 
+use crate::contact::lanes::SelectedLanes;
 use crate::contact::law;
-use crate::geometry::Pose;
-use crate::objects::{Sphere, SphereUnion};
-use crate::world::{LEAF, Leaf};
-use glam::{DMat3, DVec3};
+use crate::contact::object_at::{ClusterSearch, LOOK, ObjectAt, PlacedSphere, Region};
+use crate::objects::SphereClusters;
+use crate::world::{LEAF, Leaf, Node, TaxelTree};
+use glam::DVec3;
 
-/// Spheres of an object, with their pose in the patch frame.
-pub(crate) struct PlacedUnion<'a> {
-    union: &'a SphereUnion,
-    rotation: DMat3,
-    translation: DVec3,
+/// The bound of a sphere is negative if the sphere may push a taxel of the node.
+impl Region for Node {
+    #[inline(always)]
+    fn sphere_bound(&self, sphere: &PlacedSphere) -> f64 {
+        -self.margin(sphere.center, sphere.reach)
+    }
 }
 
-impl<'a> PlacedUnion<'a> {
-    pub fn new(union: &'a SphereUnion, pose: &Pose) -> Self {
-        Self {
-            union,
-            rotation: DMat3::from_quat(pose.rotation),
-            translation: pose.translation,
+/// Collects the indices of the spheres of an object that may push a taxel, ascending.
+#[inline(always)]
+pub(crate) fn gather(
+    taxels: &TaxelTree,
+    (object, clusters): (ObjectAt, &SphereClusters),
+    search: &mut ClusterSearch,
+    numbers: &mut Vec<u32>,
+) {
+    numbers.clear();
+    let Some(root) = taxels.root() else {
+        return;
+    };
+    search.lay(object, clusters, root);
+    for (look, bounds) in search.looks().iter().enumerate() {
+        for k in SelectedLanes::below(bounds, 0.0) {
+            let number = look * LOOK + k;
+            let (cluster, of_cluster) = (clusters.cluster(number), clusters.numbers(number));
+            let near = object.spheres_below(&cluster, root, 0.0);
+            numbers.extend(near.map(|k| of_cluster[k]));
         }
     }
-
-    /// Returns the sphere with the given index in the object, in the patch frame.
-    #[inline(always)]
-    pub fn at(&self, number: u32) -> Sphere {
-        self.place(self.union.spheres()[number as usize])
-    }
-
-    #[inline(always)]
-    fn place(&self, sphere: Sphere) -> Sphere {
-        Sphere {
-            center: self.rotation * sphere.center + self.translation,
-            ..sphere
-        }
-    }
-
-    /// Returns the indices of all clusters of spheres, with their bounding balls in the patch frame.
-    pub fn clusters(&self) -> impl Iterator<Item = (usize, Sphere)> {
-        let bounds = self.union.clusters().bounds();
-        (0..bounds.len()).map(|cluster| (cluster, self.place(bounds.ball(cluster))))
-    }
-
-    /// Returns the indices of the spheres of a cluster.
-    pub fn cluster(&self, cluster: usize) -> &'a [u32] {
-        self.union.clusters().numbers(cluster)
-    }
-
-    /// Collects the indices of the spheres in those clusters for whose bounding ball `may_count` returns true; ascending.
-    pub fn gather(&self, mut may_count: impl FnMut(&Sphere) -> bool, numbers: &mut Vec<u32>) {
-        numbers.clear();
-        for (cluster, ball) in self.clusters() {
-            if may_count(&ball) {
-                numbers.extend_from_slice(self.cluster(cluster));
-            }
-        }
-        numbers.sort_unstable();
-    }
+    numbers.sort_unstable();
 }
 
 /// Returns the deflection that contact with a sphere requires, metres; at most 0 if the sphere misses the taxel or lies behind its substrate. `from` is the
@@ -74,7 +54,7 @@ pub(crate) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f
 
 /// Returns the deflections that contact with a sphere (in the patch frame) requires of the taxels in a leaf of the taxel tree, metres.
 #[inline(always)]
-pub(crate) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [f64; LEAF] {
+pub(crate) fn needed_of_leaf(leaf: &Leaf, sphere: &PlacedSphere) -> [f64; LEAF] {
     let mut needed = [0.0; LEAF];
     for (k, needed) in needed.iter_mut().enumerate() {
         let from = leaf.vector(&leaf.centers, k) - sphere.center;
@@ -83,7 +63,7 @@ pub(crate) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [f64; LEAF] {
             leaf.vector(&leaf.across[1], k),
             leaf.vector(&leaf.axes, k),
         ];
-        let reach = leaf.radii[k] + sphere.radius;
+        let reach = leaf.radii[k] + sphere.reach;
         *needed = needed_along(from, frame, reach, leaf.behind[k]);
     }
     needed

@@ -9,7 +9,7 @@ use crate::contact::{Contact, FrictionState, NormalForce, Press, Record, Until, 
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::Sphere;
-use crate::world::{EvenGrid, Patch, Taxel, Travelling};
+use crate::world::{Patch, Taxel, Travelling};
 use glam::DVec3;
 use std::borrow::Cow;
 
@@ -84,7 +84,7 @@ impl<'a> Path<'a> {
             },
             until => until,
         };
-        let first = first_contact(self.press, &self.travelling());
+        let first = first_contact(self.press, &self.travelling(), self.workspace);
         let travels = first.map(|first| [first, until.limit(first)]);
         let is_ahead = |[first, end]: &[f64; 2]| first < end || matches!(until, Until::Depth(_));
         Ok(travels.filter(is_ahead))
@@ -117,15 +117,9 @@ impl<'a> Path<'a> {
             record,
             ..
         } = *self.press;
-        let grid = patch.even_grid().filter(|_| along == DVec3::Z);
-        let endless = grid.map(|grid| EvenGrid {
-            behind: f64::NEG_INFINITY,
-            ..*grid
-        });
         let poses = self.moved_poses(travel * along);
-        let taxels = (&travelling.taxels, endless.as_ref());
         let placed = (objects, &poses[..]);
-        press::push_tree(taxels, patch.n_taxels(), placed, self.workspace);
+        press::push_tree(&travelling.taxels, patch.n_taxels(), placed, self.workspace);
         let contact = press::limit(patch, placed, record, self.workspace);
         self.workspace.poses = poses;
         Contact { travel, ..contact }

@@ -1,24 +1,23 @@
 //! Press kernel for any layout: each taxel moves along its own axis, and only taxels within reach of a sphere are evaluated.
 
-use super::near_spheres::{PlacedUnion, needed_along, needed_of_leaf};
-use crate::contact::grid::View;
+use super::near_spheres::{gather, needed_along, needed_of_leaf};
 use crate::contact::instructions::for_instructions;
 use crate::contact::law::saturation_limit;
 use crate::contact::mesh::skin_mesh::MeshAt;
 use crate::contact::mesh::{LeafStops, SearchStack, stop_leaf};
+use crate::contact::object_at::ObjectAt;
 use crate::contact::taxel_contact::TaxelContact;
 use crate::contact::workspace::HeldTaxel;
 use crate::contact::{Contact, Record, Workspace};
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
 use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
-use crate::world::{EvenGrid, LEAF, Patch, PlacedTaxel, TaxelTree};
+use crate::world::{LEAF, Patch, PlacedTaxel, TaxelTree};
 use glam::DVec3;
 
-/// Raises the deflections of the taxels of a tree, which may have been built from an even grid. The function ignores object parts that are marked as held by
-/// `Workspace::hold`.
+/// Raises the deflections of the taxels of a tree. The function ignores object parts that are marked as held by `Workspace::hold`.
 pub(super) fn push_tree(
-    (taxels, even_grid): (&TaxelTree, Option<&EvenGrid>),
+    taxels: &TaxelTree,
     n_taxels: usize,
     (objects, patch_from_objects): (&[Model], &[Pose]),
     workspace: &mut Workspace,
@@ -32,19 +31,13 @@ pub(super) fn push_tree(
     for (number, (object, pose)) in objects.iter().zip(patch_from_objects).enumerate() {
         match object {
             Model::Spheres(union) => {
-                let placed = PlacedUnion::new(union, pose);
-                let mut near = std::mem::take(&mut workspace.near);
-                placed.gather(|ball| taxels.is_near(ball.center, ball.radius), &mut near);
-                match even_grid {
-                    Some(grid) => push_along_rows(grid, (number, union, &near), pose, workspace),
-                    None => push_by_spheres(
-                        workspace.instructions(),
-                        taxels,
-                        (number, &placed, &near),
-                        workspace,
-                    ),
-                }
-                workspace.near = near;
+                let placed = PlacedUnion {
+                    number: number as u32,
+                    union,
+                    // The leaves of the tree contain the radii of the taxels.
+                    object: ObjectAt::new(pose, 0.0),
+                };
+                push_by_spheres(workspace.instructions(), taxels, &placed, workspace);
             }
             Model::Mesh(mesh) => push_by_mesh(taxels, number, mesh, pose, workspace),
         }
@@ -86,60 +79,34 @@ fn push_held(
     workspace.held = held;
 }
 
-/// Raises deflections row by row without a tree search; spheres above all taxels are skipped. The result is bitwise equal to [`push_by_spheres`].
-fn push_along_rows(
-    grid: &EvenGrid,
-    (object, union, near): (usize, &SphereUnion, &[u32]),
-    pose: &Pose,
-    workspace: &mut Workspace,
-) {
-    let Workspace {
-        deflections,
-        deciding,
-        touched,
-        lines,
-        ..
-    } = workspace;
-    lines.lay(&grid.grid);
-    let view = View::new(grid.radius, lines, pose);
-    let behind = grid.behind;
-    let mut is_near = false;
-    for &number in near {
-        let Some(placed) = view.place(&union.spheres()[number as usize], 0.0) else {
-            continue;
-        };
-        let mark = [object as u32, number];
-        is_near = true;
-        placed.indent_and_mark(lines, behind, deflections, (mark, deciding));
-    }
-    if !is_near {
-        return;
-    }
-    touched.clear();
-    let numbers = deflections.iter().enumerate();
-    touched.extend(numbers.filter_map(|(number, &d)| (d > 0.0).then_some(number as u32)));
+/// Union of spheres at a pose.
+struct PlacedUnion<'a> {
+    /// Index of the object.
+    number: u32,
+    union: &'a SphereUnion,
+    object: ObjectAt,
 }
 
 for_instructions! {
-    /// Raises the deflections of the taxels by the nearby spheres of an object.
+    /// Raises the deflections of the taxels by the spheres of an object.
     fn push_by_spheres(
         taxels: &TaxelTree,
-        placed: (usize, &PlacedUnion, &[u32]),
+        placed: &PlacedUnion,
         workspace: &mut Workspace,
     ) = push_by_each
 }
 
 #[inline(always)]
-fn push_by_each(
-    taxels: &TaxelTree,
-    (object, placed, near): (usize, &PlacedUnion, &[u32]),
-    workspace: &mut Workspace,
-) {
-    for &number in near {
-        let sphere = placed.at(number);
-        let deciding = [object as u32, number];
+fn push_by_each(taxels: &TaxelTree, placed: &PlacedUnion, workspace: &mut Workspace) {
+    let PlacedUnion { union, object, .. } = placed;
+    let mut near = std::mem::take(&mut workspace.near);
+    let search = &mut workspace.clusters;
+    gather(taxels, (*object, union.clusters()), search, &mut near);
+    for &number in &near {
+        let sphere = object.sphere(union.spheres()[number as usize]);
+        let deciding = [placed.number, number];
         taxels.each_leaf(
-            |node| node.is_near(sphere.center, sphere.radius),
+            |node| node.is_near(sphere.center, sphere.reach),
             |leaf| {
                 let needed = needed_of_leaf(leaf, &sphere);
                 let pushes = |k: usize| needed[k] > 0.0;
@@ -151,6 +118,7 @@ fn push_by_each(
             },
         );
     }
+    workspace.near = near;
 }
 
 fn push_by_mesh(
@@ -185,8 +153,7 @@ pub(crate) fn press(
     record: Record,
     workspace: &mut Workspace,
 ) -> Contact {
-    let taxels = (patch.tree(), patch.even_grid());
-    push_tree(taxels, patch.n_taxels(), placed, workspace);
+    push_tree(patch.tree(), patch.n_taxels(), placed, workspace);
     push_held(patch, placed, workspace);
     limit(patch, placed, record, workspace)
 }
