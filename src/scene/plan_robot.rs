@@ -140,6 +140,11 @@ impl Reader<'_> {
 
     /// Returns the error of a key of `positions` that is not the name of a joint that moves, with a unit.
     fn refuse_position<T>(&self, key: &str, given: &str, robot: &Robot) -> Result<T> {
+        if let Some(coordinate) = robot.coordinates().iter().find(|it| it.name == given) {
+            let units = coordinate.dimension.units().iter().skip(1);
+            let names: Vec<String> = units.map(|(unit, _)| format!("`{given}{unit}`")).collect();
+            return self.refuse(key, format!("`{given}` without a unit"), names.join(" or "));
+        }
         let bare = given.rsplit_once('_').map_or(given, |(bare, _)| bare);
         if let Some(joint) = robot.joints().iter().find(|joint| joint.name == bare) {
             let given = format!("`{given}`, and joint `{bare}` {}", stays(joint, robot));

@@ -69,10 +69,9 @@ fn position(table: &DeTable, path: &str) -> Option<usize> {
 fn after<'p>(path: &'p str, name: &str) -> Option<&'p str> {
     let rest = path.strip_prefix(name)?;
     match rest.chars().next() {
-        None | Some('[') => Some(rest),
         Some('.') => Some(&rest[1..]),
-        // The end of the path in a message.
-        Some(',' | ':' | ' ') => Some(""),
+        // A number of an entry, or the end of the path in a message.
+        None | Some('[' | ',' | ':' | ' ') => Some(rest),
         Some(_) => None,
     }
 }

@@ -7,7 +7,7 @@ use super::joined_parts::{
 use super::text_lines::all_bytes;
 use crate::error::Result;
 use crate::mesh::MeshFile;
-use crate::text::encoding::utf8_or_latin1;
+use crate::text::encoding::decoded;
 use crate::text::numbers::finite_number;
 use crate::text::xml::{Element, Format, Lines, POSITIVE, document};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
@@ -31,7 +31,7 @@ const MAX_INPUTS: usize = 100;
 /// If the file is not Collada, has no faces, or contains wrong counts, indices that do not exist or numbers that are not finite. The error begins with `place`
 /// and the line.
 pub fn read_collada(place: &str, source: impl BufRead) -> Result<(MeshFile, f64)> {
-    let text = utf8_or_latin1(&all_bytes(place, source)?);
+    let (text, _) = decoded(place, &all_bytes(place, source)?);
     let text = text.trim_start_matches('\u{feff}');
     let document = document(COLLADA, place, text)?;
     let lines = Lines::new(place, text);

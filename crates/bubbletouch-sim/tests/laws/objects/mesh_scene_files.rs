@@ -175,8 +175,11 @@ fn comments_and_byte_order_marks_of_scene_files_change_nothing() {
         format!("data:application/octet-stream;base64,{}", base64(&buffer)).into();
     check_placed(&read(MeshFormat::Gltf, format!("\u{feff}{inside}").as_bytes()).unwrap());
     let marked = format!("\u{feff}{commented}");
-    let mesh = read(MeshFormat::Collada, marked.as_bytes()).unwrap();
-    assert_same(&mesh, &corners(&cuboid(SIDES)));
+    let wide = marked.encode_utf16().flat_map(u16::to_le_bytes);
+    for bytes in [marked.clone().into_bytes(), wide.collect()] {
+        let mesh = read(MeshFormat::Collada, &bytes).unwrap();
+        assert_same(&mesh, &corners(&cuboid(SIDES)));
+    }
 }
 
 #[test]
