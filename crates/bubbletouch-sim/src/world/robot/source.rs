@@ -29,6 +29,8 @@ pub(super) struct Source {
     /// Files and lines of the text.
     pub lines: Lines,
     included: HashSet<PathBuf>,
+    /// Files of which each includes the next, without links and `..`.
+    open: Vec<PathBuf>,
 }
 
 impl Source {
@@ -48,6 +50,7 @@ impl Source {
     pub fn mjcf(place: &str, text: &str) -> Result<Self> {
         let mut source = Self::empty(MJCF, place);
         source.included.insert(PathBuf::from(place));
+        source.open.extend(Path::new(place).canonicalize().ok());
         source.add(place, text, Part::Whole)?;
         Ok(source)
     }
@@ -59,6 +62,7 @@ impl Source {
             text: String::new(),
             lines: Lines::default(),
             included: HashSet::new(),
+            open: Vec::new(),
         }
     }
 
@@ -115,12 +119,17 @@ impl Source {
             let given = format!("`{name}`, a file that is not found");
             return Err(element.refuse(given, format!("a file at {}", list.join(" or "))));
         };
-        if !self.included.insert(path.clone()) {
+        // A file may include itself by another path.
+        let open = path.canonicalize().unwrap_or_else(|_| path.clone());
+        if self.open.contains(&open) || !self.included.insert(path.clone()) {
             let given = format!("`{name}`, a file that is included twice");
             return Err(element.refuse(given, "each file once"));
         }
         let text = file_text(path, element, &self.lines)?;
-        self.add(&path.display().to_string(), &text, Part::Children)
+        self.open.push(open);
+        self.add(&path.display().to_string(), &text, Part::Children)?;
+        self.open.pop();
+        Ok(())
     }
 }
 

@@ -248,6 +248,10 @@ fn included_files_are_read_from_the_folder_of_the_model_or_of_the_including_file
             "parts/deep.xml",
             "<mujoco><compiler angle='radian'/></mujoco>",
         ),
+        (
+            "parts/self.xml",
+            "<mujoco><include file='../parts/self.xml'/></mujoco>",
+        ),
         ("broken.xml", "<mujoco><compiler"),
     ]);
     let hand = |joint: &str| {
@@ -265,6 +269,10 @@ fn included_files_are_read_from_the_folder_of_the_model_or_of_the_including_file
     );
     for (file, said) in [
         ("parts/all.xml", "included twice"),
+        (
+            "parts/self.xml",
+            "parts/self.xml, line 1: `../parts/self.xml`, a file that is included twice",
+        ),
         ("none.xml", "line 2: `none.xml`, a file that is not found"),
         ("broken.xml", "well-formed XML"),
     ] {
