@@ -37,3 +37,14 @@ impl ClassWeight {
         sizes.mapv(|n| if n > 0 { mean / n as f64 } else { 0.0 })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_class_without_rows_changes_no_balanced_weight() {
+        let weights = ClassWeight::Balanced.of_classes(&[0, 2, 0, 0], 3);
+        assert_eq!(weights.to_vec(), [2.0 / 3.0, 0.0, 2.0]);
+    }
+}

@@ -275,6 +275,13 @@ mod tests {
         assert_eq!(rbf.gamma_scale(Array2::ones((3, 2)).view()), 1.0);
     }
 
+    #[test]
+    fn a_squared_distance_is_never_negative() {
+        let mut products = [1.0 + 1e-15, 0.5];
+        distances(&mut products, 1.0, &[1.0, 1.0]);
+        assert_eq!(products, [0.0, 1.0]);
+    }
+
     fn assert_powers<T: Scalar>(tolerance: f64) {
         // The length is not a multiple of the register width.
         let products: Vec<f64> = (0..37).map(|i| f64::from(i) * 0.03 - 0.4).collect();

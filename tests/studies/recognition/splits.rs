@@ -138,6 +138,7 @@ fn a_validation_split_stays_within_the_training_rows() {
     let training: Array1<usize> = outer.train.iter().map(|&row| labels[row]).collect();
     let inner = stratified_hold_out(training.view(), 0.34, &Seed::new(8)).unwrap();
     let validation = outer.within_train(&inner);
+    assert!(validation.test.is_sorted());
     let mut both = [validation.train.as_slice(), &validation.test].concat();
     both.sort_unstable();
     let mut train = outer.train.clone();

@@ -294,9 +294,7 @@ fn grid<T: SolverScalar>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::class_weight::ClassWeight;
     use crate::dataset::dataset;
-    use crate::multiclass::Multiclass;
     use ndarray::Array2;
 
     /// Three overlapping classes.
@@ -315,78 +313,6 @@ mod tests {
             Split { train, test }
         };
         (0..k).map(fold).collect()
-    }
-
-    /// Computes the reference result by training one model for each fold and candidate.
-    fn one_by_one(
-        params: &SvmParams,
-        training: &Dataset,
-        folds: &[Split],
-        kernels: &[KernelFunction],
-        goal: Goal,
-    ) -> Result<(Array3<usize>, usize)> {
-        let mut counts = Array3::zeros((kernels.len(), goal.path.len(), folds.len()));
-        let mut n_capped = 0;
-        for (number, fold) in folds.iter().enumerate() {
-            let fitting = rows(training, &fold.train)?;
-            let held_out = rows(training, &fold.test)?;
-            for (kernel, mut counts) in kernels.iter().zip(counts.outer_iter_mut()) {
-                let kernel = match kernel.gamma() {
-                    Some(gamma) => params.kernel.with_gamma(Gamma::Value(gamma)),
-                    None => params.kernel,
-                };
-                let models = SvmParams { kernel, ..*params }.train_path(&fitting, goal.path)?;
-                for (mut counts, model) in counts.outer_iter_mut().zip(models) {
-                    let labels = model.labels(held_out.records.view())?;
-                    counts[number] = n_equal(&labels, &held_out.targets);
-                    n_capped += model.n_capped();
-                }
-            }
-        }
-        Ok((counts, n_capped))
-    }
-
-    #[test]
-    fn one_matrix_gives_the_accuracies_of_training_every_candidate() {
-        let data = overlapping(150);
-        // 50, 25 and 50 rows, so that classes and folds have different weights.
-        let kept: Vec<usize> = (0..150).filter(|row| row % 6 != 1).collect();
-        let unequal = rows(&data, &kept).unwrap();
-        let path = [0.01, 1.0, 100.0];
-        for (multiclass, class_weight, data) in [
-            (Multiclass::OneVsOne, ClassWeight::Uniform, &data),
-            (Multiclass::OneVsRest, ClassWeight::Uniform, &data),
-            (Multiclass::OneVsOne, ClassWeight::Balanced, &unequal),
-            (Multiclass::OneVsRest, ClassWeight::Balanced, &unequal),
-        ] {
-            let folds = folds_of(data.records.nrows(), 3);
-            for kernel in [
-                Kernel::Linear,
-                Kernel::Rbf {
-                    gamma: Gamma::Scale,
-                },
-            ] {
-                let params = SvmParams {
-                    kernel,
-                    multiclass,
-                    class_weight,
-                    tolerance: 1e-8,
-                    ..SvmParams::default()
-                };
-                let statistics = RowStatistics::new(data.records.view()).unwrap();
-                let kernels = kernels(&params, (data, &statistics), &[0.3, 3.0]).unwrap();
-                let goal = Goal {
-                    path: &path,
-                    tolerance: params.tolerance,
-                    memory: params.memory_bytes,
-                };
-                let rows = (data, &statistics);
-                let fast = on_one_matrix(&params, rows, &folds, &kernels, goal).unwrap();
-                let slow = one_by_one(&params, data, &folds, &kernels, goal).unwrap();
-                assert_eq!(fast, slow, "{kernel:?} {multiclass:?}");
-                assert_eq!(fast.0.dim().0, if kernel == Kernel::Linear { 1 } else { 2 });
-            }
-        }
     }
 
     #[test]

@@ -95,6 +95,10 @@ mod tests {
             (1, 17, 1),
             (2, 32, 21),
             (3, 33, 4),
+            (1, 4, 21),
+            (2, 128, 21),
+            (5, 129, 21),
+            (4, 300, 21),
         ] {
             let (left, right) = (rows::<T>(n_left, m), rows::<T>(n, m));
             // Sums of m products below 1, with rounding of each addition.
@@ -118,20 +122,5 @@ mod tests {
     fn products_are_those_of_ndarray_in_both_precisions() {
         assert_products::<f32>(1e-4);
         assert_products::<f64>(1e-12);
-    }
-
-    #[test]
-    fn products_of_rows_with_each_other_are_those_with_others() {
-        let m = 21;
-        for n in [0, 1, 4, 128, 129, 300] {
-            let rows = rows::<f32>(n, m);
-            let own = own_products(rows.view());
-            for ((i, j), &product) in own.indexed_iter() {
-                let both = rows.row(i).into_iter().zip(rows.row(j));
-                let expected: f32 = both.map(|(a, b)| a * b).sum();
-                assert!((product - expected).abs() < 1e-5, "{n}: {i} {j}");
-                assert_eq!(product, own[[j, i]]);
-            }
-        }
     }
 }

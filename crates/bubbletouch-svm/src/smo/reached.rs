@@ -35,3 +35,15 @@ pub(crate) fn violation(beta: &[f64], limits: &[f64], f: &[f64], c: f64) -> f64 
     let (highest, lowest) = extremes(beta, limits, f, c);
     highest - lowest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gradient_that_is_no_number_violates_the_conditions() {
+        for bad in [f64::NAN, f64::INFINITY] {
+            assert_eq!(violation(&[0.0], &[1.0], &[bad], 1.0), f64::INFINITY);
+        }
+    }
+}

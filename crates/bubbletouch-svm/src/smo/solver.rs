@@ -71,8 +71,8 @@ impl<'k, T: SolverScalar> Smo<'_, 'k, T> {
         if !self.is_summed && self.violation(c) <= tolerance {
             self.refresh();
         }
-        // If no multiplier was limited by its bound, a larger C does not change β.
-        let stays = self.c <= c && self.violation(c) <= tolerance;
+        // C never falls. If no multiplier was limited by its bound, a larger C does not change β.
+        let stays = self.violation(c) <= tolerance;
         if !stays {
             self.stretch(c);
             if let Some(other) = other(self.gram) {

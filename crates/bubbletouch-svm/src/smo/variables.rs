@@ -281,6 +281,17 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_step_ends_exactly_at_a_bound() {
+        // In f64, 0.56 + (7.2 − 0.56) is above 7.2.
+        let mut variables = Variables::<f64>::new(&[0.56, 0.0], &[1.0, -1.0], &[50.0, -50.0], 7.2);
+        variables.step(0, 1, 1.0);
+        assert_eq!(
+            (variables.beta[0], variables.up[0]),
+            (7.2, f64::NEG_INFINITY)
+        );
+    }
+
+    #[test]
     fn extremes_are_those_of_all_that_can_move_however_many_there_are() {
         let c = 2.0;
         for n in [0, 1, 7, 63, 64, 65, 150] {
