@@ -51,57 +51,41 @@ mod tests {
         let dome =
             |radius, polar, arc, pitch| Dome::new(radius, polar, arc, pitch).map(Layout::from);
         let grid = Layout::grid(&grid(1 << 12, 1 << 12, 1e-3));
+        let (cylinder, cap) = (Layout::cylinder, Layout::sphere_cap);
+        let (hexagonal, disc, annulus) = (Layout::hexagonal, Layout::disc, Layout::annulus);
         let (zero, up) = (DVec3::ZERO, DVec3::Z);
         let nowhere = DVec3::new(f64::NAN, 0.0, 0.0);
         for (layout, start) in [
             (
-                Layout::cylinder(-1.0, 1.0, 1.0, 0.1),
+                cylinder(-1.0, 1.0, 1.0, 0.1),
                 "cylinder radius: -1 m; a finite positive number",
             ),
             (
-                Layout::cylinder(1.0, f64::INFINITY, 1.0, 0.1),
+                cylinder(1.0, f64::INFINITY, 1.0, 0.1),
                 "cylinder length: inf m; zero or a positive",
             ),
             (
-                Layout::cylinder(1.0, 1.0, 7.0, 0.1),
+                cylinder(1.0, 1.0, 7.0, 0.1),
                 "cylinder arc: 7 rad; above 0 to 6.28",
             ),
+            (cylinder(1.0, 1.0, 1.0, 1e-5), "cylinder layout: 1000020"),
+            (cap(1.0, 0.0, 0.1), "cap half angle: 0 rad; above 0 to 3.14"),
+            (cap(1.0, f64::NAN, 0.1), "cap half angle: NaN rad; "),
+            (hexagonal(0, 3, 1e-3), "hexagonal layout: 0 taxels; 1 to "),
             (
-                Layout::cylinder(1.0, 1.0, 1.0, 1e-5),
-                "cylinder layout: 1000020",
-            ),
-            (
-                Layout::sphere_cap(1.0, 0.0, 0.1),
-                "cap half angle: 0 rad; above 0 to 3.14",
-            ),
-            (
-                Layout::sphere_cap(1.0, f64::NAN, 0.1),
-                "cap half angle: NaN rad; ",
-            ),
-            (
-                Layout::hexagonal(0, 3, 1e-3),
-                "hexagonal layout: 0 taxels; 1 to ",
-            ),
-            (
-                Layout::hexagonal(3, 3, 0.0),
+                hexagonal(3, 3, 0.0),
                 "taxel pitch: 0 m; a finite positive number",
             ),
             (
-                Layout::disc(f64::NAN, 1e-3),
+                disc(f64::NAN, 1e-3),
                 "disc radius: NaN m; a finite positive number",
             ),
+            (disc(1.0, 1e-6), "disc layout: 3627598735724 taxels; 1 to "),
             (
-                Layout::disc(1.0, 1e-6),
-                "disc layout: 3627598735724 taxels; 1 to ",
-            ),
-            (
-                Layout::annulus(2.0, 1.0, 0.1),
+                annulus(2.0, 1.0, 0.1),
                 "annulus layout: inner radius 2 m, outer radius 1 m; ",
             ),
-            (
-                Layout::annulus(0.0, 1.0, 0.1),
-                "annulus inner radius: 0 m; ",
-            ),
+            (annulus(0.0, 1.0, 0.1), "annulus inner radius: 0 m; "),
             (dome(0.0, 1.0, 1.0, 1e-3), "dome radius: 0 m; "),
             (dome(1.0, 4.0, 1.0, 1e-3), "dome polar angle: 4 rad; "),
             (dome(1.0, 1.0, -1.0, 1e-3), "dome arc: -1 rad; "),
