@@ -1,6 +1,6 @@
 //! Holes of a mesh: detection, measures, and closing on request.
 
-use super::{TriangleMesh, Welded};
+use super::{LengthUnit, TriangleMesh, Welded};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::{Error, Result};
 use glam::DVec3;
@@ -116,7 +116,9 @@ impl TriangleMesh {
             widths.push(hole.width);
         }
         widths.sort_by(|a, b| b.total_cmp(a));
-        let mesh = Self::new("mesh with closed holes", vertices, triangles)?;
+        // The size was checked when the mesh was created, unless its unit was given.
+        let place = "mesh with closed holes";
+        let mesh = Self::in_unit(place, LengthUnit::Metre, vertices, triangles)?;
         Ok(ClosedHoles { mesh, widths })
     }
 }

@@ -221,6 +221,9 @@ fn small_holes_are_closed_on_request_and_wide_ones_stay() {
     let closed = open.with_holes_closed(1.01 * edge).unwrap();
     assert_eq!(closed.widths.len(), 1);
     assert!((closed.widths[0] - edge).abs() < 1e-12);
+    let large = open.scaled("ball", DVec3::splat(1e4)).unwrap();
+    let closed_large = large.with_holes_closed(1.01e4 * edge).unwrap();
+    assert_eq!(closed_large.widths.len(), 1);
     assert!(MeshReport::new(&closed.mesh).is_solid());
     let [volume, before] = [&closed.mesh, &whole].map(|mesh| mesh.volume_and_centroid().0);
     assert!((volume - before).abs() < 1e-12 * before);
