@@ -4,19 +4,20 @@ use crate::arrays::{Object, shape_of};
 use crate::errors::bad_input;
 use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use std::fmt::Display;
 
 /// Returns an array of the caller for results. `dtype` is the name of the array's type, with its article.
 ///
 /// # Errors
 /// If the object is not an array of this shape and type in C order; the message begins with `place`.
 pub fn output_array<'py, T: Element>(
-    place: &str,
+    place: impl Display,
     given: &Object<'py>,
     (shape, dtype): (&[usize], &str),
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     let refuse = |given: String| {
         let allowed = format!("{dtype} array in C order of {}", shape_of(shape));
-        bad_input(place, given, allowed)
+        bad_input(&place, given, allowed)
     };
     let Ok(array) = given.cast::<PyArrayDyn<T>>() else {
         return Err(refuse(match given.getattr("dtype") {
@@ -41,7 +42,7 @@ pub fn output_array<'py, T: Element>(
 /// # Errors
 /// If the array is read-only or in use elsewhere; the message begins with `place`.
 pub fn writable<'py, T: Element>(
-    place: &str,
+    place: impl Display,
     array: &Bound<'py, PyArrayDyn<T>>,
 ) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
     let array = array.try_readwrite();

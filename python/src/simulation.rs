@@ -18,7 +18,7 @@ use self_cell::self_cell;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 type BorrowedSimulation<'p> = scene::Simulation<'p>;
 
@@ -54,10 +54,10 @@ fn begin(plan: &Arc<ScenePlan>) -> RunningSimulation {
 /// - signal: sensor signals in the shape of the deflections, or None;
 /// - wrench: force and torque on the patch, newtons and newton metres, (6,), in the patch frame;
 /// - n_touched and n_saturated: numbers of taxels.
-#[pyclass(module = "bubbletouch")]
+#[pyclass(frozen, module = "bubbletouch")]
 pub struct Simulation {
     plan: Arc<ScenePlan>,
-    running: RunningSimulation,
+    running: Mutex<RunningSimulation>,
 }
 
 #[pymethods]
@@ -85,7 +85,7 @@ impl Simulation {
             let plan = Arc::new(plan.map_err(exception)?);
             warn(py, plan.notes(), 2)?;
             Ok(Self {
-                running: begin(&plan),
+                running: Mutex::new(begin(&plan)),
                 plan,
             })
         })
@@ -94,12 +94,12 @@ impl Simulation {
     /// Resets the simulation to the state before the first frame, and removes all manual settings. The sensor is unchanged. The noise of the readings
     /// is drawn from `seed` (default: the scene's seed). Raises ValueError if the seed is invalid.
     #[pyo3(signature = (seed=None))]
-    fn reset(&mut self, seed: Option<i128>) -> PyResult<()> {
+    fn reset(&self, py: Python, seed: Option<i128>) -> PyResult<()> {
         let seed = match seed {
             None => self.plan.spec.seed,
             Some(given) => whole_number("seed", given)?,
         };
-        self.change(|simulation| {
+        self.run(py, |simulation| {
             simulation.reset(seed);
             Ok(())
         })
@@ -107,9 +107,8 @@ impl Simulation {
 
     /// Advances the simulation by `dt` seconds. Manually set poses are reached; all other motions follow the scene. Raises ValueError if `dt` is not
     /// positive, or a pose overflows.
-    fn step(&mut self, py: Python, dt: f64) -> PyResult<()> {
-        let running = &mut self.running;
-        guarded(|| py.detach(|| on(running, |simulation| simulation.step(dt))))
+    fn step(&self, py: Python, dt: f64) -> PyResult<()> {
+        self.run(py, |simulation| simulation.step(dt))
     }
 
     /// Returns the current state as a frame. Before any step, the state is the first frame of the scene. Raises ValueError if a pose overflows.
@@ -118,46 +117,43 @@ impl Simulation {
     /// faster, because no arrays are allocated.
     #[pyo3(signature = (*, out=None))]
     fn observe<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         out: Option<Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (running, plan) = (&mut self.running, &self.plan);
-        guarded(|| {
-            py.detach(|| on(running, |simulation| simulation.observe().map(drop)))?;
-            // The state was computed without the lock; the second call only returns the frame.
-            running.with_dependent_mut(|_, simulation| {
-                let frame = simulation.observe().map_err(exception)?;
-                match out {
-                    Some(out) => {
-                        fill_frame(&out, plan, frame)?;
-                        Ok(out)
-                    }
-                    None => frame_of(py, plan, frame),
-                }
-            })
-        })
+        let out = out.map(Bound::unbind);
+        let made = self.run(py, |simulation| {
+            let frame = simulation.observe()?;
+            Ok(Python::attach(|py| match out {
+                Some(out) => fill_frame(out.bind(py), &self.plan, frame).map(|()| out),
+                None => frame_of(py, &self.plan, frame).map(Bound::unbind),
+            }))
+        })?;
+        Ok(made?.into_bound(py))
     }
 
     /// Sets the pose of an object in the world from the next step on: (7,) or (4, 4). A free object comes to rest from this pose. Raises ValueError if
     /// an argument is invalid.
-    fn set_object_pose(&mut self, object: &str, pose: &Object) -> PyResult<()> {
+    fn set_object_pose(&self, py: Python, object: &str, pose: &Object) -> PyResult<()> {
         let pose = Poses::single("pose", pose)?;
-        self.change(|simulation| simulation.set_object_pose(object, pose))
+        self.run(py, |simulation| simulation.set_object_pose(object, pose))
     }
 
     /// Sets the pose of a robot's base in the world from the next step on: (7,) or (4, 4). Raises ValueError if an argument is invalid.
-    fn set_robot_pose(&mut self, robot: &str, pose: &Object) -> PyResult<()> {
+    fn set_robot_pose(&self, py: Python, robot: &str, pose: &Object) -> PyResult<()> {
         let pose = Poses::single("pose", pose)?;
-        self.change(|simulation| simulation.set_robot_pose(robot, pose))
+        self.run(py, |simulation| simulation.set_robot_pose(robot, pose))
     }
 
     /// Sets the joint positions of a robot from the next step on: (n_joints,) in the order of `robots`, radians and metres. Raises ValueError if an
     /// argument is invalid.
-    fn set_joint_positions(&mut self, robot: &str, positions: &Object) -> PyResult<()> {
+    fn set_joint_positions(&self, py: Python, robot: &str, positions: &Object) -> PyResult<()> {
         let is_shape = |shape: &[usize]| shape.len() == 1;
         let positions = array("positions", positions, "(n_joints,)", is_shape)?;
-        self.change(|simulation| simulation.set_joint_positions(robot, positions.values()))
+        let positions = positions.values();
+        self.run(py, |simulation| {
+            simulation.set_joint_positions(robot, positions)
+        })
     }
 
     /// Returns the patch with this name, in the patch frame. If there is none, raises ValueError.
@@ -172,9 +168,8 @@ impl Simulation {
 
     /// Time since the start of the scene, seconds, in the current state.
     #[getter]
-    fn time(&mut self) -> f64 {
-        self.running
-            .with_dependent_mut(|_, simulation| simulation.time())
+    fn time(&self, py: Python) -> PyResult<f64> {
+        self.run(py, |simulation| Ok(simulation.time()))
     }
 
     /// Dict from the name of each robot to the names of its movable joints.
@@ -193,22 +188,14 @@ impl Simulation {
         slf
     }
 
-    fn __next__<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let (running, plan) = (&mut self.running, &self.plan);
-        guarded(|| {
-            let is_over = py.detach(|| {
-                on(running, |simulation| {
-                    simulation.next_frame().map(|frame| frame.is_none())
-                })
-            });
-            if is_over? {
-                return Ok(None);
-            }
-            running.with_dependent_mut(|_, simulation| {
-                let frame = simulation.observe().map_err(exception)?;
-                frame_of(py, plan, frame).map(Some)
-            })
-        })
+    fn __next__(&self, py: Python) -> PyResult<Option<Py<PyDict>>> {
+        let made = self.run(py, |simulation| {
+            let frame = simulation.next_frame()?;
+            let made =
+                |frame| Python::attach(|py| frame_of(py, &self.plan, frame).map(Bound::unbind));
+            Ok(frame.map(made))
+        });
+        made?.transpose()
     }
 
     /// Number of frames in the whole scene.
@@ -254,20 +241,21 @@ impl Simulation {
 }
 
 impl Simulation {
-    fn change(
-        &mut self,
-        change: impl FnOnce(&mut BorrowedSimulation) -> bubbletouch::Result<()>,
-    ) -> PyResult<()> {
-        guarded(|| on(&mut self.running, change))
+    /// Calls a function with the running simulation, without the interpreter's lock. Threads wait for each other.
+    fn run<T: Send>(
+        &self,
+        py: Python,
+        call: impl FnOnce(&mut BorrowedSimulation) -> bubbletouch::Result<T> + Send,
+    ) -> PyResult<T> {
+        guarded(|| {
+            let called = py.detach(|| {
+                let running = self.running.lock();
+                let mut running = running.unwrap_or_else(PoisonError::into_inner);
+                running.with_dependent_mut(|_, simulation| call(simulation))
+            });
+            called.map_err(exception)
+        })
     }
-}
-
-/// Calls a function with the running simulation, and converts its errors to Python exceptions.
-fn on<T>(
-    running: &mut RunningSimulation,
-    call: impl FnOnce(&mut BorrowedSimulation) -> bubbletouch::Result<T>,
-) -> PyResult<T> {
-    running.with_dependent_mut(|_, simulation| call(simulation).map_err(exception))
 }
 
 /// Creates the dict of a frame.
@@ -302,8 +290,8 @@ fn fill_frame(out: &Bound<PyDict>, plan: &ScenePlan, frame: &Frame) -> PyResult<
             let of_patch = part(&patches, "out, patches", patch.skin.name())?;
             for (key, shape, values) in arrays_of(patch, reading) {
                 if let Some(values) = values {
-                    let place = format!("out, patches, {}", patch.skin.name());
-                    fill(&of_patch, (&place, key), (&shape, &values), is_written)?;
+                    let place = ["patches", patch.skin.name(), key];
+                    fill(&of_patch, place, (&shape, &values), is_written)?;
                 }
             }
             if is_written {
@@ -313,9 +301,13 @@ fn fill_frame(out: &Bound<PyDict>, plan: &ScenePlan, frame: &Frame) -> PyResult<
         let objects = part(out, "out", "objects")?;
         for (object, reading) in plan.objects.iter().zip(&frame.objects) {
             let of_object = part(&objects, "out, objects", &object.name)?;
-            let place = format!("out, objects, {}", object.name);
             let pose = (&[7][..], &reading.pose.to_array()[..]);
-            fill(&of_object, (&place, "pose"), pose, is_written)?;
+            fill(
+                &of_object,
+                ["objects", &object.name, "pose"],
+                pose,
+                is_written,
+            )?;
             if is_written {
                 of_object.set_item("held", held(reading))?;
             }
@@ -337,16 +329,17 @@ fn part<'py>(dict: &Bound<'py, PyDict>, place: &str, key: &str) -> PyResult<Boun
 /// Writes values into the array with a key in a dict, or only checks that the array is suitable.
 fn fill(
     dict: &Bound<PyDict>,
-    (place, key): (&str, &str),
+    [kind, name, key]: [&str; 3],
     (shape, values): (&[usize], &[f64]),
     is_written: bool,
 ) -> PyResult<()> {
     let Some(found) = dict.get_item(key)? else {
-        return Err(bad_input(place, format!("no array `{key}`"), EARLIER_FRAME));
+        let (place, given) = (format!("out, {kind}, {name}"), format!("no array `{key}`"));
+        return Err(bad_input(place, given, EARLIER_FRAME));
     };
-    let place = format!("{place}, {key}");
-    let array = output_array::<f64>(&place, &found, (shape, "a float64"))?;
-    let mut target = writable(&place, &array)?;
+    let place = format_args!("out, {kind}, {name}, {key}");
+    let array = output_array::<f64>(place, &found, (shape, "a float64"))?;
+    let mut target = writable(place, &array)?;
     if is_written {
         target.as_slice_mut()?.copy_from_slice(values);
     }

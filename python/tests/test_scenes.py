@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -157,6 +158,27 @@ def test_forces_of_a_heavy_free_ball_contain_what_the_stops_carry() -> None:
         frame = bt.simulate(scene).observe()["patches"]["palm"]
         assert frame["wrench"][2] == pytest.approx(-490.5, rel=1e-6)
         np.testing.assert_allclose(frame["force3"].sum(axis=0), frame["wrench"][:3], atol=1e-6)
+
+
+def test_threads_observe_a_simulation_that_another_one_steps() -> None:
+    simulation, frames = bt.simulate(SCENE), list(bt.simulate(SCENE))
+    known = {frame["time"]: frame["patches"]["palm"]["deflection"] for frame in frames}
+    failed: list[float] = []
+    next(simulation)
+
+    def observe() -> None:
+        for _ in range(300):
+            frame = simulation.observe()
+            if not np.array_equal(frame["patches"]["palm"]["deflection"], known[frame["time"]]):
+                failed.append(frame["time"])
+
+    threads = [threading.Thread(target=observe) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    n_frames = 1 + sum(1 for _ in simulation)
+    for thread in threads:
+        thread.join()
+    assert n_frames == len(frames) == len(known) and not failed
 
 
 def test_another_seed_is_other_noise() -> None:
