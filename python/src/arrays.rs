@@ -265,6 +265,14 @@ pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>)
     is_frame(shape) || shape.len() > 1 && is_frame(&shape[1..])
 }
 
+/// Frames of taxels of an argument.
+pub struct Frames {
+    /// Readings, shape (n_frames, n_taxels).
+    pub values: Array2<f64>,
+    /// Shape of the argument.
+    pub shape: Vec<usize>,
+}
+
 /// Reads frames of n taxels as an array n_frames × n. The shape of the input is (n_frames, …), where the lengths after the first have the product n, or the
 /// shape of one frame.
 ///
@@ -275,7 +283,7 @@ pub fn frames(
     given: &Object,
     n_taxels: usize,
     sides: Option<[usize; 2]>,
-) -> PyResult<Array2<f64>> {
+) -> PyResult<Frames> {
     let is_shape = |shape: &[usize]| is_of_frames(shape, n_taxels, sides);
     let allowed = match sides {
         Some([ny, nx]) => format!("(n, {ny}, {nx}) or (n, {n_taxels}), or one frame"),
@@ -288,7 +296,10 @@ pub fn frames(
         return Err(bad_input(place, values[at], "only finite numbers"));
     }
     let frames = Array2::from_shape_vec((values.len() / n_taxels, n_taxels), values.to_vec());
-    Ok(frames.expect("as many values as frames times taxels"))
+    Ok(Frames {
+        values: frames.expect("as many values as frames times taxels"),
+        shape: array.shape().to_vec(),
+    })
 }
 
 /// Converts rows of N numbers to an n × N array for Python.

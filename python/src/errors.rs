@@ -8,6 +8,7 @@
 //! | a panic | `InternalError`; the message asks the user to report the bug |
 
 use bubbletouch::Error;
+use bubbletouch::serde::de::DeserializeOwned;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -84,6 +85,22 @@ pub fn bad_input(place: impl ToString, given: impl ToString, allowed: impl ToStr
     exception(Error::input(place, given, allowed))
 }
 
+/// Checks an optional number.
+///
+/// # Errors
+/// If there is a number that is not allowed; `allowed` describes the allowed numbers.
+pub fn check_number(
+    place: &str,
+    given: Option<f64>,
+    allowed: &str,
+    is_allowed: impl Fn(f64) -> bool,
+) -> PyResult<()> {
+    match given.filter(|number| !is_allowed(*number)) {
+        Some(wrong) => Err(bad_input(place, wrong, allowed)),
+        None => Ok(()),
+    }
+}
+
 /// Returns the value of a name. `known` contains all names with their values.
 ///
 /// # Errors
@@ -94,6 +111,19 @@ pub fn one_of<T: Copy>(place: &str, name: &str, known: &[(&str, T)]) -> PyResult
         let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
         let (last, others) = names.split_last().expect("there are names");
         let allowed = format!("{} or {last}", others.join(", "));
+        bad_input(place, format!("`{name}`"), allowed)
+    })
+}
+
+/// Returns the value of a name, such as a unit, by its name in study files.
+///
+/// # Errors
+/// If the name is unknown; the error lists all names.
+pub fn named<T: DeserializeOwned>(place: &str, name: &str) -> PyResult<T> {
+    serde_json::from_value(name.into()).map_err(|error| {
+        let error = error.to_string();
+        let allowed = error.split_once("expected ");
+        let allowed = allowed.map_or(&*error, |(_, names)| names);
         bad_input(place, format!("`{name}`"), allowed)
     })
 }

@@ -76,7 +76,7 @@ impl Projection {
         guarded(|| {
             let (py, sides) = (frames.py(), Some(self.shape().into()));
             let frames = self::frames("frames", frames, self.projection.n_taxels(), sides)?;
-            let measured = in_pool(py, || self.projection.measure(frames.view()))?;
+            let measured = in_pool(py, || self.projection.measure(frames.values.view()))?;
             Ok(measured.into_pyarray(py))
         })
     }

@@ -1,28 +1,16 @@
 //! Class `Reconstructor`: reconstruction of frames from measurements.
 
 use crate::arrays::{Object, array, frames, to_column, whole_number};
-use crate::errors::{bad_input, exception, guarded, one_of};
+use crate::errors::{check_number, exception, guarded, named};
 use crate::projection::Projection;
 use crate::threads::in_pool;
 use bubbletouch::random::Seed;
-use bubbletouch::sensing::{self, Basis, Dictionary, Effort, SensedDictionary, Solver};
+use bubbletouch::sensing::{self, Dictionary, Effort, SensedDictionary};
 use bubbletouch::world::ImageShape;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use self_cell::self_cell;
-
-const BASES: [(&str, Basis); 4] = [
-    ("dct", Basis::Dct),
-    ("haar", Basis::Haar),
-    ("daubechies4", Basis::Daubechies4),
-    ("pca", Basis::Pca),
-];
-const SOLVERS: [(&str, Solver); 3] = [
-    ("omp", Solver::Omp),
-    ("l1", Solver::L1),
-    ("lmmse", Solver::Lmmse),
-];
 
 type Prepared<'a> = sensing::Reconstructor<'a>;
 
@@ -80,11 +68,9 @@ impl Reconstructor {
             let n_atoms = n_atoms.map(|n| whole_number("n_atoms", n)).transpose()?;
             let seed = whole_number("seed", seed)?;
             let (projection, shape) = (projection.get().inner(), projection.get().shape());
-            let basis = one_of("basis", basis, &BASES)?;
-            let solver = one_of("solver", solver, &SOLVERS)?;
-            if !(noise.is_finite() && noise >= 0.0) {
-                return Err(bad_input("noise", noise, "zero or a positive number"));
-            }
+            let (basis, solver) = (named("basis", basis)?, named("solver", solver)?);
+            let is_noise = |noise: f64| noise.is_finite() && noise >= 0.0;
+            check_number("noise", Some(noise), "zero or a positive number", is_noise)?;
             let training = frames(
                 "training",
                 training,
@@ -94,7 +80,7 @@ impl Reconstructor {
             let made = in_pool(py, || {
                 let (ny, nx) = shape;
                 let image = ImageShape { ny, nx };
-                let training = training.view();
+                let training = training.values.view();
                 let dictionary =
                     Dictionary::learned(basis, image, training, n_atoms, &Seed::new(seed))?;
                 let sensed = Sensed::try_new((projection.clone(), dictionary), |owner| {

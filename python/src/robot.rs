@@ -1,12 +1,12 @@
 //! Class `Robot`: links, joints and poses of a robot of a URDF or MJCF file.
 
 use crate::arrays::{Object, Rows, array, shape_of, to_column, to_matrix};
-use crate::errors::{bad_input, check_readable, exception, guarded, one_of};
+use crate::errors::{bad_input, check_number, check_readable, exception, guarded, named};
 use crate::mesh::Mesh;
 use crate::poses::Poses;
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{LinkSurface, link_surface};
-use bubbletouch::world::{MeshFolders, Robot as WorldRobot, ShapeRole};
+use bubbletouch::world::{MeshFolders, Robot as WorldRobot};
 use ndarray::Array2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -167,16 +167,14 @@ impl Robot {
     #[pyo3(signature = (link, *, shapes=None, pitch=1e-3))]
     fn mesh(&self, py: Python, link: &str, shapes: Option<&str>, pitch: f64) -> PyResult<Mesh> {
         guarded(|| {
-            let roles = [
-                ("collision", ShapeRole::Collision),
-                ("visual", ShapeRole::Visual),
-            ];
-            let role = shapes
-                .map(|name| one_of("shapes", name, &roles))
-                .transpose()?;
-            if !(pitch > 0.0 && pitch.is_finite()) {
-                return Err(bad_input("pitch", pitch, "a positive number of metres"));
-            }
+            let role = shapes.map(|name| named("shapes", name)).transpose()?;
+            let is_length = |length: f64| length.is_finite() && length > 0.0;
+            check_number(
+                "pitch",
+                Some(pitch),
+                "a positive number of metres",
+                is_length,
+            )?;
             let surface = LinkSurface { link, role };
             let mesh = py.detach(|| link_surface(&self.robot, &self.meshes, &surface, pitch));
             Ok(Mesh::new(link.to_owned(), mesh.map_err(exception)?))

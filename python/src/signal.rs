@@ -1,15 +1,16 @@
 //! Classes `Step` and `Chain`: conversion of deflections to sensor signals, with sensor errors.
 
-use crate::arrays::{Object, array, frames, is_of_frames, whole_number};
+use crate::arrays::{Frames, Object, array, frames, is_of_frames, whole_number};
 use crate::batch::{Spare, for_each, n_threads};
-use crate::errors::{bad_input, exception, guarded, one_of};
+use crate::errors::{bad_input, check_number, exception, guarded, named};
 use crate::patch::Patch;
 use bubbletouch::random::Seed;
 use bubbletouch::signal::{
-    self, MAX_STRENGTHS, Noise, NoiseUnit, Quantity, Recording, SENSOR_ERRORS, SensorError,
-    SignalStep, SignalWorkspace,
+    self, MAX_STRENGTHS, Noise, Quantity, Recording, SENSOR_ERRORS, SensorError, SignalStep,
+    SignalWorkspace,
 };
-use numpy::IntoPyArray;
+use ndarray::{Axis, Slice};
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -68,14 +69,12 @@ impl Step {
     #[staticmethod]
     #[pyo3(signature = (std, unit="full_scale"))]
     fn noise(std: f64, unit: &str) -> PyResult<Self> {
-        let units = [
-            ("full_scale", NoiseUnit::FullScale),
-            ("mm", NoiseUnit::Mm),
-            ("n", NoiseUnit::N),
-        ];
-        let known = one_of("noise unit", unit, &units)?;
+        let noise = Noise {
+            std,
+            unit: named("noise unit", unit)?,
+        };
         Ok(Self {
-            kind: Kind::Plain(SignalStep::Noise(Noise { std, unit: known })),
+            kind: Kind::Plain(SignalStep::Noise(noise)),
             call: format!("noise({std}, {unit:?})"),
         })
     }
@@ -204,17 +203,14 @@ impl Chain {
         first: i128,
         rates: Option<&Object<'py>>,
         threads: Option<i64>,
-    ) -> PyResult<Object<'py>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         guarded(|| {
-            let (seed, first) = (
-                whole_number("seed", seed)?,
-                whole_number::<u64>("first", first)?,
-            );
+            let seed = Seed::new(whole_number("seed", seed)?);
+            let first: u64 = whole_number("first", first)?;
             let n_taxels = self.chain.n_taxels();
-            let shape = frames.getattr("shape").ok();
-            let mut values = self::frames("frames", frames, n_taxels, self.sides)?;
+            let Frames { mut values, shape } =
+                self::frames("frames", frames, n_taxels, self.sides)?;
             let rates = self.rates(rates, values.nrows())?;
-            let seed = Seed::new(seed);
             let work = |number: usize, frame: &mut [f64], scratch: &mut SignalWorkspace| {
                 let touch = seed.numbered(first + number as u64);
                 let rates = rates
@@ -227,7 +223,7 @@ impl Chain {
             let rows = rows.chunks_exact_mut(n_taxels).collect();
             let (threads, spare) = (n_threads(threads)?, &self.spare);
             for_each(py, rows, threads, spare, SignalWorkspace::default, work)?;
-            as_given(values.into_pyarray(py).into_any(), shape)
+            values.into_pyarray(py).reshape(shape)
         })
     }
 
@@ -248,27 +244,25 @@ impl Chain {
         interval: Option<f64>,
         time: Option<f64>,
         rates: Option<&Object<'py>>,
-    ) -> PyResult<Object<'py>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         guarded(|| {
             let seed = whole_number("seed", seed)?;
             let n_before: usize = whole_number("n_before", n_before)?;
-            let mut values = self::frames("frames", frames, self.chain.n_taxels(), self.sides)?;
+            let n_taxels = self.chain.n_taxels();
+            let Frames {
+                mut values,
+                mut shape,
+            } = self::frames("frames", frames, n_taxels, self.sides)?;
             let n_frames = values.nrows();
             if n_before >= n_frames {
                 let given = format!("{n_before} of {n_frames} frames");
                 return Err(bad_input("n_before", given, "fewer than there are"));
             }
-            if interval.is_some_and(|seconds| !(seconds.is_finite() && seconds > 0.0)) {
-                let allowed = "a positive number of seconds, or None";
-                return Err(bad_input("interval", interval.unwrap_or_default(), allowed));
-            }
-            if time.is_some_and(|share| !(0.0..=1.0).contains(&share)) {
-                return Err(bad_input(
-                    "time",
-                    time.unwrap_or_default(),
-                    "0 to 1, or None",
-                ));
-            }
+            let allowed = "a positive number of seconds, or None";
+            let is_interval = |seconds: f64| seconds.is_finite() && seconds > 0.0;
+            check_number("interval", interval, allowed, is_interval)?;
+            let is_share = |share| (0.0..=1.0).contains(&share);
+            check_number("time", time, "0 to 1, or None", is_share)?;
             let rates = self.rates(rates, n_frames)?;
             let recording = Recording {
                 frames: values.as_slice_mut().expect("frames are whole"),
@@ -279,13 +273,10 @@ impl Chain {
             };
             let (touch, mut scratch) = (Seed::new(seed), SignalWorkspace::default());
             py.detach(|| self.chain.apply_recording(recording, &touch, &mut scratch));
-            let shape = frames.getattr("shape").ok();
-            let read = as_given(values.into_pyarray(py).into_any(), shape)?;
-            let after = pyo3::types::PySlice::new(py, n_before as isize, n_frames as isize, 1);
-            match n_before {
-                0 => Ok(read),
-                _ => read.get_item(after),
-            }
+            // A single frame without an axis of frames has none before it.
+            shape[0] -= n_before;
+            let read = values.slice_axis(Axis(0), Slice::from(n_before..));
+            read.to_pyarray(py).reshape(shape)
         })
     }
 
@@ -298,12 +289,7 @@ impl Chain {
     /// Steps of the chain, in order.
     #[getter]
     fn steps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let steps: PyResult<Vec<_>> = self
-            .steps
-            .iter()
-            .map(|step| Bound::new(py, step.clone()))
-            .collect();
-        PyTuple::new(py, steps?)
+        PyTuple::new(py, self.steps.iter().cloned())
     }
 
     fn __repr__(&self) -> String {
@@ -327,13 +313,5 @@ impl Chain {
             Ok(rates.values().to_vec())
         };
         given.map(read).transpose()
-    }
-}
-
-/// Returns signals as a NumPy array in the shape of the input frames.
-fn as_given<'py>(frames: Object<'py>, shape: Option<Object<'py>>) -> PyResult<Object<'py>> {
-    match shape {
-        Some(shape) => frames.call_method1("reshape", (shape,)),
-        None => Ok(frames),
     }
 }

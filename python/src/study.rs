@@ -43,6 +43,18 @@ struct Stage {
     told: Instant,
 }
 
+impl Stage {
+    fn new(name: &str, total: u64) -> Self {
+        let (name, done, told) = (name.to_owned(), 0, Instant::now());
+        Self {
+            name,
+            done,
+            total,
+            told,
+        }
+    }
+}
+
 impl CallbackProgress {
     fn tell(&self, (name, done, total): (String, u64, u64)) {
         let Some(callback) = &self.callback else {
@@ -61,12 +73,7 @@ impl Progress for CallbackProgress {
     fn stage(&self, name: &str, total: u64) {
         self.stop.end_if_told();
         if let Ok(mut stage) = self.stage.lock() {
-            *stage = Stage {
-                name: name.to_owned(),
-                done: 0,
-                total,
-                told: Instant::now(),
-            };
+            *stage = Stage::new(name, total);
         }
         self.tell((name.to_owned(), 0, total));
     }
@@ -237,12 +244,7 @@ pub fn run_study<'py>(
                 stop: stop.clone(),
                 callback,
                 raised: of_callback,
-                stage: Mutex::new(Stage {
-                    name: String::new(),
-                    done: 0,
-                    total: 0,
-                    told: Instant::now(),
-                }),
+                stage: Mutex::new(Stage::new("", 0)),
             };
             let threads = study.threads;
             let run = || run(study, (&source, part), &told, &of_foreign);

@@ -326,7 +326,7 @@ def test_wrong_arguments_are_named(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         bt.Robot.read(tmp_path / "none.urdf")
     refused("no folder", lambda: bt.Robot.read(ROBOTS / "arm.urdf", {"arm": tmp_path / "none"}))
-    refused("collision or visual", lambda: robot.mesh(link, shapes="both"))
+    refused("shapes: `both`; `visual` or `collision`|shapes: `both`; `collision` or `visual`", lambda: robot.mesh(link, shapes="both"))
 
 
 def test_meshes_of_packages_are_found_by_name_or_above_the_file(tmp_path: Path) -> None:

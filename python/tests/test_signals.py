@@ -74,6 +74,9 @@ def test_what_came_before_a_touch_is_remembered_but_not_returned(
     assert read.shape == (5, 32, 48)
     np.testing.assert_array_equal(read, chain.read_touch(frames)[15:])
     assert not np.allclose(read, chain.read_touch(frames[15:]))
+    # Frames of a list have the shape of the list.
+    np.testing.assert_array_equal(chain.read_touch(frames.tolist(), n_before=15), read)
+    np.testing.assert_array_equal(chain(frames.tolist()), chain(frames))
 
 
 @pytest.mark.parametrize(
@@ -93,7 +96,7 @@ def test_what_cannot_be_a_chain_is_refused(
 
 
 def test_what_cannot_be_a_step_or_a_frame_is_refused(patch: bt.Patch, frames: Floats) -> None:
-    refused("noise unit: `bar`; full_scale, mm or n", lambda: bt.Step.noise(1, "bar"))  # type: ignore[arg-type]
+    refused("noise unit: `bar`; one of `full_scale`, `mm`, `n`", lambda: bt.Step.noise(1, "bar"))  # type: ignore[arg-type]
     refused("sensor error: `rust`; hysteresis, crosstalk", lambda: bt.Step.error("rust"))
     refused("gain: `std`; gain_std", lambda: bt.Step.error("gain", std=1))
     refused("crosstalk: 2; a fraction, 0 to 1", lambda: bt.Step.error("crosstalk", crosstalk=2))
@@ -156,8 +159,8 @@ def test_frames_come_back_from_measurements(basis: str, solver: str) -> None:
 
 def test_what_cannot_be_rebuilt_is_refused(frames: Floats) -> None:
     projection = bt.Projection("gaussian", (32, 48), 64)
-    refused("basis: `fourier`; dct, haar", lambda: bt.Reconstructor(projection, frames, basis="fourier"))
-    refused("solver: `fast`; omp, l1 or lmmse", lambda: bt.Reconstructor(projection, frames, solver="fast"))
+    refused("basis: `fourier`; one of `dct`, `haar`", lambda: bt.Reconstructor(projection, frames, basis="fourier"))
+    refused("solver: `fast`; one of `omp`, `l1`, `lmmse`", lambda: bt.Reconstructor(projection, frames, solver="fast"))
     refused("noise: -1; zero or a positive number", lambda: bt.Reconstructor(projection, frames, noise=-1))
     refused("training: shape", lambda: bt.Reconstructor(projection, frames[:, :, 1:]))
     rebuild = bt.Reconstructor(projection, frames)

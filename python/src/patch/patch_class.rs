@@ -144,10 +144,8 @@ impl Patch {
         guarded(|| {
             let (ny, nx) = (side("ny", ny)?, side("nx", nx)?);
             let layout = Layout::grid(&Grid { nx, ny, pitch });
-            Self::with(
-                layout,
-                taxel(pitch, stroke, (taxel_radius, stiffness, damping)),
-            )
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+            Self::with(layout, taxel)
         })
     }
 
@@ -167,10 +165,8 @@ impl Patch {
         guarded(|| {
             let (ny, nx) = (side("ny", ny)?, side("nx", nx)?);
             let layout = Layout::hexagonal(nx, ny, pitch);
-            Self::with(
-                layout,
-                taxel(pitch, stroke, (taxel_radius, stiffness, damping)),
-            )
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+            Self::with(layout, taxel)
         })
     }
 
@@ -282,10 +278,8 @@ impl Patch {
                     Ok(layout)
                 }
             };
-            Self::with(
-                layout,
-                taxel(pitch, stroke, (taxel_radius, stiffness, damping)),
-            )
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
+            Self::with(layout, taxel)
         })
     }
 

@@ -88,16 +88,14 @@ impl Contacts {
         let vectors = |of: fn(&(usize, &TaxelContact, DVec3)) -> DVec3| {
             to_rows(py, all.iter().map(of)).unbind()
         };
+        let pressed: Vec<Option<Contact>> = poses.iter().map(|(_, one)| one.pressed).collect();
         let count = |of: fn(&Contact) -> usize| {
-            let counts = poses.iter().map(|(_, of_pose)| of_pose.pressed);
-            to_column(
-                py,
-                counts.map(|pressed| pressed.map_or(0, |contact| of(&contact)) as i64),
-            )
-            .unbind()
+            let counts = pressed.iter().map(|one| one.as_ref().map_or(0, of) as i64);
+            to_column(py, counts).unbind()
         };
-        let travels = poses.iter().map(|(_, of_pose)| of_pose.pressed);
-        let travels = travels.map(|pressed| pressed.map_or(f64::NAN, |contact| contact.travel));
+        let travels = pressed
+            .iter()
+            .map(|one| one.map_or(f64::NAN, |contact| contact.travel));
         Ok(Self {
             pose: whole(|(number, ..)| *number),
             taxel: whole(|(_, contact, _)| contact.taxel),
