@@ -48,7 +48,8 @@ pub fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f
     let given = || {
         Error::input(
             format!("{place}, column {column}"),
-            format!("`{field}`"),
+            // A field in quotes may contain line breaks.
+            format!("`{field}`").replace('\n', " "),
             allowed,
         )
     };

@@ -99,7 +99,7 @@ pub(crate) fn document<'t>(format: Format, place: &str, text: &'t str) -> Result
         if text.trim().is_empty() {
             return Error::input(place, "an empty file", format!("{name}: a <{root}>"));
         }
-        let said = error.to_string();
+        let said = error.to_string().replace('\n', " ");
         // The XML reader appends its own position; here the position precedes the message.
         let given = said
             .rsplit_once(" at ")

@@ -204,6 +204,7 @@ fn spheres_that_cannot_be_used_say_why() {
         0,0,inf,1 | s.csv, line 1, column z: `inf`
         0,0,0,-1 | s.csv, line 1, column r: -1; a positive
         0,0,0,0 | s.csv, line 1, column r: 0; a positive
+        0,0,0,\"t\\nn\" | s.csv, line 1, column r: `t n`
         0,0,0,ten | s.csv, line 1, column r: `ten`
         0,0,,1 | s.csv, line 1, column z: ``";
     for [rows, expected] in cases(rows) {

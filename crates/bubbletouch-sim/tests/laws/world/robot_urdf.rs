@@ -152,6 +152,7 @@ const BROKEN_FILES: &str = r#"
     arm | <origin xyz="0 0 0.0874" rpy="0 0 3.1"/> | <orgin xyz="0 0 0.0874" rpy="0 0 3.1"/> | 22: <orgin>; perhaps <origin>
     gripper | <mimic joint="left"/> | <mimic joint="screw"/> | 5: joints mimic each other in a circle: `right_tip` → `right` → `screw` → `right_tip`; a chain that ends in a joint without <mimic>
     rover | xyz="1 2 0.05" | xyz="${width / 2} 2 0.05" | 11: <origin> of xacro; plain URDF: expand it first (xacro robot.urdf.xacro > robot.urdf)
+    rover | <link name="board"/> | <link name="board"/\n> | 6: expected '>' not ' '; URDF: well-formed XML
     rover | <link name="board"/> | <link name="board"> | 28: expected 'link' tag, not 'robot'; URDF: well-formed XML
 "#;
 
