@@ -52,8 +52,8 @@ pub enum Record {
 /// Request of a press: a patch is pressed against objects until a condition is met.
 ///
 /// A press along a path comes from the front, and parts of objects push at any distance behind the taxels. On a flat patch the deflection of a taxel
-/// therefore never decreases with the depth. On a curved patch the path is divided into steps. A part of an object that pushes a taxel continues to push this
-/// taxel even from behind the substrate, so no object can pass through the skin.
+/// therefore never decreases with the depth. On a curved patch the path is divided into steps. An object that pushes a taxel continues to push this taxel
+/// even from behind the substrate, so no object can pass through the skin.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{Press, Until, Workspace, spring_load};

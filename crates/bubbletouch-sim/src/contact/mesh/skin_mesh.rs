@@ -6,7 +6,7 @@ use crate::geometry::Pose;
 use crate::objects::MeshModel;
 use crate::objects::mesh_blocks::{LANES, vector};
 use crate::world::{Node, PlacedTaxel};
-use glam::{DMat3, DVec2, DVec3, Vec3};
+use glam::{DMat3, DVec2, DVec3, Vec3, Vec3Swizzles};
 
 /// Mesh at a pose, in the patch frame.
 pub(crate) struct MeshAt<'a> {
@@ -90,15 +90,63 @@ impl<'a> MeshAt<'a> {
         stop_in_front(&turned, reach, DVec2::ZERO, taxel.behind)
     }
 
-    /// Returns the height at which one triangle stops a taxel, even if the triangle is behind the taxel's substrate. Returns `None` if the triangle misses
-    /// the taxel.
-    pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<Stop> {
+    /// Returns the height at which one triangle stops a taxel, metres, even if the triangle is behind the taxel's substrate. Returns `None` if the triangle
+    /// misses the taxel.
+    pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<f64> {
         let turned = self
             .seen_by(taxel)
             .triangle(&self.mesh.mesh().triangle(triangle));
+        stopping_height(&turned, taxel.radius + self.object.reach, DVec2::ZERO)
+    }
+
+    /// Returns whether the mesh may have parts behind the substrate of a taxel. The test uses the bounding box of the mesh.
+    pub fn may_be_behind(&self, taxel: &PlacedTaxel) -> bool {
+        let height = (self.center - taxel.center).dot(taxel.axis);
+        let axis = self.object.rotation.transpose() * taxel.axis;
+        height - axis.abs().dot(self.half) < taxel.behind
+    }
+
+    /// Returns the triangles that have a corner in common with a triangle, which is one of them.
+    pub fn around(&self, triangle: usize) -> Vec<u32> {
+        let middle = self.mesh.mesh().triangle(triangle);
+        let mut around = Vec::new();
+        self.mesh
+            .bvh()
+            .each_in_box(&middle.bounds(), |number, other| {
+                if other.0.iter().any(|corner| middle.0.contains(corner)) {
+                    around.push(number as u32);
+                }
+            });
+        around
+    }
+
+    /// Returns the height, metres, of the point of a triangle's edges that is nearest to a taxel's axis.
+    pub fn nearest_height(&self, taxel: &PlacedTaxel, triangle: usize) -> f64 {
+        let [a, b, c] = self
+            .seen_by(taxel)
+            .triangle(&self.mesh.mesh().triangle(triangle))
+            .0;
+        let nearest = [(a, b), (b, c), (c, a)].map(|(from, to)| {
+            let along = to.xy() - from.xy();
+            let part = -from.xy().dot(along) / along.length_squared();
+            from.lerp(to, part.clamp(0.0, 1.0))
+        });
+        let distance2 = |point: &DVec3| point.xy().length_squared();
+        let nearest = nearest
+            .into_iter()
+            .min_by(|a, b| distance2(a).total_cmp(&distance2(b)));
+        nearest.expect("a triangle has edges").z
+    }
+
+    /// Returns the triangle nearest to a taxel's centre at a height, metres, if the distance is less than `factor` times the distance of touch.
+    pub fn overlapping(&self, taxel: &PlacedTaxel, height: f64, factor: f64) -> Option<usize> {
         let reach = taxel.radius + self.object.reach;
-        let height = stopping_height(&turned, reach, DVec2::ZERO)?;
-        Some(Stop { height, triangle })
+        let place = taxel.center + height * taxel.axis - self.object.translation;
+        let closest = self
+            .mesh
+            .bvh()
+            .closest(self.object.rotation.transpose() * place, factor * reach)?;
+        Some(closest.triangle)
     }
 
     /// Returns the height at which the mesh stops a taxel of a flat grid whose substrate is inside the solid mesh. Returns `None` if the substrate is

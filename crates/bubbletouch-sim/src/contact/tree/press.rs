@@ -1,18 +1,18 @@
 //! Press kernel for any layout: each taxel moves along its own axis, and only taxels within reach of a sphere are evaluated.
 
-use super::near_spheres::{gather, needed_along, needed_of_leaf};
+use super::held_parts::push_held;
+use super::near_spheres::{gather, needed_of_leaf};
 use crate::contact::instructions::for_instructions;
 use crate::contact::law::saturation_limit;
 use crate::contact::mesh::skin_mesh::MeshAt;
 use crate::contact::mesh::{LeafStops, SearchStack, stop_leaf};
 use crate::contact::object_at::ObjectAt;
 use crate::contact::taxel_contact::TaxelContact;
-use crate::contact::workspace::HeldTaxel;
 use crate::contact::{Contact, Record, Workspace};
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
 use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
-use crate::world::{LEAF, Patch, PlacedTaxel, TaxelTree};
+use crate::world::{LEAF, Patch, TaxelTree};
 use glam::DVec3;
 
 /// Raises the deflections of the taxels of a tree. The function ignores object parts that are marked as held by `Workspace::hold`.
@@ -42,41 +42,6 @@ pub(super) fn push_tree(
             Model::Mesh(mesh) => push_by_mesh(taxels, number, mesh, pose, workspace),
         }
     }
-}
-
-/// Raises deflections by the object parts that are marked as held, which push their taxels even from behind the substrate. Parts in front of the substrate
-/// push their taxels in any case.
-fn push_held(
-    patch: &Patch,
-    (objects, patch_from_objects): (&[Model], &[Pose]),
-    workspace: &mut Workspace,
-) {
-    let held = std::mem::take(&mut workspace.held);
-    for &HeldTaxel { taxel, by } in &held {
-        let taxel = PlacedTaxel::new(patch.layout(), patch.taxels(), taxel as usize);
-        let [object, part] = by.map(|number| number as usize);
-        let pose = &patch_from_objects[object];
-        let needed = match &objects[object] {
-            Model::Spheres(union) => {
-                let Sphere { center, radius } = union.spheres()[part];
-                let from = taxel.center - pose.transform_point(center);
-                let [across_x, across_y] = taxel.across;
-                let frame = [across_x, across_y, taxel.axis];
-                let needed = |behind| needed_along(from, frame, taxel.radius + radius, behind);
-                // In front of the substrate the part has already pushed the taxel.
-                if needed(taxel.behind) > 0.0 {
-                    continue;
-                }
-                needed(f64::NEG_INFINITY)
-            }
-            Model::Mesh(mesh) => {
-                let stop = MeshAt::new(mesh, pose).stop_by(&taxel, part);
-                stop.map_or(0.0, |stop| -stop.height)
-            }
-        };
-        workspace.push(taxel.number, needed, by);
-    }
-    workspace.held = held;
 }
 
 /// Union of spheres at a pose.

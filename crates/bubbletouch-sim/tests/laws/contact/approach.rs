@@ -4,16 +4,17 @@ use crate::every_part::{Behind, by_every_part};
 use crate::scans::scan;
 use crate::scenes::{
     N_FAMILIES, Scene, TAXEL, assert_close, ball, direction, grid, is_flat, mesh, pressed,
-    pressed_in, random_object, random_patch, rng, skin,
+    pressed_in, random_object, random_patch, rng, skin, union,
 };
 use crate::time_loop::time_loop;
 use bubbletouch_sim::contact::{Row, Until, Workspace};
 use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::TriangleMesh;
 use bubbletouch_sim::objects::{Catalogue, Model, SphereUnion, vertex_spheres};
 use bubbletouch_sim::world::{
     ArrayLayout, Grid, Layout, Phase, RestPoses, Taxel, Taxels, Touch, VelocityPlan,
 };
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::slice::from_ref;
 
@@ -174,6 +175,80 @@ fn what_was_pressed_goes_on_being_pressed_behind_the_substrate() {
         0,
         "without its way it is behind"
     );
+}
+
+/// Divides each triangle into four.
+fn refined(mesh: &TriangleMesh) -> TriangleMesh {
+    let triangles = (0..mesh.n_triangles()).flat_map(|number| {
+        let [a, b, c] = mesh.triangle(number).0;
+        let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| 0.5 * (from + to));
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    });
+    let corners: Vec<DVec3> = triangles.flatten().collect();
+    let triangles = (0..corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+    TriangleMesh::new("refined", corners, triangles.collect()).unwrap()
+}
+
+/// Law: an object that has been pressed through the skin hands its taxels from part to part, of any size, while it slides and turns behind the substrate. Steps
+/// of any length lose no taxel.
+#[test]
+fn an_object_behind_the_skin_keeps_its_taxels_whatever_its_parts() {
+    let plate = TriangleMesh::cuboid("plate", 2e-3 * DVec3::new(12.0, 9.0, 0.4)).unwrap();
+    let meshes = [&plate, &refined(&plate), &refined(&refined(&plate))].map(|m| mesh(m.clone()));
+    let place = |k: i32| 3e-3 * DVec3::new(f64::from(k % 9 - 4), f64::from(k / 9 - 3), 0.0);
+    let balls = Model::from(union((0..63).map(place), 2e-3));
+    let still = VelocityPlan::new(Pose::IDENTITY, vec![]).unwrap();
+    let through = Phase {
+        duration: 0.1,
+        linear: -0.2 * DVec3::Z,
+        angular: DVec3::ZERO,
+    };
+    let slide = Phase {
+        duration: 0.2,
+        linear: DVec3::new(0.03, -0.02, 0.0),
+        angular: DVec3::new(0.05, -0.08, 0.4),
+    };
+    let start = Pose {
+        rotation: DQuat::from_rotation_z(0.2),
+        translation: DVec3::new(0.3e-3, 0.2e-3, 9e-3),
+    };
+    let plan = [VelocityPlan::new(start, vec![through, slide]).unwrap()];
+    for patch in [
+        grid(14, 14, 2e-3),
+        skin(Layout::disc(0.014, 2e-3).unwrap(), TAXEL),
+    ] {
+        for (dt, n_frames) in [(1e-3, 300), (2e-2, 15)] {
+            let read = |object: &Model| {
+                let scene = Scene::new(patch.clone(), object.clone(), Pose::IDENTITY);
+                time_loop(&scene, [from_ref(&still), &plan], dt, n_frames).deflections
+            };
+            let n_touched = |frame: &[f64]| frame.iter().filter(|d| **d > 0.0).count();
+            let [coarse, fine, finest] = meshes.each_ref().map(read);
+            for (frame, deflections) in coarse.iter().enumerate() {
+                assert_close(
+                    deflections,
+                    &fine[frame],
+                    1e-12,
+                    &format!("{dt} s, {frame}"),
+                );
+                assert_close(
+                    deflections,
+                    &finest[frame],
+                    1e-12,
+                    &format!("{dt} s, {frame}"),
+                );
+            }
+            // The plate has slid by a third of its width.
+            for frames in [coarse, read(&balls)] {
+                let [n, n_left] =
+                    [0.1, 0.3].map(|t: f64| n_touched(&frames[(t / dt).round() as usize - 1]));
+                assert!(
+                    n > 60 && n_left > n / 2 && n_left < n,
+                    "{dt} s: {n_left} of {n}"
+                );
+            }
+        }
+    }
 }
 
 #[test]
