@@ -40,7 +40,7 @@ fn begin(plan: &Arc<ScenePlan>) -> RunningSimulation {
 /// Simulation of a scene, created from the scene's text; use bubbletouch.simulate for a file or a dict.
 ///
 /// The simulation is an iterator over the frames of the scene. Alternatively, a program moves objects and robots step by step with set_…(),
-/// step(dt) and observe(). A frame is a dict:
+/// step(dt) and observe(). Threads that share a simulation wait for each other. A frame is a dict:
 ///
 /// - time: seconds;
 /// - patches: dict from the name of a patch to its reading, see below;

@@ -16,6 +16,7 @@ import bubbletouch.distributed
 import numpy as np
 import pytest
 
+from conftest import refused
 from test_own_classifiers import STUDY, Nearest, noisy
 
 TABLES = ("accuracy", "summary", "confusion", "comparison")
@@ -142,8 +143,8 @@ def test_an_error_of_a_task_is_the_error_of_the_run(client: Any, tmp_path: Path)
     with pytest.raises(ValueError, match="study, configuration .*, trial .*classifier mine: ArithmeticError: no convergence"):
         bt.distributed.run(STUDY, client, 2, tmp_path / "out", classifiers={"mine": Failing()})
     assert not (tmp_path / "out" / "summary.csv").exists()
-    with pytest.raises(ValueError, match="n_shards: 0; at least 1"):
-        bt.distributed.run(STUDY, client, 0)
+    refused("n_shards: 0; at least 1", lambda: bt.distributed.run(STUDY, client, 0))
+    refused("client: None; a dask.distributed.Client", lambda: bt.distributed.run(STUDY, None), TypeError)
 
 
 def test_any_executor_runs_the_shards() -> None:

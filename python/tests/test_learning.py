@@ -176,6 +176,7 @@ def test_a_solver_that_stops_early_says_so(data) -> None:  # type: ignore[no-unt
         (LinearSVC(C=0), "C: 0"),
         (LinearSVC(max_iter=-3), "max_iter: -3; at least 1"),
         (SVC(class_weight=np.ones(3)), r"class_weight: `\[1. 1. 1.\]`; None or balanced"),
+        (GridSearch(C=-1.0), "C: -1"),
         (GridSearch(C=[]), "C"),
         (GridSearch(cv=[([0, 1], [10_000])]), "10000"),
     ],

@@ -168,9 +168,9 @@ def test_a_mirrored_mesh_is_the_mirror_image(box: bt.Mesh) -> None:
         (lambda: bt.Mesh.box([1, 2]), "size: shape"),
         (lambda: bt.Mesh.box([1, 2, 0]), "size: "),
         (lambda: bt.Mesh.ellipsoid([1, 2, np.nan]), "radii: "),
-        (lambda: bt.Mesh.cylinder(-1.0, 1.0), "cylinder: radius: -1; a positive"),
+        (lambda: bt.Mesh.cylinder(-1.0, 1.0), "cylinder: radius: -1 m; a finite positive number"),
         (lambda: bt.Mesh.cylinder(1.0, 1.0, 1e-9), "cylinder: tolerance: "),
-        (lambda: bt.Mesh.capsule(1.0, -1.0), "capsule: length: -1; a finite number"),
+        (lambda: bt.Mesh.capsule(1.0, -1.0), "capsule: length: -1 m; zero or a positive number"),
     ],
 )
 def test_sizes_of_no_shape_are_refused(make, message: str) -> None:  # type: ignore[no-untyped-def]

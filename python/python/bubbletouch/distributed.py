@@ -94,6 +94,8 @@ def run(
         if number is not None and number < 1:
             raise ValueError(f"{key}: {number}; at least 1")
     is_dask = hasattr(client, "get_executor")
+    if not (is_dask or hasattr(client, "submit")):
+        raise TypeError(f"client: {client!r}; a dask.distributed.Client, a RayExecutor, or another executor")
     if n_shards is None:
         n_shards = max(1, sum(client.nthreads().values()) if is_dask else getattr(client, "n_threads", os.cpu_count() or 1))
     given = identified(classifiers, features)

@@ -307,8 +307,8 @@ class GridSearch(_Classifier):
             for fold, (train, test) in enumerate(split(features, numbers, groups), start=1)
         ]
         params = estimator._params(features.shape[1])
-        scales = [real("gamma_scales", scale, above=0) for scale in (() if self.gamma_scales is None else self.gamma_scales)]
-        candidates = [real("C", c, above=0) for c in self.C]
+        scales = [real("gamma_scales", scale, above=0) for scale in np.ravel([] if self.gamma_scales is None else self.gamma_scales).tolist()]
+        candidates = [real("C", c, above=0) for c in np.ravel(self.C).tolist()]
         chosen = _core.choose_svm(features, numbers, params, folds, candidates, scales)
         self.classes_ = classes
         self.results_ = [dict(zip(("C", "gamma", "accuracy"), one, strict=True)) for one in chosen["tried"]]
