@@ -9,9 +9,6 @@ use crate::mesh::Triangle;
 use crate::objects::{Cluster, MAX_IN_CLUSTER, Sphere, SphereClusters};
 use glam::{DMat3, DQuat, DVec3};
 
-/// Factor that covers rounding of a radius: far above 1e-16 and far below any measurable difference.
-pub(crate) const ROUNDING: f64 = 1.0 + 1e-9;
-
 /// Pose of an object without contact, which keeps its index in a list: far from all skins, but with a finite squared distance.
 pub const OUT_OF_REACH: Pose = Pose {
     rotation: DQuat::IDENTITY,
@@ -114,10 +111,10 @@ pub(crate) struct ClusterBox {
 /// Region of a skin that objects may touch. Each search states the meaning of its bounds and its limit. A trait is used because closures would be compiled
 /// without vector instructions.
 pub(crate) trait Region {
-    /// Returns the bound of a sphere. A sphere inside another has no smaller bound.
+    /// Returns the bound of a sphere. If a sphere inside another one is below the limit of a search, so is the other one.
     fn sphere_bound(&self, sphere: &PlacedSphere) -> f64;
 
-    /// Returns a lower bound of the bounds of all spheres of a cluster of an object.
+    /// Returns the bound of a cluster of an object's spheres: below the limit of a search if one of the spheres is.
     #[inline(always)]
     fn cluster_bound(&self, object: &ObjectAt, cluster: &ClusterBox) -> f64 {
         self.sphere_bound(&object.sphere(cluster.ball))
@@ -139,8 +136,10 @@ impl ClusterSearch {
         let boxes = clusters.bounds();
         let n = boxes.len();
         self.object = object;
-        self.bounds.clear();
         self.bounds.resize(n.next_multiple_of(LOOK), f64::INFINITY);
+        if let Some(last) = self.bounds.as_chunks_mut::<LOOK>().0.last_mut() {
+            *last = [f64::INFINITY; LOOK];
+        }
         // Slices of one length need no tests of indices in the loop.
         let bounds = &mut self.bounds[..n];
         let [x, y, z] = &boxes.middle;

@@ -1,7 +1,7 @@
 //! Presses of any patch on any objects: at a given pose, or along a direction to a travel, a depth or a force.
 //!
-//! A flat grid with equal radii and substrate heights that travels along its axis is pressed row by row (`grid`), any other patch taxel by taxel (`tree`).
-//! The results of the two kernels are equal up to rounding.
+//! A flat grid with equal radii and substrate heights that travels along its axis is pressed row by row (`grid`). Any other patch, and a press that records
+//! contacts, is evaluated taxel by taxel (`tree`). The results of the two kernels are equal up to rounding.
 
 use super::FrictionState;
 use super::grid::{GridPress, OutputBuffer, Row, force};

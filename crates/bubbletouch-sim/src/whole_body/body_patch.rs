@@ -72,8 +72,8 @@ impl BodyPatch {
     /// Returns the centre (at rest) and the axis of every taxel, in the patch frame.
     pub fn layout(&self) -> Layout {
         match &self.surface {
-            Surface::Rows(rows) => rows.extrusion().clone().into(),
-            Surface::Dome(dome) => dome.dome().clone().into(),
+            Surface::Rows(rows) => rows.extrusion.clone().into(),
+            Surface::Dome(dome) => dome.dome.clone().into(),
             Surface::Draped(draped) => draped.layout(),
         }
     }
@@ -106,8 +106,8 @@ impl BodyPatch {
     /// Returns the number of rows, rings, or blocks of tiles, depending on the arrangement of the taxels.
     pub(super) fn n_rows(&self) -> usize {
         match &self.surface {
-            Surface::Rows(rows) => rows.extrusion().rows().len(),
-            Surface::Dome(dome) => dome.dome().rings().len(),
+            Surface::Rows(rows) => rows.extrusion.rows().len(),
+            Surface::Dome(dome) => dome.dome.rings().len(),
             Surface::Draped(_) => self.n_taxels.div_ceil(draped_patch::BLOCK),
         }
     }
@@ -116,8 +116,8 @@ impl BodyPatch {
     #[inline(always)]
     pub(super) fn row_start(&self, row: u32) -> u32 {
         match &self.surface {
-            Surface::Rows(rows) => row * rows.extrusion().places().len() as u32,
-            Surface::Dome(dome) => dome.dome().rings()[row as usize].first as u32,
+            Surface::Rows(rows) => row * rows.extrusion.places().len() as u32,
+            Surface::Dome(dome) => dome.dome.rings()[row as usize].first as u32,
             Surface::Draped(_) => row * draped_patch::BLOCK as u32,
         }
     }

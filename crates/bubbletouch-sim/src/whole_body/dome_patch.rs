@@ -7,7 +7,8 @@ use crate::world::Dome;
 /// Equal taxels on a dome, with quantities precomputed for presses.
 #[derive(Clone, Debug)]
 pub(super) struct DomePatch {
-    dome: Dome,
+    /// Centres (at rest) and axes of the taxels.
+    pub dome: Dome,
     /// Radius of the sphere that contains the substrate, metres.
     pub substrate: f64,
     /// Ball around all taxels (their centres at rest and the substrate below them), in the patch frame.
@@ -26,12 +27,6 @@ impl DomePatch {
             dome,
             substrate,
         }
-    }
-
-    /// Returns the dome, which contains the centres (at rest) and the axes of the taxels.
-    #[inline]
-    pub fn dome(&self) -> &Dome {
-        &self.dome
     }
 
     /// Returns the heap memory that the patch uses in bytes.

@@ -29,26 +29,26 @@ const ACOS_ROUNDING: f64 = 1e-7;
 impl Pushed for DomePatch {
     /// Always returns true: the caller has already tested the bounding ball, and a dome has no narrower bound.
     #[inline(always)]
-    fn is_near(&self, _: &PlacedSphere) -> bool {
+    fn is_near(&self, _: PlacedSphere) -> bool {
         true
     }
 
     #[inline(always)]
-    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere) {
-        let PlacedSphere { center, reach } = *sphere;
-        let radius = self.dome().radius();
+    fn push(&self, state: &mut PatchState, sphere: PlacedSphere) {
+        let PlacedSphere { center, reach } = sphere;
+        let radius = self.dome.radius();
         let power = center.length_squared() - reach * reach;
         let substrate = self.substrate;
         let behind = substrate.min((substrate * substrate + power) / (2.0 * substrate));
         let least = self.least_along(power).max(behind);
         let across = center.xy().length();
         let angle = center.y.atan2(center.x);
-        for (row, ring) in self.dome().rings().iter().enumerate() {
+        for (row, ring) in self.dome.rings().iter().enumerate() {
             let (along, around) = (center.z * ring.cos, across * ring.sin);
             let Some(half_width) = half_width(least - along, around) else {
                 continue;
             };
-            let directions = &self.dome().directions()[ring.first..ring.first + ring.n];
+            let directions = &self.dome.directions()[ring.first..ring.first + ring.n];
             let slope = ring.sin * center.xy();
             let needed = |column: usize| {
                 let t = along + slope.dot(directions[column]);

@@ -7,29 +7,33 @@ use super::patch_state::PatchState;
 use crate::contact::lanes::SelectedLanes;
 use crate::contact::law::{beats, indent, squares_in_front};
 use crate::contact::object_at::PlacedSphere;
+use glam::DVec3;
 
 /// Maximum number of levels of the tree of bounding balls; each level allows eight times as many taxels.
 const MAX_LEVELS: usize = 10;
 
 impl Pushed for DrapedPatch {
     #[inline(always)]
-    fn is_near(&self, ball: &PlacedSphere) -> bool {
-        Descent::new(&self.levels, ball).next().is_some()
+    fn is_near(&self, ball: PlacedSphere) -> bool {
+        Descent::new(&self.levels, ball.center, ball.reach)
+            .next()
+            .is_some()
     }
 
     #[inline(always)]
-    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere) {
-        for tile in Descent::new(&self.levels, sphere) {
-            self.push_tile(state, tile, sphere);
+    fn push(&self, state: &mut PatchState, sphere: PlacedSphere) {
+        let PlacedSphere { center, reach } = sphere;
+        for tile in Descent::new(&self.levels, center, reach) {
+            self.push_tile(state, tile, center, reach);
         }
     }
 }
 
 impl DrapedPatch {
-    /// Raises the deflections of the taxels in a tile by a sphere.
+    /// Raises the deflections of the taxels in a tile by a sphere. `center` is in the patch frame, and `reach` is the sum of the radii of sphere and taxel,
+    /// metres.
     #[inline(always)]
-    fn push_tile(&self, state: &mut PatchState, tile: usize, sphere: &PlacedSphere) {
-        let PlacedSphere { center, reach } = *sphere;
+    fn push_tile(&self, state: &mut PatchState, tile: usize, center: DVec3, reach: f64) {
         // Squares S² − b² and heights h of each taxel.
         let (mut squares, mut heights) = ([0.0; LANES], [0.0; LANES]);
         let Tile {
@@ -63,7 +67,8 @@ impl DrapedPatch {
 /// Iterator over the tiles of taxels near a sphere, ascending.
 struct Descent<'a> {
     levels: &'a [Vec<Balls>],
-    sphere: PlacedSphere,
+    center: DVec3,
+    reach: f64,
     /// Level of the tree of bounding balls that the iterator has reached.
     level: usize,
     /// For each level down to the present one, the index of the visited block and its balls that are still to be visited.
@@ -72,12 +77,13 @@ struct Descent<'a> {
 
 impl<'a> Descent<'a> {
     #[inline(always)]
-    fn new(levels: &'a [Vec<Balls>], sphere: &PlacedSphere) -> Self {
+    fn new(levels: &'a [Vec<Balls>], center: DVec3, reach: f64) -> Self {
         let mut blocks = [(0, SelectedLanes::default()); MAX_LEVELS];
-        blocks[0].1 = levels[0][0].near(sphere);
+        blocks[0].1 = levels[0][0].near(center, reach);
         Self {
             levels,
-            sphere: *sphere,
+            center,
+            reach,
             level: 0,
             blocks,
         }
@@ -100,7 +106,7 @@ impl Iterator for Descent<'_> {
                 return Some(ball);
             };
             self.level += 1;
-            self.blocks[self.level] = (ball, below[ball].near(&self.sphere));
+            self.blocks[self.level] = (ball, below[ball].near(self.center, self.reach));
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Blocks of eight values: searches test eight balls at a time, and presses evaluate eight taxels at a time.
 
 use crate::contact::lanes::SelectedLanes;
-use crate::contact::object_at::{PlacedSphere, ROUNDING, Region};
+use crate::contact::object_at::{PlacedSphere, Region};
 use crate::objects::Sphere;
+use crate::world::RADIUS_ROUNDING;
 use glam::DVec3;
 
 /// Number of taxels or balls in a block: eight f64 values in a vector of 512 bits.
@@ -38,13 +39,13 @@ impl Balls {
         balls.chunks(LANES).map(block).collect()
     }
 
-    /// Returns the indices of the balls that a sphere touches.
+    /// Returns the indices of the balls whose distance from `center` is less than their radius plus `reach`, metres.
     #[inline(always)]
-    pub fn near(&self, sphere: &PlacedSphere) -> SelectedLanes {
+    pub fn near(&self, center: DVec3, reach: f64) -> SelectedLanes {
         let mut gaps = [0.0; LANES];
         for (k, bound) in gaps.iter_mut().enumerate() {
-            let center = DVec3::new(self.x[k], self.y[k], self.z[k]);
-            *bound = gap(sphere.center - center, self.radius[k] + sphere.reach);
+            let own = DVec3::new(self.x[k], self.y[k], self.z[k]);
+            *bound = gap(center - own, self.radius[k] + reach);
         }
         SelectedLanes::below(&gaps, 0.0)
     }
@@ -62,7 +63,7 @@ impl Region for Sphere {
 /// Returns a value that is negative for two balls that touch. `away` is the distance of their centres, and `reach` the sum of their radii, metres.
 #[inline(always)]
 fn gap(away: DVec3, reach: f64) -> f64 {
-    let reach = reach * ROUNDING;
+    let reach = reach * RADIUS_ROUNDING;
     away.length_squared() - reach * reach
 }
 

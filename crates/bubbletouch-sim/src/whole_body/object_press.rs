@@ -13,10 +13,10 @@ use crate::objects::Sphere;
 /// be compiled without vector instructions.
 pub(super) trait Pushed {
     /// Returns whether a ball comes near any taxel.
-    fn is_near(&self, ball: &PlacedSphere) -> bool;
+    fn is_near(&self, ball: PlacedSphere) -> bool;
 
     /// Raises the deflections of the taxels by a sphere.
-    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere);
+    fn push(&self, state: &mut PatchState, sphere: PlacedSphere);
 }
 
 impl PatchState {
@@ -56,13 +56,13 @@ fn push_surface(
     let at = ObjectAt::new(patch_from_object, patch.taxel().radius);
     match patch.surface() {
         Surface::Rows(rows) => {
-            let uvw = rows.extrusion().uvw_from_patch();
+            let uvw = rows.extrusion.uvw_from_patch();
             let at = ObjectAt {
                 rotation: uvw * at.rotation,
                 translation: uvw * at.translation,
                 ..at
             };
-            push_each(state, (rows, &rows.ball_in_uvw()), object, at);
+            push_each(state, (rows, &rows.ball_in_uvw), object, at);
         }
         Surface::Dome(dome) => push_each(state, (dome, &dome.ball), object, at),
         Surface::Draped(draped) => push_each(state, (draped, &draped.ball), object, at),
@@ -83,12 +83,12 @@ fn push_each(
     for (look, gaps) in search.looks().iter().enumerate() {
         for k in SelectedLanes::below(gaps, 0.0) {
             let cluster = look * LOOK + k;
-            if !surface.is_near(&at.sphere(object.bounds().ball(cluster))) {
+            if !surface.is_near(at.sphere(object.bounds().ball(cluster))) {
                 continue;
             }
             let cluster = object.cluster(cluster);
             for k in at.spheres_below(&cluster, around, 0.0) {
-                surface.push(state, &at.sphere(cluster.at(k)));
+                surface.push(state, at.sphere(cluster.at(k)));
                 n_evaluated += 1;
             }
         }

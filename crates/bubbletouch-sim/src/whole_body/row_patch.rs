@@ -4,22 +4,25 @@ use super::lanes::{Balls, FAR, LANES, ball_around, filled};
 use crate::contact::Lines;
 use crate::contact::lanes::largest;
 use crate::contact::law::{beats, indent, squares_in_front};
-use crate::contact::object_at::PlacedSphere;
 use crate::objects::Sphere;
 use crate::world::Extrusion;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// Equal taxels in a row that is repeated along a line, with the structures that find the taxels near a sphere.
 #[derive(Clone, Debug)]
 pub(super) struct RowPatch {
-    extrusion: Extrusion,
+    /// Centres (at rest) and axes of the taxels.
+    pub extrusion: Extrusion,
     /// Height of the substrate relative to the taxels' centres at rest, metres.
-    behind: f64,
-    bundles: Vec<Bundle>,
-    circles: Vec<Balls>,
-    lines: Lines,
+    pub behind: f64,
+    /// Bundles of neighbouring columns of taxels.
+    pub bundles: Vec<Bundle>,
+    /// Bounding circles of the bundles in the plane perpendicular to the rows, stored as balls with their centres at w = 0.
+    pub circles: Vec<Balls>,
+    /// Positions of the rows along the line of repetition.
+    pub lines: Lines,
     /// Ball around all taxels (their centres at rest and the substrate below them), in the coordinates u, v (across the rows) and w (along them).
-    ball: Sphere,
+    pub ball_in_uvw: Sphere,
 }
 
 /// Bundle of neighbouring columns: centres of the taxels at rest (metres) and axes, stored coordinate by coordinate. The last bundle is padded with columns
@@ -51,7 +54,7 @@ impl RowPatch {
         let whole = circle(&columns);
         let center = whole.center.with_z(0.5 * (first + last));
         Self {
-            ball: Sphere {
+            ball_in_uvw: Sphere {
                 center,
                 radius: whole.radius.hypot(0.5 * (last - first)),
             },
@@ -63,28 +66,12 @@ impl RowPatch {
         }
     }
 
-    /// Returns the extrusion, which contains the centres (at rest) and the axes of the taxels.
-    pub fn extrusion(&self) -> &Extrusion {
-        &self.extrusion
-    }
-
-    /// Returns the height of the substrate relative to the taxels' centres at rest, metres.
-    #[inline(always)]
-    pub fn behind(&self) -> f64 {
-        self.behind
-    }
-
     /// Returns the bounding ball of the patch, in the patch frame.
     pub fn ball(&self) -> Sphere {
         Sphere {
-            center: self.extrusion.uvw_from_patch().transpose() * self.ball.center,
-            ..self.ball
+            center: self.extrusion.uvw_from_patch().transpose() * self.ball_in_uvw.center,
+            ..self.ball_in_uvw
         }
-    }
-
-    /// Returns the bounding ball of the patch, with its centre in the coordinates u, v, w.
-    pub fn ball_in_uvw(&self) -> Sphere {
-        self.ball
     }
 
     /// Returns the heap memory that the patch uses in bytes.
@@ -95,22 +82,6 @@ impl RowPatch {
             + size_of_val(&self.bundles[..])
             + size_of_val(&self.circles[..])
             + size_of_val(&self.lines.positions[..])
-    }
-
-    /// Returns the positions of the rows along the line of repetition.
-    pub fn lines(&self) -> &Lines {
-        &self.lines
-    }
-
-    /// Returns the bundles of neighbouring columns of taxels.
-    pub fn bundles(&self) -> &[Bundle] {
-        &self.bundles
-    }
-
-    /// Returns bounding circles of the bundles of columns in the plane perpendicular to the rows. The circles are stored as balls with their centres at w =
-    /// 0.
-    pub fn circles(&self) -> &[Balls] {
-        &self.circles
     }
 }
 
@@ -141,8 +112,7 @@ impl SphereOverBundle {
     /// Returns the sphere's position relative to the columns. Also returns the square of the largest distance along the rows, m², at which the sphere pushes
     /// a taxel from the front. The square is zero or less if the sphere pushes no taxel.
     #[inline(always)]
-    pub fn new(bundle: &Bundle, sphere: &PlacedSphere) -> (Self, f64) {
-        let PlacedSphere { center, reach } = *sphere;
+    pub fn new(bundle: &Bundle, center: DVec3, reach: f64) -> (Self, f64) {
         let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
             let (du, dv) = (center.x - bundle.u[k], center.y - bundle.v[k]);

@@ -18,27 +18,28 @@ const FEW: usize = 3;
 
 impl Pushed for RowPatch {
     #[inline(always)]
-    fn is_near(&self, ball: &PlacedSphere) -> bool {
-        let (mut is_near, across) = (false, across_rows(ball));
-        for circles in self.circles() {
-            is_near |= !circles.near(&across).is_empty();
+    fn is_near(&self, ball: PlacedSphere) -> bool {
+        let PlacedSphere { center, reach } = ball;
+        let mut is_near = false;
+        for circles in &self.circles {
+            is_near |= !circles.near(center.with_z(0.0), reach).is_empty();
         }
-        is_near && !is_beside(self, ball)
+        is_near && !is_beside(self, center.z, reach)
     }
 
     #[inline(always)]
-    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere) {
-        if is_beside(self, sphere) {
+    fn push(&self, state: &mut PatchState, sphere: PlacedSphere) {
+        let PlacedSphere { center, reach } = sphere;
+        if is_beside(self, center.z, reach) {
             return;
         }
-        let across = across_rows(sphere);
         let mut under = std::mem::take(&mut state.under);
         under.clear();
         let (mut widest, mut lowest) = (0.0, [f64::INFINITY; LANES]);
-        for (look, circles) in self.circles().iter().enumerate() {
-            for k in circles.near(&across) {
+        for (look, circles) in self.circles.iter().enumerate() {
+            for k in circles.near(center.with_z(0.0), reach) {
                 let bundle = look * LANES + k;
-                let (share, spare) = SphereOverBundle::new(&self.bundles()[bundle], sphere);
+                let (share, spare) = SphereOverBundle::new(&self.bundles[bundle], center, reach);
                 if spare > 0.0 {
                     widest = if spare > widest { spare } else { widest };
                     lower(&mut lowest, &share.heights);
@@ -46,10 +47,10 @@ impl Pushed for RowPatch {
                 }
             }
         }
-        if !SelectedLanes::below(&lowest, self.behind()).is_empty() {
-            push_through(state, self, &under, sphere.center.z, widest.sqrt());
+        if !SelectedLanes::below(&lowest, self.behind).is_empty() {
+            push_through(state, self, &under, center.z, widest.sqrt());
         } else if !under.is_empty() {
-            push_rows(state, self, &under, sphere.center.z, widest.sqrt());
+            push_rows(state, self, &under, center.z, widest.sqrt());
         }
         state.under = under;
     }
@@ -67,19 +68,10 @@ fn lower(lowest: &mut [f64; LANES], heights: &[f64; LANES]) {
     }
 }
 
-/// Returns the circle of a sphere in the plane perpendicular to the rows, as a sphere with its centre at w = 0.
+/// Returns whether no row is within the distance `reach` of the position `w` along the rows, metres.
 #[inline(always)]
-fn across_rows(sphere: &PlacedSphere) -> PlacedSphere {
-    PlacedSphere {
-        center: sphere.center.with_z(0.0),
-        ..*sphere
-    }
-}
-
-/// Returns whether the sphere is beside all rows.
-#[inline(always)]
-fn is_beside(patch: &RowPatch, sphere: &PlacedSphere) -> bool {
-    let (rows, w, reach) = (&patch.lines().positions, sphere.center.z, sphere.reach);
+fn is_beside(patch: &RowPatch, w: f64, reach: f64) -> bool {
+    let rows = &patch.lines.positions;
     w + reach <= rows[0] || w - reach >= rows[rows.len() - 1]
 }
 
@@ -92,13 +84,13 @@ fn push_rows(
     w: f64,
     within: f64,
 ) {
-    let n_columns = patch.extrusion().places().len();
+    let n_columns = patch.extrusion.places().len();
     let (first, last) = (under[0].0, under[under.len() - 1].0);
     let columns = first..(last + LANES as u32).min(n_columns as u32);
     let is_small = under.len() <= FEW;
-    for row in patch.lines().within(w, within) {
+    for row in patch.lines.within(w, within) {
         state.widen(row, &columns);
-        let along = patch.lines().positions[row] - w;
+        let along = patch.lines.positions[row] - w;
         for (start, share) in under {
             let taxels = state.block(row * n_columns + *start as usize);
             share.push(along * along, is_small, taxels);
@@ -115,10 +107,10 @@ fn push_through(
     w: f64,
     within: f64,
 ) {
-    let n_columns = patch.extrusion().places().len();
-    let behind = patch.behind();
-    for row in patch.lines().within(w, within) {
-        let along = patch.lines().positions[row] - w;
+    let n_columns = patch.extrusion.places().len();
+    let behind = patch.behind;
+    for row in patch.lines.within(w, within) {
+        let along = patch.lines.positions[row] - w;
         for (start, share) in under {
             let squares = share.through(along * along, behind);
             let taxels = state.block(row * n_columns + *start as usize);

@@ -48,7 +48,7 @@ pub use robot::{
 };
 pub use shear::{Shear, Shears};
 pub use taxel::{Grid, ImageShape, Taxel};
-pub(crate) use taxel_tree::{LEAF, Leaf, Node, PlacedTaxel, TaxelTree};
+pub(crate) use taxel_tree::{LEAF, Leaf, Node, PlacedTaxel, RADIUS_ROUNDING, TaxelTree};
 pub use touches::{MAX_TOUCHES, TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};
 

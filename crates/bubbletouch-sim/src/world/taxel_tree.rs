@@ -16,7 +16,7 @@ pub(crate) const LEAF: usize = 8;
 /// Stroke of taxels without a limit of the deflection, metres.
 const ENDLESS: f64 = 1e6;
 /// Factor that covers rounding of a sum of radii: far above 1e-16 and far below any measurable difference.
-const ROUNDING: f64 = 1.0 + 1e-9;
+pub(crate) const RADIUS_ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Search tree over the taxels of a patch, grouped by neighbourhood in bounding boxes.
 #[derive(Clone, Debug)]
@@ -283,7 +283,7 @@ impl Node {
     /// Returns the largest radius of the node's taxels, enlarged by more than rounding errors, metres.
     #[inline(always)]
     pub fn reach(&self) -> f64 {
-        self.radius * ROUNDING
+        self.radius * RADIUS_ROUNDING
     }
 
     /// Node with arbitrary contents, which are replaced later.
@@ -317,7 +317,7 @@ impl Node {
     /// an upper bound for each of the node's taxels.
     #[inline(always)]
     pub fn margin(&self, center: DVec3, radius: f64) -> f64 {
-        let reach = (self.radius + radius) * ROUNDING;
+        let reach = (self.radius + radius) * RADIUS_ROUNDING;
         reach * reach - self.bounds.distance_squared(center)
     }
 }

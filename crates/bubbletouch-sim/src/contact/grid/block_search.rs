@@ -11,16 +11,13 @@
 use super::lines::{GridLines, Lines};
 use super::pair_batch::Pair;
 use crate::contact::lanes::{least, most};
-use crate::contact::mesh::directions::Directions;
+use crate::contact::mesh::directions::{Directions, SINGLE_ROUNDING, half_shadow};
 use crate::contact::object_at::ObjectAt;
 use crate::objects::mesh_blocks::{
     ALL_SIDES, Block, BlockNode, INNER_SIDES, LANES, Lane, MeshBlocks, OUTER_SIDES, STACK, vector,
 };
-use glam::{BVec3, Mat3, Vec3, Vec3Swizzles};
+use glam::{BVec3, Mat3, Vec3};
 use std::ops::Range;
-
-/// Bound of the rounding errors of single precision, relative to the lengths in the scene. Each bound is computed from about ten numbers, each rounded by 6e-8.
-const ROUNDING: f64 = 2e-6;
 
 /// Transform of a mesh to the frame of a grid, and the limits of the search.
 #[derive(Clone, Copy, Debug)]
@@ -266,7 +263,7 @@ impl BlockSearch {
             center: center.as_vec3(),
             reach: reach as f32,
             behind: behind as f32,
-            slack: (ROUNDING * length) as f32,
+            slack: (SINGLE_ROUNDING * length) as f32,
             columns: LaneLines::new(&lines.x),
             rows_of_taxels: LaneLines::new(&lines.y),
         }
@@ -338,13 +335,11 @@ impl BlockSearch {
                 back: top + self.reach,
             };
             let found = self.find(&bounds, limit);
-            // A single candidate may be beside the shadow of the bounding box, enlarged by `spread`. Let a line have the direction u and contain the point o,
-            // and let a box around the origin have the half sizes h. The line misses the box if |o × u| exceeds `h_j |u_k| + h_k |u_j|` in a component i. In
-            // the frame of the mesh, u is the third row of the rotation matrix.
+            // A single candidate may be beside the shadow of the bounding box, enlarged by `spread`. In the frame of the mesh, the direction of the line is the
+            // third row of the rotation matrix.
             let x = self.columns.at(found.columns[0]) - middle.x;
             let y = self.rows_of_taxels.at(found.rows[0]) - middle.y;
-            let reach = own.yzx() * up.zxy().abs() + own.zxy() * up.yzx().abs();
-            let gap = (to_x.cross(up) * x + to_y.cross(up) * y).abs() - reach;
+            let gap = (to_x.cross(up) * x + to_y.cross(up) * y).abs() - half_shadow(own, up);
             let gap = most(most(gap.x, gap.y), gap.z);
             let spread = if both > 0.0 { self.reach } else { spread };
             let is_missed = found.is_one & (gap > spread + 2.0 * self.slack);

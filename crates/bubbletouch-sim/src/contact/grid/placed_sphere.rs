@@ -4,7 +4,8 @@ use super::grid_values::{BLOCK, GridValues, WIDE};
 use super::lines::{GridLines, Lines};
 use crate::contact::lanes::least;
 use crate::contact::law::{self, beats, indent};
-use crate::contact::object_at::{ClusterBox, ObjectAt, PlacedSphere, ROUNDING, Region};
+use crate::contact::object_at::{ClusterBox, ObjectAt, PlacedSphere, Region};
+use crate::world::RADIUS_ROUNDING;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -37,9 +38,9 @@ impl Region for GridRegion {
     #[inline(always)]
     fn cluster_bound(&self, object: &ObjectAt, cluster: &ClusterBox) -> f64 {
         let center = object.place(cluster.ball.center);
-        let beside = (object.reach + cluster.ball.radius) * ROUNDING;
+        let beside = (object.reach + cluster.ball.radius) * RADIUS_ROUNDING;
         let below = object.rotation.row(2).abs().dot(cluster.half);
-        let below = (below + cluster.largest + object.reach) * ROUNDING;
+        let below = (below + cluster.largest + object.reach) * RADIUS_ROUNDING;
         // For spheres of different sizes the bounding ball is the tighter bound.
         let start = center.z - least(beside, below);
         if self.misses(center, beside) {

@@ -6,8 +6,9 @@ use crate::contact::Until;
 use crate::contact::instructions::for_instructions;
 use crate::contact::lanes::SelectedLanes;
 use crate::contact::law;
-use crate::contact::object_at::{ClusterSearch, LOOK, ObjectAt, PlacedSphere, ROUNDING};
+use crate::contact::object_at::{ClusterSearch, LOOK, ObjectAt, PlacedSphere};
 use crate::objects::{Model, SphereClusters};
+use crate::world::RADIUS_ROUNDING;
 
 /// Scratch memory of a search for the spheres that can press a grid.
 #[derive(Clone, Debug, Default)]
@@ -85,7 +86,7 @@ impl SphereSearch {
                         let sphere = search.object.sphere(cluster.at(k));
                         let q = sphere.reach * sphere.reach;
                         if law::is_in_front(q, sphere.center.z, placed.behind)
-                            && !region.misses(sphere.center, sphere.reach * ROUNDING)
+                            && !region.misses(sphere.center, sphere.reach * RADIUS_ROUNDING)
                         {
                             self.found.push(sphere);
                         }

@@ -1,4 +1,17 @@
-//! Directions of contact of parts of a mesh, in single precision.
+//! Bounds in single precision that the searches of grids and of leaves share: directions of contact of parts of a mesh, and lines beside boxes.
+
+use glam::{Vec3, Vec3Swizzles};
+
+/// Bound of the rounding errors of single precision, relative to the lengths in the scene. Each bound is computed from about ten numbers, each rounded by 6e-8.
+pub(in crate::contact) const SINGLE_ROUNDING: f64 = 4e-6;
+
+/// Returns the vector s of a box with the half sizes h, metres. Let a line have the direction u (unit vector) and contain the point o, and let m be the centre of
+/// the box. The line misses the box if |(m − o) × u| exceeds `s_i = h_j |u_k| + h_k |u_j|` in a component i.
+#[inline(always)]
+pub(in crate::contact) fn half_shadow(half: Vec3, direction: Vec3) -> Vec3 {
+    let along = direction.abs();
+    half.yzx() * along.zxy() + half.zxy() * along.yzx()
+}
 
 /// Directions of contact of a part of a mesh ([`mesh_blocks`](crate::objects::mesh_blocks)), times the radius of a taxel that comes from below.
 #[derive(Clone, Copy, Debug)]

@@ -5,13 +5,12 @@
 //! down, or up, determine the side of the surface. If the side is not certain, d is any unit vector. Triangles that may lie behind the substrate are
 //! enlarged by the whole radius.
 //!
-//! Let a line have the direction u and contain the point o, and let a box with the half sizes h have its centre at m. The line misses the box if
-//! |(m − o) × u| exceeds `h_j |u_k| + h_k |u_j|` in a component i. The functions have no branches: loops that compare one line with all parts of a node, or
-//! all lines with one part, become vector instructions.
+//! The functions have no branches: loops that compare one line with all parts of a node, or all lines with one part, become vector instructions. A function
+//! that contains such a loop and returns its [`Pairs`] does not: the loops are written where the pairs are used.
 //!
 //! All bounds are enlarged by `slack`, far more than the rounding of single precision, so they never exclude a contact.
 
-use super::directions::Directions;
+use super::directions::{Directions, half_shadow};
 use super::taxel_lines::{Line, Thickness};
 use crate::contact::lanes::{least, most};
 use crate::objects::mesh_blocks::{Block, BlockNode, vector};
@@ -206,12 +205,7 @@ impl Contact {
     /// box, relative to the line.
     #[inline(always)]
     fn gap(&self, middle: Vec3, half: Vec3, line: &Line, thickness: &Thickness) -> f32 {
-        let along = line.direction.abs();
-        let size = Vec3::new(
-            half.y * along.z + half.z * along.y,
-            half.z * along.x + half.x * along.z,
-            half.x * along.y + half.y * along.x,
-        );
+        let size = half_shadow(half, line.direction);
         let thick = if self.is_low {
             thickness.across_far
         } else {

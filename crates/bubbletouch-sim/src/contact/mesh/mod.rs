@@ -2,7 +2,7 @@
 //!
 //! | stage | input → output |
 //! |---|---|
-//! | `directions` | the axis of a part of a mesh → bounds of the directions of contact |
+//! | `directions` | the axis of a part of a mesh → bounds of the directions of contact; a box → its shadow along a line |
 //! | `taxel_lines` | eight taxels of any layout → their axes in the frame of a mesh, and a thick line around them |
 //! | `line_search` | a line, and a box or triangle → whether they may touch, with a lower bound of the height |
 //! | `leaf_stops` | a mesh and eight taxels → heights and triangles |

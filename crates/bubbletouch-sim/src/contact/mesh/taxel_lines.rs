@@ -5,13 +5,12 @@
 //! taxel at the height t. Heights of stops are at most the limit of the search. They are at least the height of the substrate or of the far end of the
 //! mesh.
 
+use super::directions::SINGLE_ROUNDING;
 use super::skin_mesh::MeshAt;
 use crate::contact::lanes::{largest, most};
 use crate::world::{LEAF, Leaf};
 use glam::{DVec3, Vec3};
 
-/// Bound of the rounding errors of single precision, relative to the lengths in the scene. Each bound is computed from about ten numbers, each rounded by 6e-8.
-const ROUNDING: f64 = 4e-6;
 /// Cosine below which the direction of a taxel counts as perpendicular to the thick line. Far below any cosine between neighbouring taxels of a smooth layout.
 const STEEP: f32 = 1e-3;
 /// Component of a direction below which the component does not bound the heights at which a line enters a box. If larger, bounds are weaker; if smaller, rounding
@@ -167,7 +166,7 @@ impl TaxelLines {
             *square = line.origin.length_squared();
         }
         let length = largest(&squares).sqrt() + largest(&lines.reach);
-        let slack = (ROUNDING * (blocks.radius + f64::from(length))) as f32;
+        let slack = (SINGLE_ROUNDING * (blocks.radius + f64::from(length))) as f32;
         let ends = Ends::new(&lines, limits, blocks.radius as f32, slack);
         (ends.active != 0).then(|| Self {
             lines,

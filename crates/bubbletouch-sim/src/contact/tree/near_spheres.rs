@@ -27,6 +27,11 @@ pub(crate) fn gather(
     let Some(root) = taxels.root() else {
         return;
     };
+    if clusters.bounds().len() == 1 {
+        // The press compares each of these few spheres with the root.
+        numbers.extend(0..clusters.n_spheres() as u32);
+        return;
+    }
     search.lay(object, clusters, root);
     for (look, bounds) in search.looks().iter().enumerate() {
         for k in SelectedLanes::below(bounds, 0.0) {
