@@ -93,15 +93,19 @@ mod tests {
             let level = if column == row % 3 { 3.0 } else { 0.0 };
             level + rng.r#gen::<f64>()
         });
-        let held = HeldOut {
-            features: features.view(),
-            labels: &labels,
-            folds: &folds,
-        };
-        for method in [HeldOutMethod::NearestCentroid, HeldOutMethod::LinearSvm] {
-            let found = held.predicted(method, 1, &5_u64).unwrap();
-            let expected: Vec<_> = (18..36).map(|row| (row, labels[row])).collect();
-            assert_eq!(found, expected);
+        // The unit and the zero of the features have no effect.
+        for (unit, zero) in [(1.0, 0.0), (1e-6, 5.0)] {
+            let features = unit * (&features + zero);
+            let held = HeldOut {
+                features: features.view(),
+                labels: &labels,
+                folds: &folds,
+            };
+            for method in [HeldOutMethod::NearestCentroid, HeldOutMethod::LinearSvm] {
+                let found = held.predicted(method, 1, &5_u64).unwrap();
+                let expected: Vec<_> = (18..36).map(|row| (row, labels[row])).collect();
+                assert_eq!(found, expected);
+            }
         }
     }
 }

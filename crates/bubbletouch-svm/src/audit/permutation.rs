@@ -158,3 +158,26 @@ pub fn exchange_within(labels: &[usize], values: &mut [usize], rng: &mut ChaCha8
 pub fn generator(seed: &dyn Streams) -> ChaCha8Rng {
     seed.named("permutations").rng()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_are_exchanged_within_units_and_between_units_of_one_label() {
+        let (units, labels) = ([0, 0, 1, 1, 2, 3], [0, 1, 2, 3, 4, 5]);
+        let found = Units::new(Some(&units), &labels);
+        let (mut permuted, mut rng) = (labels, 3_u64.rng());
+        let mut n_changed = 0;
+        for _ in 0..40 {
+            found.exchange(&labels, &mut permuted, &mut rng);
+            n_changed += usize::from(permuted != labels);
+            for first in [0, 2, 4] {
+                let mut pair = [permuted[first], permuted[first + 1]];
+                pair.sort_unstable();
+                assert_eq!(pair, [first, first + 1]);
+            }
+        }
+        assert!(n_changed > 20, "{n_changed}");
+    }
+}

@@ -135,3 +135,23 @@ pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
         Ok(Arc::new(forest))
     })
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array1;
+
+    #[test]
+    fn a_tree_sees_two_thirds_of_the_rows() {
+        let mut rng = 5_u64.rng();
+        let features = Array2::from_shape_simple_fn((600, 4), || rng.r#gen::<f64>());
+        let labels = Array1::from_shape_simple_fn(600, || rng.gen_range(0..2));
+        let data = Dataset::new(features, labels);
+        let tree = RandomForest::train(&data, 1, None, ClassWeight::Uniform, &3_u64).unwrap();
+        let found = tree.labels(data.records.view()).unwrap();
+        let n_right = found.iter().zip(&data.targets).filter(|(a, b)| a == b);
+        // All rows of the bootstrap sample, 1 − 1/e of the rows, and half of the others: 490, within five standard deviations.
+        let n_right = n_right.count();
+        assert!((440..=540).contains(&n_right), "{n_right}");
+    }
+}

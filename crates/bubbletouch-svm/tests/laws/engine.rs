@@ -4,12 +4,12 @@
 use crate::drawn::{folds, params, rng};
 use crate::svm_conditions::{Worth, kernel_value};
 use bubbletouch_svm::class_weight::ClassWeight;
-use bubbletouch_svm::cross_validation::choice::{Candidates, Chosen, choose};
+use bubbletouch_svm::cross_validation::choice::{Candidates, Chosen, choose, choose_c};
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
 use bubbletouch_svm::kernel::{Gamma, Kernel};
 use bubbletouch_svm::predict::svm_model::SvmModel;
 use bubbletouch_svm::split::Split;
-use bubbletouch_svm::{BinaryProblem, Multiclass, SvmParams};
+use bubbletouch_svm::{BinaryProblem, Multiclass, Result, SvmParams};
 use ndarray::{Array1, Array2};
 use rand::Rng;
 use rand_distr::StandardNormal;
@@ -709,4 +709,19 @@ fn a_choice_for_a_problem_that_training_would_refuse_is_refused() {
     let expected = params.train(&data).unwrap_err().to_string();
     let error = choose(&params, &data, &folds, &candidates()).unwrap_err();
     assert_eq!(error.to_string(), expected);
+}
+
+#[test]
+fn a_choice_of_c_counts_the_capped_problems_of_all_folds_and_candidates() {
+    let data = clouds(&[20, 20], 4, 1.0, 21);
+    let folds = folds(&data.targets, 3);
+    let train = |_: &Dataset, _: f64| -> Result<_> {
+        Ok((
+            |rows: &Dataset| -> Result<_> { Ok(rows.targets.clone()) },
+            2,
+        ))
+    };
+    let chosen = choose_c(train, &data, &folds, &[5.0, 1.0]).unwrap();
+    assert_eq!((chosen.best.c, chosen.best.accuracy), (1.0, 1.0));
+    assert_eq!(chosen.n_capped, 2 * 3 * 2);
 }

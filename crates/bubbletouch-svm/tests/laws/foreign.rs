@@ -103,6 +103,42 @@ fn without_probabilities_labels_are_votes() {
     assert!(scores.iter().all(|score| score.is_finite()));
 }
 
+/// Model whose log-probabilities all have one value, in arrays of this width.
+#[derive(Clone, Copy)]
+struct Constant(f64, usize);
+
+impl ForeignClassifier for Constant {
+    fn fit(&self, _: &Dataset, _: u32) -> Result<Box<dyn ForeignModel>> {
+        Ok(Box::new(*self))
+    }
+}
+
+impl ForeignModel for Constant {
+    fn predict(&self, rows: ArrayView2<f64>) -> Result<Vec<usize>> {
+        Ok(vec![2; rows.nrows()])
+    }
+
+    fn log_probabilities(&self, rows: ArrayView2<f64>) -> Result<Option<Array2<f64>>> {
+        Ok(Some(Array2::from_elem((rows.nrows(), self.1), self.0)))
+    }
+}
+
+#[test]
+fn log_probabilities_are_finite_or_refused() {
+    for (value, width, is_allowed) in [
+        (f64::NEG_INFINITY, 3, true),
+        (f64::NAN, 3, false),
+        (-1.0, 2, false),
+    ] {
+        let foreign = Foreign::new("constant", "1").unwrap();
+        let _provided = foreign.provide(Arc::new(Constant(value, width)));
+        match trained(foreign).unwrap().scores(data().records.view()) {
+            Ok(scores) => assert!(is_allowed && scores.iter().all(|score| score.is_finite())),
+            Err(error) => assert!(!is_allowed && error.to_string().contains("without NaN")),
+        }
+    }
+}
+
 #[test]
 fn a_name_is_an_identity_with_its_version() {
     let [one, other] = ["1", "2"].map(|version| Foreign::new("same", version).unwrap());

@@ -7,15 +7,16 @@ use crate::drawn;
 use bubbletouch_svm::class_weight::ClassWeight;
 use bubbletouch_svm::classifiers::ClassifierKind;
 use bubbletouch_svm::classifiers::class_model::ClassModel;
-use bubbletouch_svm::classifiers::classifier::{Classifier, Cost};
+use bubbletouch_svm::classifiers::classifier::{Classifier, Cost, TrainedClassifier};
 use bubbletouch_svm::classifiers::logistic_regression::LogisticParams;
+use bubbletouch_svm::classifiers::naive_bayes::NaiveBayes;
 use bubbletouch_svm::cross_validation::choice::Candidates;
 use bubbletouch_svm::dataset::{Dataset, dataset, rows};
 use bubbletouch_svm::kernel::{Gamma, Kernel};
 use bubbletouch_svm::linear_svm::{LinearSvm, LinearSvmParams};
 use bubbletouch_svm::{Multiclass, SvmParams, SvmSolver};
 use linfa::traits::Fit;
-use ndarray::{Array1, Array2, s};
+use ndarray::{Array1, Array2, ArrayView1, s};
 use rand::Rng;
 
 /// Returns 60 rows of 5 features in 4 alternating classes.
@@ -220,33 +221,64 @@ fn logistic_regression_reaches_its_tolerance_at_any_penalty_and_in_any_units() {
 }
 
 #[test]
-fn balanced_weights_of_a_logistic_regression_equal_repeated_rows() {
+fn labels_are_those_of_the_largest_probability_with_its_prior() {
+    let data = clusters(200, 3, 3, 2);
+    let rows = &data.records;
+    let logistic = LogisticParams::default().train(&data).unwrap();
+    let bayes = NaiveBayes::train(&data).unwrap();
+    let cases: [(&dyn ClassModel, Array2<f64>); 2] = [
+        (&logistic, logistic.log_probabilities(rows.view()).unwrap()),
+        (&bayes, bayes.joint_log_likelihoods(rows.view()).unwrap()),
+    ];
+    let largest = |values: &Array2<f64>| -> Array1<usize> {
+        let best = |row: ArrayView1<f64>| (0..3).max_by(|&a, &b| row[a].total_cmp(&row[b]));
+        values.outer_iter().filter_map(best).collect()
+    };
+    for (model, probabilities) in cases {
+        let labels = model.labels(rows.view()).unwrap();
+        assert_eq!(labels, largest(&probabilities));
+        assert_ne!(labels, largest(&model.scores(rows.view()).unwrap()));
+    }
+}
+
+#[test]
+fn balanced_weights_equal_repeated_rows() {
     // Class 0 has three times the rows of class 1 and five times those of class 2; repeating their rows balances the classes.
     let few = unequal();
     let repeated = few.targets.iter().enumerate();
     let repeated = repeated.flat_map(|(row, &class)| vec![row; [1, 3, 5][class]]);
     let repeated = rows(&few, &repeated.collect::<Vec<_>>()).unwrap();
-    let scores = |data: &Dataset, class_weight, c| {
-        let params = LogisticParams {
+    let scores = |data: &Dataset, class_weight, c| -> [Array2<f64>; 2] {
+        let logistic = LogisticParams {
             c,
             class_weight,
             tolerance: 1e-12,
             ..LogisticParams::default()
         };
-        let model = params.train(data).unwrap();
-        model.scores(waves().records.view()).unwrap()
+        let descent = LinearSvmParams {
+            c,
+            class_weight,
+            tolerance: 1e-9,
+            max_passes: 1_000_000,
+        };
+        let models: [Box<dyn ClassModel>; 2] = [
+            Box::new(logistic.train(data).unwrap()),
+            Box::new(descent.train(data, &5_u64).unwrap()),
+        ];
+        models.map(|model| model.scores(waves().records.view()).unwrap())
     };
     // The weights of the rows of class 0, 1 and 2 are 23/45, 23/15 and 23/9.
     let balanced = scores(&few, ClassWeight::Balanced, 45.0 / 23.0);
     let repeated = scores(&repeated, ClassWeight::Uniform, 1.0);
-    let worst = (&balanced - &repeated).fold(0.0, |worst: f64, error| error.abs().max(worst));
-    assert!(worst < 1e-5, "{worst}");
+    for (balanced, repeated) in balanced.iter().zip(&repeated) {
+        let worst = (balanced - repeated).fold(0.0, |worst: f64, error| error.abs().max(worst));
+        assert!(worst < 1e-5, "{worst}");
+    }
 }
 
 #[test]
 fn balanced_svms_equal_scikit_learns() {
-    // SVC(C=2, kernel, tol=1e-9, class_weight="balanced"), and LinearSVC(C=0.5, loss="hinge", dual=True, tol=1e-9, max_iter=10**6,
-    // class_weight="balanced") on the first two classes.
+    // SVC(C=2, kernel, tol=1e-9, class_weight="balanced").
     let data = unequal();
     let gamma = Gamma::Scale;
     for (kernel, expected) in [
@@ -267,23 +299,6 @@ fn balanced_svms_equal_scikit_learns() {
         let row = waves().records.slice_move(s![3..4, ..]);
         assert_near(svm.decision_values(row.view()).unwrap(), &expected, 1e-6);
     }
-    let two: Vec<usize> = (0..23).filter(|&row| data.targets[row] < 2).collect();
-    let params = LinearSvmParams {
-        c: 0.5,
-        class_weight: ClassWeight::Balanced,
-        tolerance: 1e-9,
-        max_passes: 1_000_000,
-    };
-    let svm = params.train(&rows(&data, &two).unwrap(), &5_u64).unwrap();
-    let expected = [
-        0.12289134,
-        -0.75730316,
-        -0.27572295,
-        -0.24555794,
-        -0.80190534,
-    ];
-    assert_near(svm.model().weights.row(1).to_vec(), &expected, 1e-6);
-    assert_near([svm.model().bias[1]], &[0.56607845], 1e-6);
 }
 
 #[test]
@@ -315,4 +330,24 @@ fn the_choice_of_solver_and_margin_is_kept() {
         let error = classifier.fit(&data).unwrap_err().to_string();
         assert!(error.contains("linear_svm"), "{error}");
     }
+}
+
+#[test]
+fn the_chosen_gamma_is_that_of_the_model() {
+    let data = clusters(120, 6, 3, 4);
+    let chosen = Classifier {
+        c: Cost::Chosen(Candidates {
+            c: vec![1.0, 10.0],
+            gamma_scales: vec![0.01, 0.1],
+        }),
+        ..Classifier::new(ClassifierKind::RbfSvm)
+    };
+    let trained = chosen.fit(&data).unwrap();
+    let best = trained.chosen().unwrap().best;
+    let fixed = Classifier {
+        c: Cost::Fixed(best.c),
+        ..chosen.with_gamma(Gamma::Value(best.gamma.unwrap()))
+    };
+    let scores = |model: &TrainedClassifier| model.scores(data.records.view()).unwrap();
+    assert_eq!(scores(&trained), scores(&fixed.fit(&data).unwrap()));
 }
