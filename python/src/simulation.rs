@@ -13,12 +13,13 @@ use bubbletouch::scene::{
 use glam::DVec3;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 use self_cell::self_cell;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 type BorrowedSimulation<'p> = scene::Simulation<'p>;
 
@@ -121,15 +122,18 @@ impl Simulation {
         py: Python<'py>,
         out: Option<Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let out = out.map(Bound::unbind);
-        let made = self.run(py, |simulation| {
-            let frame = simulation.observe()?;
-            Ok(Python::attach(|py| match out {
-                Some(out) => fill_frame(out.bind(py), &self.plan, frame).map(|()| out),
-                None => frame_of(py, &self.plan, frame).map(Bound::unbind),
-            }))
-        })?;
-        Ok(made?.into_bound(py))
+        guarded(|| {
+            let running = &mut *self.lock(py);
+            py.detach(|| on(running, |simulation| simulation.observe().map(drop)))?;
+            // The state was computed without the interpreter's lock; the second call only returns the frame.
+            running.with_dependent_mut(|_, simulation| {
+                let frame = simulation.observe().map_err(exception)?;
+                match out {
+                    Some(out) => fill_frame(&out, &self.plan, frame).map(|()| out),
+                    None => frame_of(py, &self.plan, frame),
+                }
+            })
+        })
     }
 
     /// Sets the pose of an object in the world from the next step on: (7,) or (4, 4). A free object comes to rest from this pose. Raises ValueError if
@@ -241,21 +245,31 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// Calls a function with the running simulation, without the interpreter's lock. Threads wait for each other.
+    /// Waits, without the interpreter's lock, until no other thread uses the running simulation.
+    fn lock(&self, py: Python) -> MutexGuard<'_, RunningSimulation> {
+        let running = self.running.lock_py_attached(py);
+        running.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Calls a function with the running simulation, without the interpreter's lock.
     fn run<T: Send>(
         &self,
         py: Python,
         call: impl FnOnce(&mut BorrowedSimulation) -> bubbletouch::Result<T> + Send,
     ) -> PyResult<T> {
         guarded(|| {
-            let called = py.detach(|| {
-                let running = self.running.lock();
-                let mut running = running.unwrap_or_else(PoisonError::into_inner);
-                running.with_dependent_mut(|_, simulation| call(simulation))
-            });
-            called.map_err(exception)
+            let running = &mut *self.lock(py);
+            py.detach(|| on(running, call))
         })
     }
+}
+
+/// Calls a function with the running simulation, and converts its errors to Python exceptions.
+fn on<T>(
+    running: &mut RunningSimulation,
+    call: impl FnOnce(&mut BorrowedSimulation) -> bubbletouch::Result<T>,
+) -> PyResult<T> {
+    running.with_dependent_mut(|_, simulation| call(simulation).map_err(exception))
 }
 
 /// Creates the dict of a frame.
