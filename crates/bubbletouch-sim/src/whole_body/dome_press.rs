@@ -29,13 +29,13 @@ const ACOS_ROUNDING: f64 = 1e-7;
 impl Pushed for DomePatch {
     /// Always returns true: the caller has already tested the bounding ball, and a dome has no narrower bound.
     #[inline(always)]
-    fn is_near(&self, _: PlacedSphere) -> bool {
+    fn is_near(&self, _: &PlacedSphere) -> bool {
         true
     }
 
     #[inline(always)]
-    fn push(&self, state: &mut PatchState, sphere: PlacedSphere) {
-        let PlacedSphere { center, reach } = sphere;
+    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere) {
+        let PlacedSphere { center, reach } = *sphere;
         let radius = self.dome.radius();
         let power = center.length_squared() - reach * reach;
         let substrate = self.substrate;

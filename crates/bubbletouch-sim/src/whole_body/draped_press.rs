@@ -14,17 +14,14 @@ const MAX_LEVELS: usize = 10;
 
 impl Pushed for DrapedPatch {
     #[inline(always)]
-    fn is_near(&self, ball: PlacedSphere) -> bool {
-        Descent::new(&self.levels, ball.center, ball.reach)
-            .next()
-            .is_some()
+    fn is_near(&self, ball: &PlacedSphere) -> bool {
+        Descent::new(&self.levels, ball).next().is_some()
     }
 
     #[inline(always)]
-    fn push(&self, state: &mut PatchState, sphere: PlacedSphere) {
-        let PlacedSphere { center, reach } = sphere;
-        for tile in Descent::new(&self.levels, center, reach) {
-            self.push_tile(state, tile, center, reach);
+    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere) {
+        for tile in Descent::new(&self.levels, sphere) {
+            self.push_tile(state, tile, sphere.center, sphere.reach);
         }
     }
 }
@@ -67,8 +64,7 @@ impl DrapedPatch {
 /// Iterator over the tiles of taxels near a sphere, ascending.
 struct Descent<'a> {
     levels: &'a [Vec<Balls>],
-    center: DVec3,
-    reach: f64,
+    sphere: &'a PlacedSphere,
     /// Level of the tree of bounding balls that the iterator has reached.
     level: usize,
     /// For each level down to the present one, the index of the visited block and its balls that are still to be visited.
@@ -77,13 +73,12 @@ struct Descent<'a> {
 
 impl<'a> Descent<'a> {
     #[inline(always)]
-    fn new(levels: &'a [Vec<Balls>], center: DVec3, reach: f64) -> Self {
+    fn new(levels: &'a [Vec<Balls>], sphere: &'a PlacedSphere) -> Self {
         let mut blocks = [(0, SelectedLanes::default()); MAX_LEVELS];
-        blocks[0].1 = levels[0][0].near(center, reach);
+        blocks[0].1 = levels[0][0].near(sphere);
         Self {
             levels,
-            center,
-            reach,
+            sphere,
             level: 0,
             blocks,
         }
@@ -106,7 +101,7 @@ impl Iterator for Descent<'_> {
                 return Some(ball);
             };
             self.level += 1;
-            self.blocks[self.level] = (ball, below[ball].near(self.center, self.reach));
+            self.blocks[self.level] = (ball, below[ball].near(self.sphere));
         }
     }
 }

@@ -39,13 +39,13 @@ impl Balls {
         balls.chunks(LANES).map(block).collect()
     }
 
-    /// Returns the indices of the balls whose distance from `center` is less than their radius plus `reach`, metres.
+    /// Returns the indices of the balls that a sphere touches.
     #[inline(always)]
-    pub fn near(&self, center: DVec3, reach: f64) -> SelectedLanes {
+    pub fn near(&self, sphere: &PlacedSphere) -> SelectedLanes {
         let mut gaps = [0.0; LANES];
         for (k, bound) in gaps.iter_mut().enumerate() {
             let own = DVec3::new(self.x[k], self.y[k], self.z[k]);
-            *bound = gap(center - own, self.radius[k] + reach);
+            *bound = gap(sphere.center - own, self.radius[k] + sphere.reach);
         }
         SelectedLanes::below(&gaps, 0.0)
     }

@@ -13,10 +13,10 @@ use crate::objects::Sphere;
 /// be compiled without vector instructions.
 pub(super) trait Pushed {
     /// Returns whether a ball comes near any taxel.
-    fn is_near(&self, ball: PlacedSphere) -> bool;
+    fn is_near(&self, ball: &PlacedSphere) -> bool;
 
     /// Raises the deflections of the taxels by a sphere.
-    fn push(&self, state: &mut PatchState, sphere: PlacedSphere);
+    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere);
 }
 
 impl PatchState {
@@ -83,12 +83,12 @@ fn push_each(
     for (look, gaps) in search.looks().iter().enumerate() {
         for k in SelectedLanes::below(gaps, 0.0) {
             let cluster = look * LOOK + k;
-            if !surface.is_near(at.sphere(object.bounds().ball(cluster))) {
+            if !surface.is_near(&at.sphere(object.bounds().ball(cluster))) {
                 continue;
             }
             let cluster = object.cluster(cluster);
             for k in at.spheres_below(&cluster, around, 0.0) {
-                surface.push(state, at.sphere(cluster.at(k)));
+                surface.push(state, &at.sphere(cluster.at(k)));
                 n_evaluated += 1;
             }
         }

@@ -11,6 +11,7 @@ use super::row_patch::{RowPatch, SphereOverBundle};
 use crate::contact::lanes::SelectedLanes;
 use crate::contact::law::{beats, indent};
 use crate::contact::object_at::PlacedSphere;
+use glam::DVec3;
 
 /// Maximum number of bundles of columns for which a sphere counts as small. For a small sphere, testing whether contact requires more than the present
 /// deflection takes as long as the root.
@@ -18,18 +19,18 @@ const FEW: usize = 3;
 
 impl Pushed for RowPatch {
     #[inline(always)]
-    fn is_near(&self, ball: PlacedSphere) -> bool {
-        let PlacedSphere { center, reach } = ball;
+    fn is_near(&self, ball: &PlacedSphere) -> bool {
+        let PlacedSphere { center, reach } = *ball;
         let mut is_near = false;
         for circles in &self.circles {
-            is_near |= !circles.near(center.with_z(0.0), reach).is_empty();
+            is_near |= !circles.near(&across_rows(center, reach)).is_empty();
         }
         is_near && !is_beside(self, center.z, reach)
     }
 
     #[inline(always)]
-    fn push(&self, state: &mut PatchState, sphere: PlacedSphere) {
-        let PlacedSphere { center, reach } = sphere;
+    fn push(&self, state: &mut PatchState, sphere: &PlacedSphere) {
+        let PlacedSphere { center, reach } = *sphere;
         if is_beside(self, center.z, reach) {
             return;
         }
@@ -37,7 +38,7 @@ impl Pushed for RowPatch {
         under.clear();
         let (mut widest, mut lowest) = (0.0, [f64::INFINITY; LANES]);
         for (look, circles) in self.circles.iter().enumerate() {
-            for k in circles.near(center.with_z(0.0), reach) {
+            for k in circles.near(&across_rows(center, reach)) {
                 let bundle = look * LANES + k;
                 let (share, spare) = SphereOverBundle::new(&self.bundles[bundle], center, reach);
                 if spare > 0.0 {
@@ -53,6 +54,15 @@ impl Pushed for RowPatch {
             push_rows(state, self, &under, center.z, widest.sqrt());
         }
         state.under = under;
+    }
+}
+
+/// Returns the circle of a sphere in the plane perpendicular to the rows, as a sphere with its centre at w = 0.
+#[inline(always)]
+fn across_rows(center: DVec3, reach: f64) -> PlacedSphere {
+    PlacedSphere {
+        center: center.with_z(0.0),
+        reach,
     }
 }
 
