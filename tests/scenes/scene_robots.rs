@@ -139,7 +139,7 @@ fn a_mesh_in_millimetres_is_as_large_as_its_scale_says() {
         let link = format!(
             "<link name='a'><collision><geometry>{mesh_element}</geometry></collision></link>"
         );
-        let case = Case::with("r.urdf", &format!("<robot name='r'>{link}</robot>"));
+        let case = Case::with("r.urdf", format!("<robot name='r'>{link}</robot>"));
         case.file("cube.obj", mesh);
         let text = "title = \"A cube\"\n[[robots]]\nname = \"r\"\nfile = \"r.urdf\"\n[[patches]]\nname = \"skin\"\nstroke_mm = 2.0\n\
                     robot = \"r\"\nlayout = { draped = { pitch_mm = 4.0, region = { link = \"a\" } } }\n";

@@ -61,9 +61,11 @@ pub struct SphereUnion {
 #[derive(Debug)]
 struct Data {
     spheres: Vec<Sphere>,
+    /// Bounding box of all spheres, metres.
+    bounds: Aabb,
     /// Clusters of the spheres, computed on first use.
     clusters: OnceLock<SphereClusters>,
-    /// Represented that the spheres represent, and its pose in the frame of the object; `None` if the spheres are the body.
+    /// Body that the spheres represent, and its pose in the frame of the object; `None` if the spheres are the body.
     body: Option<(Arc<Represented>, Pose)>,
     /// Centre of mass, computed on first use, metres.
     center_of_mass: OnceLock<DVec3>,
@@ -111,8 +113,10 @@ impl SphereUnion {
     }
 
     fn from_spheres(spheres: Vec<Sphere>, body: Option<(Arc<Represented>, Pose)>) -> Self {
+        let bounds = Aabb::around(spheres.iter().map(Sphere::bounds));
         Self {
             data: Arc::new(Data {
+                bounds: bounds.expect("a union has at least one sphere"),
                 spheres,
                 clusters: OnceLock::new(),
                 body,
@@ -157,8 +161,7 @@ impl SphereUnion {
 
     /// Returns the bounding box of all spheres, metres.
     pub fn bounds(&self) -> Aabb {
-        Aabb::around(self.spheres().iter().map(Sphere::bounds))
-            .expect("a union has at least one sphere")
+        self.data.bounds
     }
 
     /// Returns the distance from a point to the farthest surface point of a sphere, metres. This distance is the radius of an enclosing ball around the
