@@ -2,12 +2,13 @@
 //!
 //! A part that is held stops its taxel first, as do the triangles around a held triangle, because equal triangles meet in edges. If none of them meets the taxel
 //! any more, the search begins at the nearest place of the part. The taxel is then pushed on by each part of the object that overlaps it, until it overlaps
-//! none. An object that slides under a taxel thus hands the taxel from part to part, and the result does not depend on the sizes of the parts.
+//! none. An object that slides under a taxel thus hands the taxel from part to part, and the result does not depend on the sizes of the parts. Parts that are not
+//! wholly behind the substrate have pushed the taxel already.
 
 use super::near_spheres::needed_along;
 use crate::contact::Workspace;
 use crate::contact::mesh::skin_mesh::MeshAt;
-use crate::contact::object_at::ObjectAt;
+use crate::contact::object_at::{ObjectAt, PlacedSphere};
 use crate::contact::workspace::HeldTaxel;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere, SphereUnion};
@@ -54,24 +55,21 @@ impl<'a> Holder<'a> {
     /// Returns the height to which an object that holds a taxel by a part pushes the taxel, and the part that stops it there. Returns `None` if no part behind
     /// the substrate pushes the taxel; parts in front of it have already done so.
     fn push_on(&self, taxel: &PlacedTaxel, part: u32) -> Option<(f64, u32)> {
-        let is_in_front = match self {
-            Self::Mesh(mesh) => !mesh.may_be_behind(taxel),
-            Self::Spheres(..) => self
-                .stop(taxel, part)
-                .is_some_and(|height| height >= taxel.behind),
-        };
-        if is_in_front {
-            return None;
-        }
         let around = match self {
-            Self::Mesh(mesh) => mesh.around(part as usize),
+            Self::Spheres(..) if self.is_in_front(taxel, part) => return None,
             Self::Spheres(..) => vec![part],
+            Self::Mesh(mesh) if !mesh.may_be_behind(taxel) => return None,
+            Self::Mesh(mesh) => mesh.around(part as usize),
         };
         let stops = around.into_iter();
-        let mut starts: Vec<_> = stops
-            .filter_map(|part| Some((self.stop(taxel, part)?, Some(part))))
+        let stops: Vec<_> = stops
+            .filter_map(|part| Some((self.stop(taxel, part)?, part)))
             .collect();
-        if starts.is_empty() {
+        let behind = stops
+            .iter()
+            .filter(|(_, part)| !self.is_in_front(taxel, *part));
+        let mut starts: Vec<_> = behind.map(|&(height, part)| (height, Some(part))).collect();
+        if stops.is_empty() {
             starts.push((self.nearest_height(taxel, part), None));
         }
         let pushed = starts.into_iter().filter_map(|(mut height, mut pushing)| {
@@ -91,15 +89,22 @@ impl<'a> Holder<'a> {
         let height = match self {
             Self::Spheres(union, object) => {
                 let sphere = object.sphere(union.spheres()[part as usize]);
-                let [across_x, across_y] = taxel.across;
-                let frame = [across_x, across_y, taxel.axis];
-                let reach = taxel.radius + sphere.reach;
-                let from = taxel.center - sphere.center;
-                -needed_along(from, frame, reach, f64::NEG_INFINITY)
+                -needed_by(&sphere, taxel, f64::NEG_INFINITY)
             }
             Self::Mesh(mesh) => mesh.stop_by(taxel, part as usize)?,
         };
         (height < 0.0).then_some(height)
+    }
+
+    /// Returns whether a part pushes the taxel and is not wholly behind the substrate.
+    fn is_in_front(&self, taxel: &PlacedTaxel, part: u32) -> bool {
+        match self {
+            Self::Spheres(union, object) => {
+                let sphere = object.sphere(union.spheres()[part as usize]);
+                needed_by(&sphere, taxel, taxel.behind) > 0.0
+            }
+            Self::Mesh(mesh) => mesh.stop_in_front(taxel, part as usize).is_some(),
+        }
     }
 
     /// Returns the height of a part that misses the taxel: of a sphere's centre, or of a triangle's point nearest to the taxel's axis.
@@ -130,6 +135,14 @@ impl<'a> Holder<'a> {
         };
         found.filter(|&(stop, _)| stop < height)
     }
+}
+
+/// Returns the deflection that contact with a sphere requires of a taxel whose substrate has the height `behind`, metres.
+fn needed_by(sphere: &PlacedSphere, taxel: &PlacedTaxel, behind: f64) -> f64 {
+    let [across_x, across_y] = taxel.across;
+    let frame = [across_x, across_y, taxel.axis];
+    let reach = taxel.radius + sphere.reach;
+    needed_along(taxel.center - sphere.center, frame, reach, behind)
 }
 
 /// Returns the indices of the spheres that a ball in the frame of their union meets.
