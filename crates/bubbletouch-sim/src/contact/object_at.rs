@@ -121,10 +121,9 @@ pub(crate) trait Region {
     }
 }
 
-/// Object with the bounds of the clusters of its spheres. The memory is reused by further searches.
+/// Bounds of the clusters of an object's spheres. The memory is reused by further searches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ClusterSearch {
-    pub object: ObjectAt,
     /// Bound of each cluster, followed by infinite bounds up to a whole number of looks.
     bounds: Vec<f64>,
 }
@@ -135,7 +134,6 @@ impl ClusterSearch {
     pub fn lay(&mut self, object: ObjectAt, clusters: &SphereClusters, region: &impl Region) {
         let boxes = clusters.bounds();
         let n = boxes.len();
-        self.object = object;
         self.bounds.resize(n.next_multiple_of(LOOK), f64::INFINITY);
         if let Some(last) = self.bounds.as_chunks_mut::<LOOK>().0.last_mut() {
             *last = [f64::INFINITY; LOOK];

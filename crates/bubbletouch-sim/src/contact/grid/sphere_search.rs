@@ -13,8 +13,8 @@ use crate::world::RADIUS_ROUNDING;
 /// Scratch memory of a search for the spheres that can press a grid.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SphereSearch {
-    /// Clusters of the sphere unions, in the order of the unions. Their bounds are travels before which no sphere of a cluster presses a taxel, metres.
-    unions: Vec<ClusterSearch>,
+    /// Sphere unions at their poses, with their clusters. The bounds are travels before which no sphere of a cluster presses a taxel, metres.
+    unions: Vec<(ObjectAt, ClusterSearch)>,
     /// Spheres that can press a taxel, in the patch frame at a travel of 0.
     pub found: Vec<PlacedSphere>,
 }
@@ -43,28 +43,31 @@ impl SphereSearch {
     #[inline(always)]
     fn lay(&mut self, placed: &PlacedObjects, region: &GridRegion) {
         let n_unions = sphere_unions(placed.objects).count();
-        self.unions.resize_with(n_unions, ClusterSearch::default);
+        self.unions.resize_with(n_unions, Default::default);
         let poses = placed.objects.iter().zip(placed.patch_from_objects);
         let unions = poses.filter_map(|(object, pose)| Some((object.spheres()?, pose)));
-        for (search, (union, pose)) in self.unions.iter_mut().zip(unions) {
-            search.lay(ObjectAt::new(pose, placed.radius), union.clusters(), region);
+        for ((object, search), (union, pose)) in self.unions.iter_mut().zip(unions) {
+            *object = ObjectAt::new(pose, placed.radius);
+            search.lay(*object, union.clusters(), region);
         }
     }
 
     /// Returns the travel at which the first sphere meets a taxel, metres.
     #[inline(always)]
     fn first_touch(&self, placed: &PlacedObjects, region: &GridRegion) -> f64 {
-        let lowest = self.unions.iter().map(ClusterSearch::least);
+        let lowest = self.unions.iter().map(|(_, search)| search.least());
         let lowest = lowest.fold(f64::INFINITY, f64::min);
         let mut first = f64::INFINITY;
         // The first pass evaluates the nearest cluster alone; the second pass evaluates clusters that may be nearer than its first contact.
         for limit in [lowest.next_up(), f64::INFINITY] {
-            for (search, clusters) in self.unions.iter().zip(sphere_unions(placed.objects)) {
+            for ((object, search), clusters) in
+                self.unions.iter().zip(sphere_unions(placed.objects))
+            {
                 for (look, starts) in search.looks().iter().enumerate() {
                     for k in SelectedLanes::below(starts, limit.min(first)) {
                         let cluster = clusters.cluster(look * LOOK + k);
-                        for k in search.object.spheres_below(&cluster, region, first) {
-                            let sphere = search.object.sphere(cluster.at(k));
+                        for k in object.spheres_below(&cluster, region, first) {
+                            let sphere = object.sphere(cluster.at(k));
                             first = first.min(sphere.first_touch(placed.lines));
                         }
                     }
@@ -78,12 +81,12 @@ impl SphereSearch {
     #[inline(always)]
     fn gather(&mut self, placed: &PlacedObjects, region: &GridRegion, limit: f64) {
         self.found.clear();
-        for (search, clusters) in self.unions.iter().zip(sphere_unions(placed.objects)) {
+        for ((object, search), clusters) in self.unions.iter().zip(sphere_unions(placed.objects)) {
             for (look, starts) in search.looks().iter().enumerate() {
                 for k in SelectedLanes::below(starts, limit) {
                     let cluster = clusters.cluster(look * LOOK + k);
-                    for k in search.object.spheres_below(&cluster, region, limit) {
-                        let sphere = search.object.sphere(cluster.at(k));
+                    for k in object.spheres_below(&cluster, region, limit) {
+                        let sphere = object.sphere(cluster.at(k));
                         let q = sphere.reach * sphere.reach;
                         if law::is_in_front(q, sphere.center.z, placed.behind)
                             && !region.misses(sphere.center, sphere.reach * RADIUS_ROUNDING)
