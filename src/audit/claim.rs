@@ -55,13 +55,10 @@ pub fn answer(context: &Context) -> Result<Claim> {
     findings.extend(shared);
     let (copies, found) = copies(context);
     findings.push(found);
-    let doubtful = match is_blind(context) {
-        true => Vec::new(),
-        false => doubtful(context),
-    };
+    let doubtful = (!is_blind(context)).then(|| doubtful(context));
     if context.has_classes {
         findings.extend(clusters(context));
-        findings.push(labels(context, &doubtful));
+        findings.push(labels(context, doubtful.as_deref()));
     }
     if context.data.groups.is_none() {
         findings.push(sample_size(context));
@@ -80,7 +77,7 @@ pub fn answer(context: &Context) -> Result<Claim> {
         findings,
         sentences,
         copies,
-        doubtful,
+        doubtful: doubtful.unwrap_or_default(),
     })
 }
 
@@ -386,11 +383,12 @@ fn doubtful(context: &Context) -> Vec<Doubtful> {
     found.collect()
 }
 
-fn labels(context: &Context, doubtful: &[Doubtful]) -> Finding {
-    if is_blind(context) {
+/// Reports touches whose labels are doubtful; `None` if no classifier can tell.
+fn labels(context: &Context, doubtful: Option<&[Doubtful]>) -> Finding {
+    let Some(doubtful) = doubtful else {
         let sentence = "No fast classifier recognises more than chance, so none can tell which labels are wrong.";
         return Finding::new("labels", Verdict::NotChecked, sentence);
-    }
+    };
     let (n, n_doubtful) = (context.labels.len(), doubtful.len());
     let share = n_doubtful as f64 / n as f64;
     let sentence = format!(

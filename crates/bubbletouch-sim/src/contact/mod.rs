@@ -14,8 +14,8 @@
 //! taxel of a flat patch therefore never decreases with the depth. At a pose without a path ([`Until::Pose`]) and for free objects,
 //! a sphere or a mesh counts until it is wholly behind the substrate. The rule is applied to each taxel separately. The obstacle is behind if a
 //! taxel resting on its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (module `law`). A ball that moves through a skin therefore leaves
-//! it taxel by taxel. In a time loop and along a press, an object
-//! that pushed a taxel in the previous step continues to push this taxel (module `tree::held_parts`).
+//! it taxel by taxel. In a time loop and along a press, an object that pushed a taxel in the previous step continues to push this taxel (module
+//! `tree::held_parts`).
 //!
 //! A taxel that an object would push further than its stroke s is saturated; [`Contact`] counts such taxels.
 //!

@@ -51,6 +51,12 @@ impl ObjectAt {
         self.turn(point) + self.translation
     }
 
+    /// Moves a point from the frame of the skin to the frame of the object.
+    #[inline(always)]
+    pub fn unplace(&self, point: DVec3) -> DVec3 {
+        self.rotation.transpose() * (point - self.translation)
+    }
+
     /// Turns a vector from the frame of the object to the frame of the skin.
     #[inline(always)]
     pub fn turn(&self, vector: DVec3) -> DVec3 {

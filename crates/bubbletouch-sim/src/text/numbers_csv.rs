@@ -45,7 +45,7 @@ pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Res
 /// # Errors
 /// If the field is not a finite number.
 pub fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f64> {
-    let given = || {
+    let refused = || {
         Error::input(
             format!("{place}, column {column}"),
             // A field in quotes may contain line breaks.
@@ -53,7 +53,7 @@ pub fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f
             allowed,
         )
     };
-    finite_number(field).ok_or_else(given)
+    finite_number(field).ok_or_else(refused)
 }
 
 /// Table of numbers with named columns.

@@ -3,6 +3,7 @@
 use crate::contact::law::{stop_in_front, triangle::stopping_height};
 use crate::contact::object_at::ObjectAt;
 use crate::geometry::Pose;
+use crate::mesh::Triangle;
 use crate::objects::MeshModel;
 use crate::objects::mesh_blocks::{LANES, vector};
 use crate::world::{Node, PlacedTaxel};
@@ -83,20 +84,15 @@ impl<'a> MeshAt<'a> {
     /// Returns the height at which one triangle stops a taxel, metres. Returns `None` if the triangle misses the taxel, or if a taxel on its far side would be
     /// behind the taxel's substrate.
     pub fn stop_in_front(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<f64> {
-        let turned = self
-            .seen_by(taxel)
-            .triangle(&self.mesh.mesh().triangle(triangle));
-        let reach = taxel.radius + self.object.reach;
-        stop_in_front(&turned, reach, DVec2::ZERO, taxel.behind)
+        let seen = self.triangle_seen_by(taxel, triangle);
+        stop_in_front(&seen, self.reach(taxel), DVec2::ZERO, taxel.behind)
     }
 
     /// Returns the height at which one triangle stops a taxel, metres, even if the triangle is behind the taxel's substrate. Returns `None` if the triangle
     /// misses the taxel.
     pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<f64> {
-        let turned = self
-            .seen_by(taxel)
-            .triangle(&self.mesh.mesh().triangle(triangle));
-        stopping_height(&turned, taxel.radius + self.object.reach, DVec2::ZERO)
+        let seen = self.triangle_seen_by(taxel, triangle);
+        stopping_height(&seen, self.reach(taxel), DVec2::ZERO)
     }
 
     /// Returns whether the mesh may have parts behind the substrate of a taxel. The test uses the bounding box of the mesh.
@@ -122,10 +118,7 @@ impl<'a> MeshAt<'a> {
 
     /// Returns the height, metres, of the point of a triangle's edges that is nearest to a taxel's axis.
     pub fn nearest_height(&self, taxel: &PlacedTaxel, triangle: usize) -> f64 {
-        let [a, b, c] = self
-            .seen_by(taxel)
-            .triangle(&self.mesh.mesh().triangle(triangle))
-            .0;
+        let Triangle([a, b, c]) = self.triangle_seen_by(taxel, triangle);
         let nearest = [(a, b), (b, c), (c, a)].map(|(from, to)| {
             let along = to.xy() - from.xy();
             let part = -from.xy().dot(along) / along.length_squared();
@@ -140,13 +133,9 @@ impl<'a> MeshAt<'a> {
 
     /// Returns the triangle nearest to a taxel's centre at a height, metres, if the distance is less than `factor` times the distance of touch.
     pub fn overlapping(&self, taxel: &PlacedTaxel, height: f64, factor: f64) -> Option<usize> {
-        let reach = taxel.radius + self.object.reach;
-        let place = taxel.center + height * taxel.axis - self.object.translation;
-        let closest = self
-            .mesh
-            .bvh()
-            .closest(self.object.rotation.transpose() * place, factor * reach)?;
-        Some(closest.triangle)
+        let place = self.object.unplace(taxel.center + height * taxel.axis);
+        let within = factor * self.reach(taxel);
+        Some(self.mesh.bvh().closest(place, within)?.triangle)
     }
 
     /// Returns the height at which the mesh stops a taxel of a flat grid whose substrate is inside the solid mesh. Returns `None` if the substrate is
@@ -168,14 +157,13 @@ impl<'a> MeshAt<'a> {
     /// triangle behind the substrate faces outwards, and the nearest triangle ahead shows its inner side.
     pub fn entered(&self, taxel: &PlacedTaxel) -> Option<Stop> {
         let view = self.seen_by(taxel);
-        let to_mesh = view.rotation.transpose();
         let beside = taxel.radius * BESIDE;
-        let place = to_mesh * (beside.extend(taxel.behind) - view.translation);
+        let place = view.unplace(beside.extend(taxel.behind));
         let bounds = self.mesh.bvh().bounds();
         if place.cmplt(bounds.min).any() || place.cmpgt(bounds.max).any() {
             return None;
         }
-        let up = to_mesh * DVec3::Z;
+        let up = view.rotation.transpose() * DVec3::Z;
         let first = |direction| {
             let hit = self
                 .mesh
@@ -190,12 +178,22 @@ impl<'a> MeshAt<'a> {
         if rise_ahead <= 0.0 || rise_behind >= 0.0 {
             return None;
         }
-        let reach = taxel.radius + self.object.reach;
-        let height = stopping_height(&view.triangle(&triangle), reach, DVec2::ZERO)?;
+        let height = stopping_height(&view.triangle(&triangle), self.reach(taxel), DVec2::ZERO)?;
         Some(Stop {
             height,
             triangle: number,
         })
+    }
+
+    /// Returns the distance of a taxel's centre from the triangles when the taxel touches the mesh, metres.
+    fn reach(&self, taxel: &PlacedTaxel) -> f64 {
+        taxel.radius + self.object.reach
+    }
+
+    /// Returns a triangle of the mesh in the frame of a taxel.
+    fn triangle_seen_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Triangle {
+        let triangle = self.mesh.mesh().triangle(triangle);
+        self.seen_by(taxel).triangle(&triangle)
     }
 
     /// Returns the mesh in the frame of a taxel: z along the taxel's axis, origin at the centre of the undeflected taxel.

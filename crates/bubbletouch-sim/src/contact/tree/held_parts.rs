@@ -24,13 +24,18 @@ pub(super) fn push_held(
     (objects, patch_from_objects): (&[Model], &[Pose]),
     workspace: &mut Workspace,
 ) {
+    if !workspace.holds_any() {
+        return;
+    }
+    let placed = objects.iter().zip(patch_from_objects);
+    let holders: Vec<_> = placed
+        .map(|(object, pose)| Holder::new(object, pose))
+        .collect();
     let held = std::mem::take(&mut workspace.held);
     for &HeldTaxel { taxel, by } in &held {
         let taxel = PlacedTaxel::new(patch.layout(), patch.taxels(), taxel as usize);
         let [object, part] = by;
-        let number = object as usize;
-        let holder = Holder::new(&objects[number], &patch_from_objects[number]);
-        let pushed = holder.push_on(&taxel, part);
+        let pushed = holders[object as usize].push_on(&taxel, part);
         if let Some((height, part)) = pushed {
             workspace.push(taxel.number, -height, [object, part]);
         }
@@ -88,8 +93,7 @@ impl<'a> Holder<'a> {
     fn stop(&self, taxel: &PlacedTaxel, part: u32) -> Option<f64> {
         let height = match self {
             Self::Spheres(union, object) => {
-                let sphere = object.sphere(union.spheres()[part as usize]);
-                -needed_by(&sphere, taxel, f64::NEG_INFINITY)
+                -needed_by(&sphere_of(union, object, part), taxel, f64::NEG_INFINITY)
             }
             Self::Mesh(mesh) => mesh.stop_by(taxel, part as usize)?,
         };
@@ -100,8 +104,7 @@ impl<'a> Holder<'a> {
     fn is_in_front(&self, taxel: &PlacedTaxel, part: u32) -> bool {
         match self {
             Self::Spheres(union, object) => {
-                let sphere = object.sphere(union.spheres()[part as usize]);
-                needed_by(&sphere, taxel, taxel.behind) > 0.0
+                needed_by(&sphere_of(union, object, part), taxel, taxel.behind) > 0.0
             }
             Self::Mesh(mesh) => mesh.stop_in_front(taxel, part as usize).is_some(),
         }
@@ -111,8 +114,8 @@ impl<'a> Holder<'a> {
     fn nearest_height(&self, taxel: &PlacedTaxel, part: u32) -> f64 {
         match self {
             Self::Spheres(union, object) => {
-                let center = object.place(union.spheres()[part as usize].center);
-                (center - taxel.center).dot(taxel.axis)
+                let sphere = sphere_of(union, object, part);
+                (sphere.center - taxel.center).dot(taxel.axis)
             }
             Self::Mesh(mesh) => mesh.nearest_height(taxel, part as usize),
         }
@@ -123,9 +126,8 @@ impl<'a> Holder<'a> {
         let lower = |part| Some((self.stop(taxel, part)?, part));
         let found = match self {
             Self::Spheres(union, object) => {
-                let place = taxel.center + height * taxel.axis - object.translation;
                 let ball = Sphere {
-                    center: object.rotation.transpose() * place,
+                    center: object.unplace(taxel.center + height * taxel.axis),
                     radius: OVERLAP * taxel.radius,
                 };
                 let stops = overlapping(union, ball).filter_map(lower);
@@ -135,6 +137,11 @@ impl<'a> Holder<'a> {
         };
         found.filter(|&(stop, _)| stop < height)
     }
+}
+
+/// Returns a sphere of a union in the patch frame.
+fn sphere_of(union: &SphereUnion, object: &ObjectAt, part: u32) -> PlacedSphere {
+    object.sphere(union.spheres()[part as usize])
 }
 
 /// Returns the deflection that contact with a sphere requires of a taxel whose substrate has the height `behind`, metres.
