@@ -112,7 +112,6 @@ impl Manifest {
             threads: rayon::current_num_threads(),
             started: time(started),
             ended: time(SystemTime::now()),
-            peak_memory_bytes: crate::inputs::memory::peak_memory(),
             study_sha256: crate::inputs::content_hash::sha256(&identity.study),
             objects_sha256: identity.objects.clone(),
             ..Self::default()

@@ -8,12 +8,16 @@ use comfy_table::{
     CellAlignment, ColumnConstraint, ContentArrangement, Table as TextTable, TableComponent, Width,
     presets,
 };
+use std::borrow::Cow;
 
 /// Maximum number of rows of a table that are shown on the terminal.
 const MAX_LINES: usize = 40;
 
 /// Number of spaces between two columns of a table.
 const COLUMN_GAP: usize = 3;
+
+/// Maximum number of characters of a table entry on the terminal; a longer one ends with an ellipsis. Wrapping a long word takes the square of its length.
+const MAX_LETTERS: usize = 1000;
 
 /// Smallest width for which a table is laid out, characters.
 const NARROWEST: usize = 20;
@@ -219,7 +223,7 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
     let mut shown = ruled_table(width);
     shown.set_header(columns.iter().map(|column| &column.head));
     for line in 0..n_lines {
-        shown.add_row(columns.iter().map(|column| &column.said[line]));
+        shown.add_row(columns.iter().map(|column| clipped(&column.said[line])));
     }
     for (text, column) in columns.iter().zip(shown.column_iter_mut()) {
         column.set_padding((0, 2));
@@ -282,6 +286,14 @@ fn ruled_table(width: usize) -> TextTable {
     table.set_style(TableComponent::HeaderLines, '-');
     table.set_style(TableComponent::MiddleHeaderIntersections, '-');
     table
+}
+
+/// Returns a text of at most [`MAX_LETTERS`] characters and an ellipsis.
+fn clipped(text: &str) -> Cow<'_, str> {
+    match text.char_indices().nth(MAX_LETTERS) {
+        Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
+        None => Cow::Borrowed(text),
+    }
 }
 
 fn longest_word(text: &str) -> usize {

@@ -10,6 +10,7 @@ use crate::engine::work_items::{
 use crate::error::{Error, Result};
 use crate::files::{DataFolder, MANIFEST_FILE, OwnedFiles, RUN, check_output};
 use crate::inputs::content_hash::sha256;
+use crate::inputs::memory::peak_memory;
 use crate::random::Seed;
 use crate::report::csv_tables::{FAILURES_FILE, read_rows};
 use crate::report::folder::{NamedFile, table_files, write_files};
@@ -195,6 +196,11 @@ impl<K: Study> AnyStudy for Loaded<K> {
             ..StudyAbout::default()
         };
         let page = self.files_of(of_run, &outcome.tables)?;
+        // Pictures take more memory than many studies.
+        let manifest = Manifest {
+            peak_memory_bytes: peak_memory(),
+            ..manifest
+        };
         let mut files = table_files(&outcome.tables);
         files.push(("study.toml".to_owned(), self.facts.toml.clone().into()));
         write_results(dir, manifest, files, page)

@@ -236,7 +236,7 @@ impl Table {
         };
         let broken = |e: csv::Error| bad(e.position(), e.to_string(), "a row of the table");
         let header = reader.headers().map_err(broken)?.clone();
-        let mut columns: Vec<Column> = Vec::with_capacity(header.len());
+        let mut columns: Vec<Column> = Vec::with_capacity(known.len());
         let mut all = known.into_iter();
         for name in &header {
             if columns.iter().any(|column| column.name == name) {

@@ -4,8 +4,9 @@ use crate::error::{Error, Result};
 use crate::inputs::memory::{Bytes, GIB, memory_in_use};
 use crate::spelling::counted;
 
-/// Approximate memory of the pictures and the page that a study draws at the end, bytes.
-const DRAWING_BYTES: f64 = 8e7;
+/// Approximate memory of the pictures and the page that a study draws at the end, bytes: fonts, pixels, and memory of earlier stages that the allocator has not
+/// returned yet.
+const DRAWING_BYTES: f64 = 1.75e8;
 
 /// Memory of the program if the system does not report it, bytes.
 const PROGRAM_BYTES: f64 = 1.2e8;

@@ -15,8 +15,6 @@ const CELL_BYTES: f64 = 4e3;
 const NUMBER: f64 = 8.0;
 /// Memory of an encoded frame beside its values, bytes: its place in the list and the header of its allocation.
 const FRAME_BYTES: f64 = 32.0;
-/// Approximate memory of drawing pictures of touches, charts and the page, bytes, with memory of earlier stages that the allocator has not returned yet.
-const DRAWING_BYTES: f64 = 9.5e7;
 /// Number of directions in which principal components are sought beyond the components.
 const OVERSAMPLING: f64 = 16.0;
 
@@ -54,7 +52,7 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         touches,
         n_configurations: study.n_configurations(),
         bytes: CELL_BYTES * (study.n_configurations() * study.n_trials()) as f64,
-        stages: stages.chain([Stage::of_bytes(DRAWING_BYTES)]).collect(),
+        stages: stages.collect(),
     }
 }
 
