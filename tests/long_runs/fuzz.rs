@@ -191,8 +191,10 @@ fn way_points() {
 #[test]
 fn tables_of_results() {
     // The times in stored tables are the same in every test run.
-    let tables = read_tables(&folder("results/foveated")).unwrap();
+    let stored = folder("results/foveated");
+    let tables = read_tables(&stored).unwrap();
     let at = folder_in_memory();
+    fs::copy(stored.join("study.toml"), at.path().join("study.toml")).unwrap();
     write_files(at.path(), table_files(&tables)).unwrap();
     // The first byte of an input selects the table.
     let files = tables.iter().filter(|table| !table.csv.is_empty());
