@@ -16,7 +16,8 @@ const MAX_LINES: usize = 40;
 /// Number of spaces between two columns of a table.
 const COLUMN_GAP: usize = 3;
 
-/// Maximum number of characters of a table entry on the terminal; a longer one ends with an ellipsis. Wrapping a long word takes the square of its length.
+/// Maximum number of characters of a table entry on the terminal; the rest is replaced by an ellipsis. The time to wrap a word grows with the square of its
+/// length.
 const MAX_LETTERS: usize = 1000;
 
 /// Smallest width for which a table is laid out, characters.

@@ -178,7 +178,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
             hashes.collect()
         };
         let words = |&(columns, method): &(&str, &str)| (columns.to_owned(), method.to_owned());
-        let manifest = Manifest {
+        let mut manifest = Manifest {
             seed: self.facts.seed,
             n_configurations: self.items.len(),
             n_trials: 1,
@@ -196,11 +196,8 @@ impl<K: Study> AnyStudy for Loaded<K> {
             ..StudyAbout::default()
         };
         let page = self.files_of(of_run, &outcome.tables)?;
-        // Pictures take more memory than many studies.
-        let manifest = Manifest {
-            peak_memory_bytes: peak_memory(),
-            ..manifest
-        };
+        // In a small study, drawing takes the most memory.
+        manifest.peak_memory_bytes = peak_memory();
         let mut files = table_files(&outcome.tables);
         files.push(("study.toml".to_owned(), self.facts.toml.clone().into()));
         write_results(dir, manifest, files, page)

@@ -307,11 +307,11 @@ impl Drawing {
     /// # Errors
     /// If the drawing cannot be rendered.
     pub fn picture(&self) -> Result<Picture> {
-        Picture::of_png(&self.rendered(FINE)?, true)
+        Ok(self.pixels(FINE)?.halved())
     }
 
-    /// Renders the drawing as a PNG file with `scale` image pixels for each pixel of the drawing.
-    fn rendered(&self, scale: u32) -> Result<Vec<u8>> {
+    /// Renders the drawing with `scale` image pixels for each pixel of the drawing.
+    pub(crate) fn pixels(&self, scale: u32) -> Result<Picture> {
         let mut elements = self.elements.clone();
         for element in &mut elements {
             if let Primitive::PolyLine {
@@ -328,7 +328,7 @@ impl Drawing {
         let png = kuva::RasterBackend::new()
             .with_scale(scale as f32)
             .render_scene(&self.scene(elements));
-        png.map_err(unfit)
+        Picture::of_png(&png.map_err(unfit)?)
     }
 
     fn scene(&self, elements: Vec<Primitive>) -> Scene {
@@ -394,10 +394,7 @@ fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
 impl Picture {
     /// Draws a drawing of equal size onto the picture. White areas of the drawing leave the picture unchanged.
     pub(crate) fn print(&mut self, drawing: &Drawing) -> Result<()> {
-        darken(
-            &mut self.rgb,
-            &Picture::of_png(&drawing.rendered(1)?, false)?.rgb,
-        );
+        darken(&mut self.rgb, &drawing.pixels(1)?.rgb);
         Ok(())
     }
 }

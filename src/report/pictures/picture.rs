@@ -48,30 +48,26 @@ impl Picture {
         Ok(bytes)
     }
 
-    /// Decodes an opaque PNG file row by row. If `halves`, the picture has half the width and height (rounded down), and each pixel is the mean of four pixels.
-    pub(crate) fn of_png(png: &[u8], halves: bool) -> Result<Self> {
+    /// Decodes an opaque PNG file.
+    pub(crate) fn of_png(png: &[u8]) -> Result<Self> {
         let mut reader = png::Decoder::new(std::io::Cursor::new(png))
             .read_info()
             .map_err(unfit)?;
-        let (width, height) = reader.info().size();
-        let (width, height) = (width as usize, height as usize);
-        let n_samples = reader.info().color_type.samples();
-        let divisor = if halves { 2 } else { 1 };
-        let mut rgb = Vec::with_capacity(3 * (width / divisor) * (height / divisor));
-        let mut rows = Vec::new();
-        while let Some(row) = reader.next_row().map_err(unfit)? {
-            rows.extend(without_opacity(row.data().to_vec(), n_samples));
-            if rows.len() == 3 * width * divisor {
-                rgb.extend(if halves {
-                    halved(&rows, width)
-                } else {
-                    rows.clone()
-                });
-                rows.clear();
-            }
-        }
-        let (width, height) = (width / divisor, height / divisor);
+        let mut elements = vec![0; reader.output_buffer_size().unwrap_or(0)];
+        let info = reader.next_frame(&mut elements).map_err(unfit)?;
+        let (width, height) = (info.width as usize, info.height as usize);
+        let n_samples = info.color_type.samples();
+        let rgb = without_opacity(elements, n_samples);
         Ok(Self { width, height, rgb })
+    }
+
+    /// Returns the picture at half its width and height (rounded down); each pixel is the mean of four pixels.
+    pub(crate) fn halved(&self) -> Self {
+        Self {
+            width: self.width / 2,
+            height: self.height / 2,
+            rgb: halved(&self.rgb, self.width),
+        }
     }
 
     /// Creates a white picture whose sides have 64 to 20,000 pixels each.
